@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The immutable description of a simulation: what a scene file says, in SI units, checked.
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pinchlab {
+
+using Vec2 = Eigen::Vector2d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// How pinched cables are handled (model.md, "The methods to compare"; thesis 3.3.1 and 4.2).
+enum class Method {
+  pinch,             ///< pinch joints: no body comes nearer to another than the cable between them
+  pinch_no_contact,  ///< pinch joints without their contact rows: bodies clip into the cable
+  cable,             ///< plain cable joints: wrapped cable is not seen by other bodies at all
+};
+
+enum class BodyKind {
+  free,        ///< moves and turns
+  rail,        ///< moves along `rail_axis` only, and turns
+  fixed_axle,  ///< turns only
+  fixed,       ///< neither moves nor turns
+};
+
+/// A circular body.
+struct Body {
+  std::string name;                       ///< unique in the scene
+  BodyKind kind = BodyKind::free;
+  double radius = 0.5;                    ///< m, > 0
+  double mass = 1.0;                      ///< kg, > 0; unused for fixed bodies
+  std::optional<double> inertia;          ///< kg m^2, > 0; default: disc, m r^2 / 2
+  Vec2 position = Vec2::Zero();           ///< m
+  double angle = 0.0;                     ///< rad, counter-clockwise
+  Vec2 velocity = Vec2::Zero();           ///< m/s, at time 0
+  double angular_velocity = 0.0;          ///< rad/s, at time 0
+  Vec2 rail_axis = Vec2(0.0, 1.0);        ///< unit vector; rail bodies only
+  std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
+  double torque = 0.0;                    ///< N m, constant
+  double linear_drag = 0.0;               ///< 1/s: dv/dt = -drag v
+  double angular_drag = 0.0;              ///< 1/s
+  double cable_friction = infinity;       ///< capstan coefficient mu >= 0; infinity: no slip
+  double contact_friction = 0.5;          ///< Coulomb coefficient >= 0 between bare surfaces
+  double restitution = 0.0;               ///< 0..1, of bodies that hit each other or a wall
+};
+
+/// Where an end of an open cable is held.
+struct Attachment {
+  int body = -1;               ///< index into Scene::bodies, or -1: the world
+  Vec2 point = Vec2::Zero();   ///< m, in the body's frame (origin at its centre), or in the world
+};
+
+/// One body that a cable runs round.
+struct Wrap {
+  int body = 0;         ///< index into Scene::bodies
+  int orientation = 1;  ///< +1: the cable runs counter-clockwise round the body; -1: clockwise
+  int extra_turns = 0;  ///< whole turns beyond the one wrap in [0, 2 pi) that the tangents ask for
+};
+
+/// A massless cable, from `start` over `wraps` to `end`; a closed one has wraps only (at least two).
+struct Cable {
+  std::string name;                    ///< unique in the scene
+  double half_width = 0.05;            ///< m, > 0
+  bool closed = false;
+  Attachment start, end;               ///< unused when closed
+  std::vector<Wrap> wraps;
+  double slack = 0.0;                  ///< m, total length beyond the taut path at time 0; >= 0,
+                                       ///< negative (pre-stretched) only with finite stiffness
+  double axial_stiffness = infinity;   ///< N, EA; infinity: inextensible
+};
+
+/// A static straight wall: bodies cannot pass it from either side. Cables ignore walls.
+struct Wall {
+  Vec2 a = Vec2::Zero(), b = Vec2::Zero();  ///< m
+  double contact_friction = 0.5;
+  double restitution = 0.0;
+};
+
+/// The part of the plane that a frame shows, m. Its aspect is fitted into the frame's.
+struct View {
+  Vec2 low = Vec2(-1.0, -1.0), high = Vec2(1.0, 1.0);
+};
+
+struct Scene {
+  std::string name;         ///< file name without folder and ending, e.g. "03-drop"
+  std::string title;        ///< for people, e.g. "Dropped roller"
+  Vec2 gravity = Vec2(0.0, -9.81);  ///< m/s^2
+  std::vector<Body> bodies;
+  std::vector<Cable> cables;
+  std::vector<Wall> walls;
+  int frame_count = 600;
+  int frames_per_second = 60;
+  int steps_per_frame = 4;
+  View view;
+  Method baseline = Method::pinch_no_contact;  ///< what the pinch method is paired with
+  std::string baseline_reason;
+};
+
+inline double step_length(const Scene& scene) {  // s
+  return 1.0 / (static_cast<double>(scene.frames_per_second) * scene.steps_per_frame);
+}
+
+inline double disc_inertia(const Body& body) {  // kg m^2
+  return body.inertia.value_or(0.5 * body.mass * body.radius * body.radius);
+}
+
+const char* to_string(Method method);
+
+}  // namespace pinchlab
