@@ -23,13 +23,13 @@ std::string line_and_column(std::string_view text, std::size_t offset) {
   return fmt::format("line {}, column {}", line, std::max<std::size_t>(column, 1));
 }
 
-// What the library says, without its own numbering and position.
+// What the library says, without its own numbering, position and copy of the text.
 std::string plain_reason(const std::string& what) {
-  const std::size_t reason = what.find(" - ");
-  std::string text = reason == std::string::npos ? what : what.substr(reason + 3);
-  text.erase(std::remove_if(text.begin(), text.end(), [](char c) { return c == '\n'; }),
-             text.end());
-  return text.size() > 200 ? text.substr(0, 200) + "..." : text;
+  const std::size_t dash = what.find(" - ");
+  const std::size_t reason = dash != std::string::npos ? dash + 3 : what.find("] ") + 2;
+  const std::string text = what.substr(reason, what.find("; last read") - reason);
+  return text == "invalid literal" ? text + " (NaN, Infinity, comments and bare words are not JSON)"
+                                   : text;
 }
 
 // Builds the value while watching what the library's own builder lets pass.
