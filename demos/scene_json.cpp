@@ -14,7 +14,7 @@
 
 #include "demos/did_you_mean.h"
 #include "demos/format_check.h"
-#include "demos/sha256.h"
+#include "demos/hash.h"
 #include "demos/strict_json.h"
 #include "sim/scene_error.h"
 
@@ -394,7 +394,7 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
   SceneFile file;
   file.path = path;
   file.scene.name = scene_name(path);
-  Sha256 sha;
+  Hash sha(HashKind::sha256);
   sha.add(std::as_bytes(std::span(text)));
   file.sha256 = sha.hex();
 
@@ -438,15 +438,15 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
   return parse_scene(text, path);
 }
 
-World start_world(const SceneFile& file, Method method) {
+World start_world(const Scene& scene, const std::filesystem::path& path, Method method) {
   try {
-    return make_world(file.scene, method);
+    return make_world(scene, method);
   } catch (const SceneError& error) {
     std::string message = error.what();
     if (message.starts_with(error.place + ": ")) {
       message.erase(0, error.place.size() + 2);
     }
-    throw SceneFileError(file.path.string(), {{error.place, message}});
+    throw SceneFileError(path.string(), {{error.place, message}});
   }
 }
 

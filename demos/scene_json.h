@@ -42,8 +42,9 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 /// name.
 SceneFile parse_scene(std::string_view text, const std::filesystem::path& path);
 
-/// make_world for a scene with its file's name in the error: throws SceneFileError.
-World start_world(const SceneFile& file, Method method);
+/// make_world for a scene that comes from the file at `path`: where the geometry cannot exist,
+/// throws SceneFileError with the file's name.
+World start_world(const Scene& scene, const std::filesystem::path& path, Method method);
 
 /// The method called `name` in files and on the command line; std::invalid_argument if there is
 /// none.
