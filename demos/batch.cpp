@@ -15,9 +15,9 @@
 #include <thread>
 
 #include "demos/manifest.h"
-#include "demos/output_file.h"
 #include "demos/progress.h"
 #include "demos/worker_pool.h"
+#include "render/canvas.h"
 
 namespace pinchlab {
 namespace {
@@ -51,9 +51,11 @@ class FolderLock {
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
+  const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && entry.path().string().ends_with(partial_ending)) {
-      fs::remove(entry.path());
+    const fs::path& path = entry.path();
+    if (path.extension() == ".partial" && ours.contains(path.stem().extension())) {
+      fs::remove(path);
     }
   }
 }
@@ -141,6 +143,21 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
   return outcome;
 }
 
+void check_size(const BatchOptions& options) {
+  const int width = options.width * (options.side_by_side ? 2 : 1);  // px
+  if (std::min(options.width, options.height) < smallest_frame ||
+      std::max(width, options.height) > largest_frame) {
+    throw std::invalid_argument(
+        fmt::format("frames of {} x {} pixels cannot be drawn: each must be {} to {}", width,
+                    options.height, smallest_frame, largest_frame));
+  }
+  if (options.codec != Codec::ffv1 && (options.width % 2 != 0 || options.height % 2 != 0)) {
+    throw std::invalid_argument(
+        fmt::format("{} needs an even size, not {}x{}; change --size, or use --codec ffv1",
+                    to_string(options.codec), options.width, options.height));
+  }
+}
+
 }  // namespace
 
 Method method_of(const Scene& scene, const std::string& name) {
@@ -170,6 +187,7 @@ std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
 }
 
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
+  check_size(options);
   const Scene scene = with_timing(source.scene, options.timing);
   const auto plan = [&](const std::string& role, std::vector<Method> methods,
                         const std::string& ending) {
@@ -218,9 +236,12 @@ int render_batch(const BatchOptions& options) {
   const FolderLock lock(options.out);
   remove_partial_files(options.out);
   Manifest manifest = read_manifest(options.out);
-  std::erase_if(manifest.entries, [&](const ordered_json& entry) {
+  const auto is_gone = [&](const ordered_json& entry) {
     return !fs::exists(options.out / entry["file"].get<std::string>());
-  });
+  };
+  if (std::erase_if(manifest.entries, is_gone) > 0) {
+    write_manifest(options.out, manifest);
+  }
   const std::vector<ClipPlan> to_make = plans_to_make(plans, manifest, options.out);
 
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

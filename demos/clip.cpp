@@ -101,6 +101,7 @@ ordered_json plan_entry(const ClipPlan& plan) {
       {"role", plan.role},
       {"scene", plan.source->path.filename().string()},
       {"scene_sha256", plan.source->sha256},
+      {"title", scene.title},
       {"methods", method_names(plan)},
       {"panel_width_px", panel_width(plan)},
       {"panel_height_px", plan.video.height},

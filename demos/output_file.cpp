@@ -18,12 +18,13 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
   }
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
-  const bool is_special =
-      std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  const bool is_special = std::filesystem::exists(status) &&
+                          !std::filesystem::is_regular_file(status) &&
+                          !std::filesystem::is_directory(status);
   if (!is_special) {
-    partial_ = path.string() + std::string(partial_ending);
+    partial_.emplace(path.string());
   }
-  file_ = std::fopen((is_special ? path_ : partial_).c_str(), "wb");
+  file_ = std::fopen(partial_ ? partial_->name().c_str() : path_.c_str(), "wb");
   if (file_ == nullptr) {
     fail("cannot be written");
   }
@@ -32,9 +33,6 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
 OutputFile::~OutputFile() {
   if (file_ != nullptr && file_ != stdout) {
     std::fclose(file_);
-    if (!partial_.empty()) {
-      std::remove(partial_.c_str());
-    }
   }
 }
 
@@ -49,16 +47,16 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::finish() {
-  if (std::fflush(file_) != 0 || (!partial_.empty() && ::fsync(::fileno(file_)) != 0)) {
+  if (std::fflush(file_) != 0 || (partial_ && ::fsync(::fileno(file_)) != 0)) {
     fail("cannot be written");
-  }
-  if (!partial_.empty() && std::rename(partial_.c_str(), path_.c_str()) != 0) {
-    fail("cannot be given its name");
   }
   if (file_ != stdout) {
     std::fclose(file_);
   }
   file_ = nullptr;
+  if (partial_) {
+    partial_->keep();
+  }
 }
 
 }  // namespace pinchlab

@@ -3,12 +3,12 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
-namespace pinchlab {
+#include "render/partial_file.h"
 
-/// What a file is called until it is complete: its name and this.
-constexpr std::string_view partial_ending = ".partial";
+namespace pinchlab {
 
 /// A file that appears under its name only when complete. "-" is standard output, and what exists
 /// and is no ordinary file (/dev/null, a pipe) is written directly. Every function throws
@@ -27,7 +27,8 @@ class OutputFile {
  private:
   [[noreturn]] void fail(const char* what) const;
 
-  std::filesystem::path path_, partial_;  // partial_ is empty when written directly
+  std::filesystem::path path_;
+  std::optional<PartialFile> partial_;  // none when written directly
   std::FILE* file_ = nullptr;
 };
 

@@ -48,21 +48,24 @@ Scene with_timing(const Scene& scene, const Timing& timing) {
   return changed;
 }
 
+std::string failure_report(const std::filesystem::path& path, const Scene& scene,
+                           const World& world, int frame) {
+  return fmt::format(
+      "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
+      "--steps-per-frame {4} --until {5} --out -",
+      path.string(), to_string(world.method), world.failure, scene.frames_per_second,
+      scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
+}
+
 Player::Player(const SceneFile& file, const Scene& scene, Method method)
     : file_(file), scene_(scene), world_(start_world(scene, file.path, method)) {}
 
 void Player::advance_to(int frame) {
   for (; frame_ < frame; ++frame_) {
     for (int i = 0; i < scene_.steps_per_frame; ++i) {
-      if (step(scene_, world_) == StepStatus::ok) {
-        continue;
+      if (step(scene_, world_) != StepStatus::ok) {
+        throw std::runtime_error(failure_report(file_.path, scene_, world_, frame_ + 1));
       }
-      const double until = static_cast<double>(frame_ + 1) / scene_.frames_per_second;
-      throw std::runtime_error(fmt::format(
-          "{}: method {}: {}; to see it again: pinchlab simulate {} --method {} --fps {} "
-          "--steps-per-frame {} --until {} --out -",
-          file_.path.string(), to_string(world_.method), world_.failure, file_.path.string(),
-          to_string(world_.method), scene_.frames_per_second, scene_.steps_per_frame, until));
     }
   }
 }

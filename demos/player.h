@@ -2,7 +2,9 @@
 #pragma once
 // A scene under one method, frame by frame: frame i is step i * steps_per_frame, frame 0 the start.
 
+#include <filesystem>
 #include <optional>
+#include <string>
 
 #include "demos/scene_json.h"
 
@@ -19,13 +21,18 @@ struct Timing {
 /// the cure, where the duration is not a whole number of frames or a value is out of range.
 Scene with_timing(const Scene& scene, const Timing& timing);
 
+/// What is told of a world that became not finite on the way to `frame` of the scene from `path`:
+/// where and when, and the command that shows it again.
+std::string failure_report(const std::filesystem::path& path, const Scene& scene,
+                           const World& world, int frame);
+
 class Player {
  public:
   /// `file` must outlive the player. Throws SceneFileError where the geometry cannot exist.
   Player(const SceneFile& file, const Scene& scene, Method method);
 
-  /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error if a
-  /// value is not finite: what, where and when, and the command that shows it again.
+  /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with
+  /// a failure_report if a value is not finite.
   void advance_to(int frame);
 
   int frame() const { return frame_; }
