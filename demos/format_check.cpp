@@ -60,7 +60,7 @@ void check_number(const json& value, const KeyFormat& key, const std::string& pl
     problems.push_back({place, fmt::format("must be {}, not {}", wanted, type_name(value))});
   } else if (!in_range(value, key)) {
     problems.push_back(
-        {place, fmt::format("must be {} to {}, not {}", key.low, key.high, value.dump())});
+        {place, fmt::format("must be {:g} to {:g}, not {}", key.low, key.high, value.dump())});
   } else if (whole && std::trunc(value.get<double>()) != value.get<double>()) {
     problems.push_back({place, fmt::format("must be a whole number, not {}", value.dump())});
   }
@@ -76,7 +76,7 @@ void check_vector(const json& value, const KeyFormat& key, const std::string& pl
     if (!in_range(value[i], key)) {
       problems.push_back(
           {fmt::format("{}/{}", place, i),
-           fmt::format("must be {} to {}, not {}", key.low, key.high, value[i].dump())});
+           fmt::format("must be {:g} to {:g}, not {}", key.low, key.high, value[i].dump())});
     }
   }
 }
