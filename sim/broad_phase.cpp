@@ -114,8 +114,6 @@ void find_span_pairs(const Scene& scene, World& world) {
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
       if (segment.pinched) continue;
-      const std::size_t from = s == 0 ? cable.links.size() - 1 : s - 1;
-      const int tail_body = cable.links[from].body, head_body = cable.links[s].body;
       const Vec2 low = segment.tail.cwiseMin(segment.head)
                            .cwiseMin(segment.previous_tail)
                            .cwiseMin(segment.previous_head);
@@ -125,7 +123,6 @@ void find_span_pairs(const Scene& scene, World& world) {
       auto it = std::lower_bound(broad.key.begin(), broad.key.end(), low[axis] - longest_box);
       for (; it != broad.key.end() && *it <= high[axis]; ++it) {
         const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];
-        if (body == tail_body || body == head_body) continue;
         const Vec2 &box_low = broad.low[static_cast<std::size_t>(body)],
                    &box_high = broad.high[static_cast<std::size_t>(body)];
         if (box_high[axis] < low[axis] || box_low[other_axis] > high[other_axis] ||

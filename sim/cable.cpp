@@ -65,6 +65,13 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius());
+  if (wound_end(from, to)) {
+    const bool arrives = from.orientation == 0;  // at the body, from its rim
+    const Vec2 rim = arrives ? Vec2(a - b) : Vec2(b - a);
+    t.direction = (from.orientation + to.orientation) * left(rim.normalized());
+    t.length = 0.0;
+    t.pinched = true;
+  }
   if (from.pinch_middle || to.pinch_middle) {
     // Held between two bodies: the limit of the tangent, also while the bodies part by round-off.
     const double delta = to.signed_radius() - from.signed_radius();

@@ -28,6 +28,12 @@ inline bool opposite(const Link& a, const Link& b) {
   return a.orientation * b.orientation < 0;
 }
 
+/// Whether the segment between the two only fastens the cable's end to the rim of the body that it
+/// is wound on. It has no length and exerts nothing.
+inline bool wound_end(const Link& a, const Link& b) {
+  return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0);
+}
+
 /// New tangents, directions, wraps and rest lengths for the bodies' present positions (thesis:
 /// UpdateSegments). Material stays where it is on every body.
 void update_segments(World& world);

@@ -155,20 +155,19 @@ void find_runs(const Scene& scene, World& world) {
       return scratch.row_of_segment[index(scratch.segment_begin[c] + segment)];
     };
     const int count = static_cast<int>(cable.links.size());
-    // Start a closed cable outside of any pinch.
+    // Start a closed cable outside of any pinch, an open one at the first segment that bears
+    // tension.
     int start = cable.closed ? 0 : 1;
     while (cable.closed && (cable.links[index(start)].pinch_middle ||
                             cable.links[index(previous_link(cable, start))].pinch_middle)) {
       ++start;
     }
+    if (row_of(start) < 0) ++start;
     int run_before = -1;
     const std::size_t first_of_cable = s.segments.size();
-    int segment = start, seen = 0;
-    const int total = cable.closed ? count : count - 1;
-    while (seen < total) {
+    for (int segment = start, seen = 0; seen < count; ++seen) {
       s.segments.push_back(row_of(segment));
       s.run_before.push_back(run_before);
-      ++seen;
       const int first = segment;
       int last = first;
       if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
@@ -176,8 +175,9 @@ void find_runs(const Scene& scene, World& world) {
         last = next_link(cable, next_link(cable, last));
         seen += 2;
       }
-      Run run = make_run(scene, world, static_cast<int>(c), first, last);
       segment = next_link(cable, last);
+      if (row_of(segment) < 0) break;  // wound up here: the end is fast
+      Run run = make_run(scene, world, static_cast<int>(c), first, last);
       run.row_in = row_of(first);
       run.row_out = row_of(segment);
       run_before = static_cast<int>(s.runs.size());

@@ -33,6 +33,13 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   return beside(tail, before) || beside(head, after);
 }
 
+/// A body may hit the span that ends on it only where it holds the end at its rim.
+bool holds_span(const Scene& scene, const CableState& cable, const Link& end, int body) {
+  if (end.body != body) return false;
+  const double margin = scene.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  return end.orientation != 0 || end.attachment.norm() < margin * (1.0 - 1e-9);
+}
+
 Hit test_span(const Scene& scene, const World& world, const CableState& cable, std::size_t s,
               int body) {
   const Segment& segment = cable.segments[s];
@@ -95,8 +102,9 @@ void add_hit_links(const Scene& scene, World& world) {
         for (std::size_t part = 0; part <= added; ++part) {
           const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
           const int head = static_cast<int>(s), tail = previous_link(cable, head);
-          if (cable.links[s].body == pairs[i].body ||
-              cable.links[static_cast<std::size_t>(tail)].body == pairs[i].body) {
+          if (holds_span(scene, cable, cable.links[s], pairs[i].body) ||
+              holds_span(scene, cable, cable.links[static_cast<std::size_t>(tail)],
+                         pairs[i].body)) {
             continue;
           }
           const Hit hit = test_span(scene, world, cable, s, pairs[i].body);

@@ -66,6 +66,13 @@ void lay_tangents(const Scene& scene, const World& world, std::size_t c, CableSt
     const Link &from = cable.links[tail], &to = cable.links[i];
     const double distance = (link_centre(world, to) - link_centre(world, from)).norm();
     const double needed = std::abs(to.signed_radius() - from.signed_radius());
+    if (wound_end(from, to) && std::abs(distance - needed) > overlap_allowed) {
+      throw SceneError(
+          place_of(cable, c, from.orientation == 0 ? 0 : i),
+          fmt::format("an end on the body that the cable is wound on must lie at its rim, "
+                      "{} m from the centre (radius + half width), not {} m",
+                      needed, distance));
+    }
     if (distance < needed - overlap_allowed) {
       const bool end = from.orientation == 0 || to.orientation == 0;
       throw SceneError(
@@ -195,6 +202,10 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world) {
     const CableState& cable = world.cables[static_cast<std::size_t>(pair.cable)];
     const Segment& segment = cable.segments[static_cast<std::size_t>(pair.segment)];
     const Body& body = scene.bodies[static_cast<std::size_t>(pair.body)];
+    const auto segment_number = static_cast<std::size_t>(pair.segment);
+    const auto tail = static_cast<std::size_t>(previous_link(cable, pair.segment));
+    if (cable.links[segment_number].body == pair.body || cable.links[tail].body == pair.body)
+      continue;
     const Vec2 x = body.position - segment.tail;
     const double along = std::clamp(segment.direction.dot(x), 0.0, segment.length);
     const double overlap = body.radius + cable.half_width - (x - along * segment.direction).norm();
