@@ -118,7 +118,7 @@ class Composer {
     const Colour edge = fixed             ? palette::fixed_edge
                         : is_driven(body) ? palette::driven_edge
                                           : palette::body_edge;
-    picture_.add(Stroke{centre, centre, r, std::min(0.12 * r, 0.5 * page_.unit), fill, edge});
+    picture_.add(Stroke{centre, centre, r, std::min(0.09 * r, 0.4 * page_.unit), fill, edge});
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
     // like none.
