@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "render/hanging.h"
+#include "sim/cable.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -12,10 +14,6 @@ namespace {
 
 Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
-}
-
-double body_angle(const World& world, const Link& link) {
-  return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
 }
 
 /// Where the cable meets and leaves a link: directions (rad) and material coordinates (m).
@@ -78,16 +76,8 @@ class PathBuilder {
   }
 
   SpanEnd span_end(const Link& link) const {
-    if (link.orientation != 0) {
-      return {world_.position[static_cast<std::size_t>(link.body)], link.signed_radius(),
-              0.5 * std::max(link.wrap, 0.0)};
-    }
-    if (link.body < 0) return {link.attachment, 0.0, 0.0};
-    const auto b = static_cast<std::size_t>(link.body);
-    const Vec2 x = unit_vector(world_.angle[b]);
-    return {
-        world_.position[b] + link.attachment.x() * x + link.attachment.y() * Vec2(-x.y(), x.x()),
-        0.0, 0.0};
+    const double unwrap = link.orientation != 0 ? 0.5 * std::max(link.wrap, 0.0) : 0.0;
+    return {link_centre(world_, link), link.signed_radius(), unwrap};
   }
 
   /// The shape of every span, and from it where each link's arc begins and ends.
@@ -100,7 +90,7 @@ class PathBuilder {
       bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
                     tail_material(cable_, i, angle), head_material(cable_, i, angle)};
     }
-    for (std::size_t i = cable_.closed ? 0 : 1; i < count; ++i) {
+    for (std::size_t i = first_segment(cable_); i < count; ++i) {
       const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
       const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
@@ -134,8 +124,7 @@ class PathBuilder {
         const int pieces = static_cast<int>(std::ceil(std::abs(bend) / smooth));
         for (int k = 1; k < pieces; ++k) {
           const double a = bend * k / pieces;
-          const Vec2 t =
-              std::cos(a) * last.tangent + std::sin(a) * Vec2(-last.tangent.y(), last.tangent.x());
+          const Vec2 t = std::cos(a) * last.tangent + std::sin(a) * left(last.tangent);
           points_.push_back({position, t, material});
         }
       }
@@ -172,8 +161,7 @@ class PathBuilder {
       const Fade tail = fade(share * length, bend), head = fade((1.0 - share) * length, bend);
       const Vec2 shift = tail.value * at_tail + head.value * at_head;
       const Vec2 slope = tail.slope * at_tail - head.slope * at_head;
-      add_point(centre + link.signed_radius() * Vec2(e.y(), -e.x()) + shift,
-                (e + slope).normalized(),
+      add_point(tangent_point(centre, link.signed_radius(), e) + shift, (e + slope).normalized(),
                 b.tail_material + share * (b.head_material - b.tail_material));
     }
   }

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
+#include "sim/cable.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -31,11 +33,6 @@ constexpr Colour clear{0, 0, 0, 0};
 
 Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
-}
-
-Vec2 rotated(const Vec2& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
 Stroke disc(const Vec2& centre, double radius, Colour fill) {
@@ -139,9 +136,8 @@ class Composer {
     if (cable.closed || cable.links.size() < 2) return;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
       if (link->body >= 0) {
-        const auto b = static_cast<std::size_t>(link->body);
-        const Vec2 place = world_.position[b] + rotated(link->attachment, world_.angle[b]);
-        picture_.add(disc(place, 1.05 * cable.half_width, palette::cable_edge));
+        picture_.add(
+            disc(link_centre(world_, *link), 1.05 * cable.half_width, palette::cable_edge));
       } else {
         const double r = std::max(1.7 * cable.half_width, 0.6 * page_.unit);
         picture_.add(disc(link->attachment, r, palette::ink));
@@ -164,7 +160,7 @@ class Composer {
     for (int k = 0; k <= pieces; ++k) {
       const double a = from + sweep * k / pieces;
       const Vec2 e = unit_vector(a);
-      picture_.points.push_back({centre + r * e, sense * Vec2(-e.y(), e.x()), 0.0});
+      picture_.points.push_back({centre + r * e, sense * left(e), 0.0});
     }
     shaft.count = picture_.points.size() - shaft.first;
     shaft.half_width = half;
@@ -172,7 +168,7 @@ class Composer {
     picture_.add(shaft);
     picture_.add(disc(centre + r * unit_vector(from), half, palette::ink));
     const Vec2 radial = unit_vector(from + sweep), tip = centre + r * radial;
-    const Vec2 ahead = sense * Vec2(-radial.y(), radial.x());
+    const Vec2 ahead = sense * left(radial);
     for (const double side : {-1.0, 1.0}) {
       const Vec2 barb = tip + 0.2 * body.radius * (-0.8 * ahead + side * 0.8 * radial);
       picture_.add(line(tip, barb, half, palette::ink));
