@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "render/hanging.h"
+#include "sim/cable.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -14,15 +16,21 @@ Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-double body_angle(const World& world, const Link& link) {
-  return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
-}
-
 /// Where the cable meets and leaves a link: directions (rad) and material coordinates (m).
 struct Bounds {
   double tail_angle = 0.0, head_angle = 0.0;
   double tail_material = 0.0, head_material = 0.0;
 };
+
+/// 1 at s = 0, falling smoothly to 0 at s = reach, and its derivative (1/m).
+struct Fade {
+  double value = 0.0, slope = 0.0;
+};
+Fade fade(double s, double reach) {
+  if (s >= reach) return {};
+  const double x = s / reach;
+  return {1.0 - x * x * (3.0 - 2.0 * x), -6.0 * x * (1.0 - x) / reach};
+}
 
 /// The centre line of one cable, built link by link.
 class PathBuilder {
@@ -68,16 +76,8 @@ class PathBuilder {
   }
 
   SpanEnd span_end(const Link& link) const {
-    if (link.orientation != 0) {
-      return {world_.position[static_cast<std::size_t>(link.body)], link.signed_radius(),
-              0.5 * std::max(link.wrap, 0.0)};
-    }
-    if (link.body < 0) return {link.attachment, 0.0, 0.0};
-    const auto b = static_cast<std::size_t>(link.body);
-    const Vec2 x = unit_vector(world_.angle[b]);
-    return {
-        world_.position[b] + link.attachment.x() * x + link.attachment.y() * Vec2(-x.y(), x.x()),
-        0.0, 0.0};
+    const double unwrap = link.orientation != 0 ? 0.5 * std::max(link.wrap, 0.0) : 0.0;
+    return {link_centre(world_, link), link.signed_radius(), unwrap};
   }
 
   /// The shape of every span, and from it where each link's arc begins and ends.
@@ -90,7 +90,7 @@ class PathBuilder {
       bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
                     tail_material(cable_, i, angle), head_material(cable_, i, angle)};
     }
-    for (std::size_t i = cable_.closed ? 0 : 1; i < count; ++i) {
+    for (std::size_t i = first_segment(cable_); i < count; ++i) {
       const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
       const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
@@ -124,8 +124,7 @@ class PathBuilder {
         const int pieces = static_cast<int>(std::ceil(std::abs(bend) / smooth));
         for (int k = 1; k < pieces; ++k) {
           const double a = bend * k / pieces;
-          const Vec2 t =
-              std::cos(a) * last.tangent + std::sin(a) * Vec2(-last.tangent.y(), last.tangent.x());
+          const Vec2 t = std::cos(a) * last.tangent + std::sin(a) * left(last.tangent);
           points_.push_back({position, t, material});
         }
       }
@@ -133,6 +132,15 @@ class PathBuilder {
     points_.push_back({position, tangent, material});
   }
 
+  /// From the end of the arc before pinched segment i to the beginning of the one after it: zero
+  /// unless the two bodies clip.
+  Vec2 clipped(std::size_t i) const {
+    const bool pinched = spans_[i].drawn && !spans_[i].hanging && cable_.segments[i].length <= 0.0;
+    return pinched ? Vec2(cable_.segments[i].head - cable_.segments[i].tail) : Vec2::Zero();
+  }
+
+  /// Where two bodies clip, the arcs round them do not meet. Each gives way by half, smoothly,
+  /// along a few widths of cable.
   void add_arc(std::size_t i) {
     const Link& link = cable_.links[i];
     if (link.orientation == 0 || link.pinch_middle) return;
@@ -141,10 +149,19 @@ class PathBuilder {
     const double step = std::sqrt(8.0 * tolerance_ / (link.radius + cable_.half_width));
     const double sweep = b.head_angle - b.tail_angle;
     const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / step)));
+    const double length = link.radius * std::abs(sweep);
+    const double bend = std::min(8.0 * cable_.half_width, 0.5 * length);
+    const bool at_end = !cable_.closed && i + 1 == cable_.links.size();
+    const Vec2 at_tail = -0.5 * clipped(i);
+    const Vec2 at_head =
+        at_end ? Vec2(Vec2::Zero()) : Vec2(0.5 * clipped((i + 1) % cable_.links.size()));
     for (int k = 0; k <= pieces; ++k) {
       const double share = static_cast<double>(k) / pieces;
       const Vec2 e = unit_vector(b.tail_angle + share * sweep);
-      add_point(centre + link.signed_radius() * Vec2(e.y(), -e.x()), e,
+      const Fade tail = fade(share * length, bend), head = fade((1.0 - share) * length, bend);
+      const Vec2 shift = tail.value * at_tail + head.value * at_head;
+      const Vec2 slope = tail.slope * at_tail - head.slope * at_head;
+      add_point(tangent_point(centre, link.signed_radius(), e) + shift, (e + slope).normalized(),
                 b.tail_material + share * (b.head_material - b.tail_material));
     }
   }
@@ -155,10 +172,11 @@ class PathBuilder {
     const double from = bounds_[tail_link(i)].head_material;
     const double to = bounds_[i].tail_material + (i == 0 ? cable_.length : 0.0);
     if (!span.hanging) {
+      // Pinched: nothing lies between the arcs. Where bodies clip, the arcs' ends lie beside each
+      // other.
       const Segment& segment = cable_.segments[i];
-      const Vec2 d = segment.head - segment.tail;
-      const double length = d.norm();
-      const Vec2 e = length > tolerance_ ? Vec2(d / length) : segment.direction;
+      if (segment.length <= 0.0) return;
+      const Vec2 e = (segment.head - segment.tail).normalized();
       add_point(segment.tail, e, from);
       add_point(segment.head, e, to);
       return;

@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
+#include "sim/cable.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -21,22 +23,16 @@ namespace palette {
 constexpr Colour paper{252, 252, 250};
 constexpr Colour ink{38, 43, 51};
 constexpr Colour faint{205, 209, 214};
-constexpr Colour see_through_white{252, 252, 250, 215};
 constexpr Colour cable{236, 165, 46}, cable_edge{110, 62, 8}, cable_mark{152, 84, 6};
-// A fifth of what lies under a body shows through it.
-constexpr Colour body{205, 226, 243, 205}, body_edge{0, 82, 130}, body_mark{0, 82, 130};
-constexpr Colour driven{196, 232, 219, 205}, driven_edge{0, 100, 74};
-constexpr Colour fixed{216, 218, 222, 205}, fixed_edge{84, 92, 102};
+// Half of what lies under a body shows through it.
+constexpr Colour body{172, 206, 236, 128}, body_edge{0, 82, 130};
+constexpr Colour driven{148, 214, 190, 128}, driven_edge{0, 100, 74};
+constexpr Colour fixed{184, 188, 194, 128}, fixed_edge{84, 92, 102};
 constexpr Colour clear{0, 0, 0, 0};
 }  // namespace palette
 
 Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
-}
-
-Vec2 rotated(const Vec2& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
 Stroke disc(const Vec2& centre, double radius, Colour fill) {
@@ -71,6 +67,10 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
     for (const Wall& wall : scene_.walls) {
       picture_.add(line(wall.a, wall.b, 0.25 * page_.unit, palette::fixed_edge));
+    }
+    // Bodies hide what is behind the page, but not the cables.
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      picture_.add(disc(world_.position[i], scene_.bodies[i].radius, palette::paper));
     }
     for (const CableState& cable : world_.cables) add_cable(cable);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
@@ -115,7 +115,7 @@ class Composer {
     const Colour edge = fixed             ? palette::fixed_edge
                         : is_driven(body) ? palette::driven_edge
                                           : palette::body_edge;
-    picture_.add(Stroke{centre, centre, r, std::min(0.12 * r, 0.5 * page_.unit), fill, edge});
+    picture_.add(Stroke{centre, centre, r, std::min(0.09 * r, 0.4 * page_.unit), fill, edge});
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
     // like none.
@@ -123,7 +123,7 @@ class Composer {
       const Vec2 e = unit_vector(angle + k * turn / 3.0);
       picture_.add(line(centre, centre + 0.9 * r * e, 0.045 * r, edge));
     }
-    picture_.add(disc(centre + 0.6 * r * unit_vector(angle + turn / 6.0), 0.11 * r, edge));
+    picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
     picture_.add(disc(centre, 0.17 * r, edge));
     if (body.kind == BodyKind::fixed_axle || fixed) {
       picture_.add(disc(centre, 0.11 * r, palette::paper));
@@ -136,9 +136,8 @@ class Composer {
     if (cable.closed || cable.links.size() < 2) return;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
       if (link->body >= 0) {
-        const auto b = static_cast<std::size_t>(link->body);
-        const Vec2 place = world_.position[b] + rotated(link->attachment, world_.angle[b]);
-        picture_.add(disc(place, 1.05 * cable.half_width, palette::cable_edge));
+        picture_.add(
+            disc(link_centre(world_, *link), 1.05 * cable.half_width, palette::cable_edge));
       } else {
         const double r = std::max(1.7 * cable.half_width, 0.6 * page_.unit);
         picture_.add(disc(link->attachment, r, palette::ink));
@@ -153,7 +152,7 @@ class Composer {
     if (!is_driven(body)) return;
     const double sense = body.driven_angular_velocity.value_or(body.torque) > 0.0 ? 1.0 : -1.0;
     const Vec2& centre = world_.position[i];
-    const double r = 0.62 * body.radius, half = 0.06 * body.radius;
+    const double r = 0.42 * body.radius, half = std::min(0.055 * body.radius, 0.35 * page_.unit);
     const double from = 0.25 * turn + sense * -0.36 * turn, sweep = sense * 0.72 * turn;
     Strip shaft;
     shaft.first = picture_.points.size();
@@ -161,16 +160,17 @@ class Composer {
     for (int k = 0; k <= pieces; ++k) {
       const double a = from + sweep * k / pieces;
       const Vec2 e = unit_vector(a);
-      picture_.points.push_back({centre + r * e, sense * Vec2(-e.y(), e.x()), 0.0});
+      picture_.points.push_back({centre + r * e, sense * left(e), 0.0});
     }
     shaft.count = picture_.points.size() - shaft.first;
     shaft.half_width = half;
     shaft.fill = palette::ink;
     picture_.add(shaft);
+    picture_.add(disc(centre + r * unit_vector(from), half, palette::ink));
     const Vec2 radial = unit_vector(from + sweep), tip = centre + r * radial;
-    const Vec2 ahead = sense * Vec2(-radial.y(), radial.x());
+    const Vec2 ahead = sense * left(radial);
     for (const double side : {-1.0, 1.0}) {
-      const Vec2 barb = tip + 0.28 * body.radius * (-0.75 * ahead + side * 0.75 * radial);
+      const Vec2 barb = tip + 0.2 * body.radius * (-0.8 * ahead + side * 0.8 * radial);
       picture_.add(line(tip, barb, half, palette::ink));
     }
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/tangent.h"
+
 namespace pinchlab {
 
 namespace {
@@ -96,14 +98,14 @@ HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double 
   constexpr double damping = 0.7, close_enough = 1e-9;
   for (int round = 0;; ++round) {
     const Vec2 e_tail = unit(span.tail_angle), e_head = unit(span.head_angle);
-    const Vec2 from = tail.centre + tail.signed_radius * Vec2(e_tail.y(), -e_tail.x());
-    const Vec2 to = head.centre + head.signed_radius * Vec2(e_head.y(), -e_head.x());
+    const Vec2 from = tangent_point(tail.centre, tail.signed_radius, e_tail);
+    const Vec2 to = tangent_point(head.centre, head.signed_radius, e_head);
     const double length = rest_length - tail.signed_radius * (span.tail_angle - alpha) +
                           head.signed_radius * (span.head_angle - alpha);
     span.curve = Catenary(from, to, length, up);
     const auto turned = [alpha](const Vec2& t) {  // rad, from alpha to t
       const Vec2 e = unit(alpha);
-      return std::atan2(e.x() * t.y() - e.y() * t.x(), e.dot(t));
+      return std::atan2(cross(e, t), e.dot(t));
     };
     const double tail_angle = limited(tail, alpha + turned(span.curve.tangent(0.0)), 1.0);
     const double head_angle =
