@@ -221,15 +221,11 @@ void add_bench(CLI::App& app) {
   });
 }
 
-}  // namespace
-}  // namespace pinchlab
-
-int main(int argc, char** argv) {
-  using namespace pinchlab;
+int run(int argc, char** argv) {
   CLI::App app{
-      "Pinchlab: cables that bodies cannot pinch flat. Paired videos of 2D cable simulation, "
-      "tables of\n"
-      "their motion, and what it takes to study them."};
+      "Pinchlab: cables that run over and between bodies in 2D. Paired videos of their "
+      "simulation,\n"
+      "with pinch joints and without, and tables of the motion."};
   app.name("pinchlab");
   app.set_version_flag("--version", std::string("pinchlab ") + version);
   app.require_subcommand(1);
@@ -247,12 +243,21 @@ int main(int argc, char** argv) {
     return error.get_exit_code();  // told already
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;  // --help and --version are 0
-  } catch (const std::invalid_argument& error) {
-    fmt::print(stderr, "pinchlab: {}\n", error.what());
-    return 2;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
   }
   return 0;
+}
+
+}  // namespace
+}  // namespace pinchlab
+
+int main(int argc, char** argv) {
+  try {
+    return pinchlab::run(argc, argv);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

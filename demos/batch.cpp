@@ -136,7 +136,7 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
       .failed =
           [&](std::size_t i, const std::string& error) {
             progress.clear();
-            fmt::print(stderr, "pinchlab: {}: not made: {}\n", plans[i].file, error);
+            fmt::print(stderr, "{}: not made: {}\n", plans[i].file, error);
             ++outcome.failed;
           }};
   outcome.signal = run_in_processes(work, jobs, events);

@@ -39,10 +39,8 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
     players.emplace_back(*plan.source, plan.scene, method);
   }
   std::vector<Picture> pictures(players.size());
-  std::vector<const Picture*> panels;
-  for (const Picture& picture : pictures) {
-    panels.push_back(&picture);
-  }
+  std::vector<const Picture*> panels(pictures.size());
+  std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   Hash frames(HashKind::murmur3);

@@ -361,7 +361,7 @@ void Reader::read(const json& file, SceneFile& to) {
 
 // The name becomes part of the clips' names.
 std::string scene_name(const std::filesystem::path& path) {
-  const std::string name = path.stem().string();
+  std::string name = path.stem().string();
   const auto is_fine = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_';

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -165,10 +166,10 @@ int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvent
       while (next < work.size() && workers.size() < static_cast<std::size_t>(jobs)) {
         workers.push_back(start_worker(work, next++, signals));
       }
-      std::vector<pollfd> pipes;
-      for (const Worker& worker : workers) {
-        pipes.push_back({worker.pipe, POLLIN, 0});
-      }
+      std::vector<pollfd> pipes(workers.size());
+      std::ranges::transform(workers, pipes.begin(), [](const Worker& w) {
+        return pollfd{w.pipe, POLLIN, 0};
+      });
       ::poll(pipes.data(), pipes.size(), 200);  // ms: a signal just before it waits no longer
       if (caught_signal != 0) {
         end_workers(workers);

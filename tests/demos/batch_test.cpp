@@ -215,7 +215,7 @@ TEST(Batch, OneFailureDoesNotStopTheOthers) {
   fs::create_directories(folder / "clips/01-long.pinch.mp4");  // in the way
   const RunResult run = run_program(folder, render);
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("pinchlab: 01-long.pinch.mp4: not made: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("01-long.pinch.mp4: not made: "), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("clips: 5 made, 0 up to date already, 1 failed"), std::string::npos)
       << run.err;
 }

@@ -30,8 +30,8 @@ inline std::string text_of(const std::filesystem::path& path) {
 /// A folder of this test's own, empty at first.
 inline std::filesystem::path scratch_folder() {
   const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pinchlab" /
-                                       (std::string(test->test_suite_name()) + "." + test->name());
+  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pinchlab" /
+                                 (std::string(test->test_suite_name()) + "." + test->name());
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;
