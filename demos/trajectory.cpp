@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <string>
 
@@ -98,6 +99,12 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
   bodies.finish();
   if (segments) {
     segments->finish();
+  }
+  progress.clear();
+  if (const auto fallbacks = player.world().diagnostics.fallbacks; fallbacks > 0) {
+    fmt::print(stderr,
+               "{}: note: {} of {} steps took the solver's fallback; more steps a frame may help\n",
+               file.path.string(), fallbacks, player.world().step);
   }
 }
 

@@ -23,9 +23,10 @@ struct TrajectoryOptions {
 ///   time_s,cable,segment,from_body,to_body,length_m,rest_length_m,tension_n,pinched,slipping
 ///
 /// Velocities are those at the time of the positions. Segments count from 0 along the cable;
-/// tension is that of the step that led to the frame (0 at the start); pinched is 1 or 0; slipping
-/// is 1 where the cable runs forward over the body at the segment's end, -1 backward, 0 where it
-/// sticks.
+/// tension is that of the step that led to the frame (0 at the start; on the two segments of length
+/// 0 that meet at a body pressed onto a wrap, the change of tension that this body takes up);
+/// pinched is 1 or 0; slipping is 1 where the cable runs forward over the body at the segment's
+/// end, -1 backward, 0 where it sticks.
 ///
 /// Throws std::invalid_argument for options that cannot be, std::runtime_error where the simulation
 /// or a file fails; then nothing is written under the files' names.

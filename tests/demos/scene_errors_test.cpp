@@ -391,5 +391,40 @@ TEST(SceneErrors, FilesThatCannotBeRead) {
   EXPECT_EQ(read_error(large), large + ": is larger than 4000000 bytes");
 }
 
+// Text with a byte changed, a piece cut out, or a piece doubled is refused in the usual way, or it
+// is a scene that starts or whose geometry is refused in the usual way.
+TEST(SceneErrors, DamagedTextIsRefusedOrRead) {
+  const std::string good = small_scene().dump(1);
+  std::uint64_t state = 1;
+  const auto below = [&state](std::size_t limit) {  // Knuth's MMIX generator
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    return static_cast<std::size_t>(state >> 33U) % limit;
+  };
+  int refused = 0;
+  constexpr int trials = 3000;
+  for (int i = 0; i < trials; ++i) {
+    std::string text = good;
+    const std::size_t at = below(text.size()), length = 1 + below(12);
+    switch (below(3)) {
+      case 0:
+        text[at] = static_cast<char>(below(256));
+        break;
+      case 1:
+        text.erase(at, length);
+        break;
+      default:
+        text.insert(at, text.substr(at, length));
+    }
+    try {
+      start_world(parse_scene(text, "s.json").scene, "s.json", Method::pinch);
+    } catch (const SceneFileError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with("s.json: ")) << error.what();
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, trials / 2);
+  EXPECT_LT(refused, trials);
+}
+
 }  // namespace
 }  // namespace pinchlab
