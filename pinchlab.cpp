@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,15 @@ void add_size(CLI::App& command, Size& size, const std::string& help) {
         Size ignored;
         return read_size(text, ignored);
       });
+}
+
+// What render and bench take when no scene is named.
+std::filesystem::path demos_folder() {
+  if (!std::filesystem::is_directory("demos")) {
+    throw std::runtime_error(
+        "demos: there is no such folder here; go to the project's folder, or name scene files");
+  }
+  return "demos";
 }
 
 template <class Text>
@@ -103,7 +114,7 @@ void add_render(CLI::App& app) {
       "  pinchlab render --method cable --codec ffv1 one lossless clip a scene");
   command->callback([options, size] {
     if (options->scenes.empty()) {
-      options->scenes = {"demos"};
+      options->scenes = {demos_folder()};
     }
     options->width = size->width;
     options->height = size->height;
@@ -212,7 +223,7 @@ void add_bench(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->callback([options] {
     const SceneFile file =
-        read_scene_file(options->scene.empty() ? find_scenes({"demos"}).front()
+        read_scene_file(options->scene.empty() ? find_scenes({demos_folder()}).front()
                                                : std::filesystem::path(options->scene));
     const RenderCost cost =
         measure_render(file.scene, method_of(file.scene, options->method), options->size.width,

@@ -108,7 +108,8 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
   const fs::path folder = folder_with_scene();
   std::ofstream(folder / "bad.json") << "{";
   const std::vector<std::pair<std::vector<std::string>, std::string>> failures = {
-      {{"render"}, "demos: No such file or directory\n"},
+      {{"render"},
+       "demos: there is no such folder here; go to the project's folder, or name scene files\n"},
       {{"still", "none.json", "--time", "1", "--out", "x.png"},
        "none.json: No such file or directory\n"},
       {{"simulate", "bad.json", "--out", "x.csv"},
@@ -279,6 +280,15 @@ TEST(Still, OneTimeIsAFrameSeveralAreASheet) {
   EXPECT_EQ(text_of(folder / "x.png"), list);
   still({"--time", "0.5,1.5", "--both"});
   EXPECT_NE(text_of(folder / "x.png"), list);
+}
+
+TEST(Bench, PrintsWhatAFrameCosts) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(
+      folder, {"bench", "render", "01-small.json", "--size", "64x64", "--frames", "10"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("simulate"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("encode"), std::string::npos) << run.out;
 }
 
 TEST(WorkerPool, ResultsErrorsAndDeathsComeBack) {
