@@ -68,10 +68,6 @@ class Composer {
     for (const Wall& wall : scene_.walls) {
       picture_.add(line(wall.a, wall.b, 0.25 * page_.unit, palette::fixed_edge));
     }
-    // Bodies hide what is behind the page, but not the cables.
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      picture_.add(disc(world_.position[i], scene_.bodies[i].radius, palette::paper));
-    }
     for (const CableState& cable : world_.cables) add_cable(cable);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
     for (const CableState& cable : world_.cables) add_fastenings(cable);
@@ -93,8 +89,8 @@ class Composer {
   void add_cable(const CableState& cable) {
     Strip strip;
     strip.first = picture_.points.size();
-    const double bend = 5e-3 * page_.unit;  // 1/20 px in 960
-    append_cable_path(scene_, world_, cable, bend, picture_.points);
+    const double smallest_sag = 5e-3 * page_.unit;  // 1/20 px in 960
+    append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
     strip.count = picture_.points.size() - strip.first;
     strip.half_width = cable.half_width;
     strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * page_.hairline());
@@ -156,7 +152,7 @@ class Composer {
     const double from = 0.25 * turn + sense * -0.36 * turn, sweep = sense * 0.72 * turn;
     Strip shaft;
     shaft.first = picture_.points.size();
-    constexpr int pieces = 48;
+    constexpr int pieces = 10;
     for (int k = 0; k <= pieces; ++k) {
       const double a = from + sweep * k / pieces;
       const Vec2 e = unit_vector(a);
