@@ -196,7 +196,7 @@ struct VideoWriter::State {
 
   State(const std::string& path, const VideoSettings& settings_)
       : settings(settings_), partial(path) {
-    av_log_set_level(AV_LOG_ERROR);
+    av_log_set_level(AV_LOG_FATAL);  // errors are thrown instead
     try {
       open_encoder();
       open_file();
@@ -351,7 +351,7 @@ struct VideoReader::State {
   VideoInfo info;
 
   explicit State(const std::string& path_) : path(path_) {
-    av_log_set_level(AV_LOG_ERROR);
+    av_log_set_level(AV_LOG_FATAL);  // errors are thrown instead
     try {
       open();
     } catch (...) {
