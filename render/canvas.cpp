@@ -153,13 +153,33 @@ struct Canvas::State {
     labels.clear();
   }
 
+  /// What must be drawn again: the rectangle round all changes. A clear that is limited to a part
+  /// costs more a pixel than a full one, so a large part is the whole.
+  PixelRect part_to_draw() const {
+    int left = width, top = height, right = 0, bottom = 0;
+    for (const PixelRect& r : changed) {
+      left = std::min(left, r.left);
+      top = std::min(top, r.top);
+      right = std::max(right, r.left + r.width);
+      bottom = std::max(bottom, r.top + r.height);
+    }
+    constexpr double large = 0.4;  // of the frame
+    const double share =
+        static_cast<double>(right - left) * (bottom - top) / (static_cast<double>(width) * height);
+    if (share > large) return {0, 0, width, height};
+    return {left, top, right - left, bottom - top};
+  }
+
   /// All vertices go up in one piece, then each picture is drawn into its share of the frame.
   void draw_mesh() const {
     upload(GL_ARRAY_BUFFER, mesh.vertices());
     upload(GL_ELEMENT_ARRAY_BUFFER, mesh.indices());
+    const PixelRect part = part_to_draw();
     std::size_t next = 0;
     for (const Sheet& sheet : mesh.sheets()) {
-      gl.Scissor(sheet.left, 0, sheet.width, height);
+      const int left = std::max(part.left, sheet.left);
+      const int right = std::min(part.left + part.width, sheet.left + sheet.width);
+      gl.Scissor(left, part.top, std::max(0, right - left), part.height);
       const Colour& paper = sheet.background;
       gl.ClearColor(narrow(paper.red / 255.0), narrow(paper.green / 255.0),
                     narrow(paper.blue / 255.0), 1.0f);
