@@ -26,7 +26,8 @@ int height_of_rows(size_t rows) {
 // Axes of a figure with one row an item: shares in percent to the right, row 1 on top.
 std::string row_axes(const std::vector<std::string>& labels, const std::string& x_label) {
   std::string script = fmt::format(
-      "set xrange [0:100]\nset yrange [{}:0.3]\nset xtics 0,25,100 format '%g %%'\nset xlabel {}\n"
+      "set xrange [0:100]\nset yrange [{}:0.3]\nset xtics 0,25,100 format '%g %%' tc rgb "
+      "'#333333'\nset xlabel {}\n"
       "set grid xtics lc rgb '#e0e0e0' lt 1\nset border 3 lc rgb '#888888'\nset tics nomirror "
       "scale 0.5\n"
       "set arrow from 50, graph 0 to 50, graph 1 nohead dt 2 lw 1.5 lc rgb '#333333'\nset ytics (",
@@ -34,7 +35,7 @@ std::string row_axes(const std::vector<std::string>& labels, const std::string& 
   for (size_t i = 0; i < labels.size(); ++i) {
     script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_quote(labels[i]), i + 1);
   }
-  return script + ")\n";
+  return script + ") tc rgb '#333333'\n";
 }
 
 std::string interval_line(double share, double low, double high, double y) {
@@ -133,7 +134,8 @@ std::string point_line(double x, const Counts& counts, double alpha) {
 }
 
 constexpr const char* upright_axes =
-    "set yrange [0:100]\nset ytics 0,25,100 format '%g %%'\nset grid ytics lc rgb '#e0e0e0' lt 1\n"
+    "set yrange [0:100]\nset ytics 0,25,100 format '%g %%' tc rgb '#333333'\nset grid ytics lc rgb "
+    "'#e0e0e0' lt 1\n"
     "set border 3 lc rgb '#888888'\nset tics nomirror scale 0.5\nset key off\nunset arrow\n"
     "set arrow from graph 0, first 50 to graph 1, first 50 nohead dt 2 lw 1.5 lc rgb '#333333'\n";
 
@@ -146,7 +148,8 @@ std::string order_panel(const Report& report) {
   }
   return data + "EOD\n" +
          fmt::format(
-             "{}set title 'Order'\nset xrange [0.5:{}]\nset xtics autofreq {}\nset xlabel 'place "
+             "{}set title 'Order'\nset xrange [0.5:{}]\nset xtics autofreq {} tc rgb "
+             "'#333333'\nset xlabel 'place "
              "of the "
              "answer in the session'\nset ylabel {}\n"
              "plot $order using 1:2:3:4 with yerrorbars pt 7 ps 0.8 lw 2 lc rgb '#0072B2'\n",
@@ -165,10 +168,10 @@ std::string side_panel(const Report& report) {
          fmt::format(
              "{}set title 'Side'\nset xrange [0.5:3.5]\nset xlabel ' '\nset ylabel 'share of "
              "answers'\n"
-             "set xtics ({} 1, {} 2, {} 3)\n"
+             "set xtics ('left clip chosen' 1, 'shown left' 2, 'shown right' 3) tc rgb '#333333'\n"
+             "set label {} at 2.5, graph -0.17 center\n"
              "plot $side using 1:2:3:4 with yerrorbars pt 7 ps 0.8 lw 2 lc rgb '#D55E00'\n",
-             upright_axes, gnuplot_quote("left chosen"), gnuplot_quote(pinch + ", when left"),
-             gnuplot_quote(pinch + ", when right"));
+             upright_axes, gnuplot_quote(pinch + " chosen, by where it was"));
 }
 
 Figure effects_figure(const Report& report) {
