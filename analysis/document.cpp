@@ -166,12 +166,12 @@ class Writer {
 
   void pooled() {
     add(Heading{"Pooled tests, naive and corrected"});
-    add(
-        Paragraph{"Answers of one participant resemble each other, so they are not as many "
-                  "independent pieces of evidence as "
-                  "there are answers: the naive test counts them as if they were, the corrected "
-                  "ones take the participant as "
-                  "the unit, and only they keep their false-positive rate."});
+    add(Paragraph{
+        "Answers of one participant resemble each other, so they are not as many independent "
+        "pieces of evidence as there are answers: the naive test counts them as if they were, "
+        "the corrected ones take the participant as the unit and so keep their false-positive "
+        "rate (Rao–Scott against chi-square with many participants only; below about 50 read "
+        "its F version)."});
     TableBlock block;
     block.caption = fmt::format("Pooled tests of one half ({} intervals)", level());
     block.header = {"",
@@ -263,7 +263,7 @@ class Writer {
     const Heterogeneity& all = report_.all().heterogeneity;
     if (all.p && all.p.value < alpha()) {
       add(
-          Paragraph{"The demonstrations differ, so what holds for `all` need not hold for any "
+          Paragraph{"The demonstrations differ, so what holds for “all” need not hold for any "
                     "single one; read the "
                     "groups and the demonstrations first."});
     }
@@ -277,9 +277,8 @@ class Writer {
       add(Paragraph{
           fmt::format("The left clip was chosen {} times and the right one {} times (exact p = {}; "
                       "by sign flips over "
-                      "participants p = {}). {} was chosen in {} of {} answers when it was on the "
-                      "left and in {} of {} when it "
-                      "was on the right.",
+                      "participants p = {}). The clip of {} was chosen in {} of {} answers when it "
+                      "was on the left and in {} of {} when it was on the right.",
                       side.chosen.pinch, side.chosen.cable, p_text(side.p_exact),
                       p_text(side.p_sign_flip), pinch(), side.shown_left.pinch,
                       side.shown_left.total(), side.shown_right.pinch, side.shown_right.total())});
