@@ -43,7 +43,8 @@ std::vector<fs::path> files_of_folder(const fs::path& folder) {
 // Reads answer files into the builder and watches over what must agree between them.
 class AnswerFiles {
  public:
-  explicit AnswerFiles(TableBuilder& builder) : builder_(builder) {}
+  AnswerFiles(TableBuilder& builder, bool allow_missing)
+      : builder_(builder), allow_missing_(allow_missing) {}
 
   void read(const fs::path& path) {
     const std::string name = path.string();
@@ -55,6 +56,7 @@ class AnswerFiles {
                                    file.participant, before->second));
     }
     if (builder_.excluded(file.participant)) return;
+    check_plan(file, name);
     check_clips(file, name);
     builder_.begin_source(name);
     builder_.expect_answers_per_demonstration(file.answers_per_demonstration, name);
@@ -64,6 +66,24 @@ class AnswerFiles {
   }
 
  private:
+  // The page saves whole sessions only, so the answers are those of the plan.
+  void check_plan(const AnswerFile& file, const std::string& name) const {
+    for (const std::string& demonstration : file.planned) {
+      const auto count =
+          std::count_if(file.trials.begin(), file.trials.end(), [&](const Trial& trial) {
+            return trial.kind == TrialKind::main && trial.demonstration == demonstration;
+          });
+      const bool fewer = count < file.answers_per_demonstration;
+      if (count == file.answers_per_demonstration || (fewer && allow_missing_)) continue;
+      throw InputError(
+          name,
+          fmt::format("participant `{}` gave {} answers to demonstration `{}`, but the plan has "
+                      "{}; leave the participant out with --exclude{}",
+                      file.participant, count, demonstration, file.answers_per_demonstration,
+                      fewer ? ", or pass --allow-missing" : ""));
+    }
+  }
+
   // Clips are frozen stimuli: answers to different clips are not answers to the same question.
   void check_clips(const AnswerFile& file, const std::string& name) {
     for (const auto& [clip, hash] : file.clips_sha256) {
@@ -99,6 +119,7 @@ class AnswerFiles {
   }
 
   TableBuilder& builder_;
+  bool allow_missing_;
   std::map<std::string, std::string> file_of_;                        // participant -> file
   std::map<std::string, std::pair<std::string, std::string>> clips_;  // clip -> hash, file
 };
@@ -122,7 +143,7 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
   TableBuilder builder(options.exclude_file.empty() ? std::vector<Exclusion>{}
                                                     : read_exclusions(options.exclude_file),
                        options.allow_missing);
-  AnswerFiles answer_files(builder);
+  AnswerFiles answer_files(builder, options.allow_missing);
   for (const fs::path& input : inputs) {
     if (fs::is_directory(input)) {
       for (const fs::path& file : files_of_folder(input)) answer_files.read(file);

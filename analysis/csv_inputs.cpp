@@ -179,7 +179,10 @@ class RowReader {
   // A group may be left empty: the demonstration is then in "all" only.
   [[nodiscard]] std::string_view group(const Fields& fields) const {
     if (header_.group < 0 || at(fields, header_.group).empty()) return "";
-    return name(fields, header_.group, "group");
+    const std::string_view value = name(fields, header_.group, "group");
+    if (value == all_group)
+      fail("group `all` always exists and holds every demonstration; name another group");
+    return value;
   }
 
   [[nodiscard]] bool chose_pinch(std::string_view value) const {

@@ -110,7 +110,6 @@ void assign_groups(AnswersTable& table, const std::filesystem::path& groups_file
     for (size_t i = 0; i < table.demonstrations.size(); ++i) {
       const auto found = column_groups.find(table.demonstrations[i]);
       if (found == column_groups.end()) continue;
-      check_group_name(found->second, "column `group`");
       members[found->second].insert(static_cast<std::uint16_t>(i));
     }
     table.groups = make_groups(members);

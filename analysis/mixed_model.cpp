@@ -9,6 +9,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -56,22 +57,18 @@ class Laplace {
     // Newton from the last mode: f is convex, so halving an uphill step is all the care it needs.
     double f = objective(u_, v_);
     for (int iteration = 0; iteration < 100; ++iteration) {
-      const double decrement = assemble_and_solve();
-      if (decrement < 1e-12 * (1.0 + std::abs(f))) break;
-      const double before = f;
+      if (assemble_and_solve() < 1e-12 * (1.0 + std::abs(f))) break;
+      double trial = f;
       for (double scale = 1.0; scale > 1e-10; scale *= 0.5) {
         try_step(scale);
-        f = objective(trial_u_, trial_v_);
-        if (f <= before) break;
+        trial = objective(trial_u_, trial_v_);
+        if (trial <= f) break;
       }
-      if (!(f <= before)) {
-        f = before;
-        break;
-      }
+      if (!(trial <= f)) break;  // at round-off
+      f = trial;
       u_.swap(trial_u_);
       v_.swap(trial_v_);
     }
-    assemble_and_solve();
     double log_det = log_det_u_;
     for (size_t j = 0; j < v_.size(); ++j)
       log_det += 2.0 * std::log(gsl_matrix_get(schur_.get(), j, j));
@@ -135,9 +132,9 @@ class Laplace {
         const size_t row = cells[x].demonstration;
         const double scaled = w * b[x] / diagonal_u[c];
         *gsl_vector_ptr(rhs_.get(), row) += scaled * gradient_u[c];
-        for (size_t y = 0; y < cells.size(); ++y) {
-          *gsl_matrix_ptr(schur_.get(), row, cells[y].demonstration) -= scaled * b[y];
-        }
+        // The lower triangle is all that Cholesky's factorisation reads; cells are sorted.
+        double* schur_row = gsl_matrix_ptr(schur_.get(), row, 0);
+        for (size_t y = 0; y <= x; ++y) schur_row[cells[y].demonstration] -= scaled * b[y];
       }
       log_det_u_ += w * std::log(diagonal_u[c]);
       at += cells.size();
@@ -189,11 +186,11 @@ class Minimiser {
  public:
   explicit Minimiser(const MixedData& data) : laplace_(data) {}
 
-  Fit minimise(const MixedParameters& start, std::optional<double> fixed_intercept) {
+  Fit minimise(const MixedParameters& start, std::optional<double> fixed_intercept,
+               std::initializer_list<double> step_sizes) {
     fixed_ = fixed_intercept;
     Fit best{start, 0.0};
-    // A second start from the first result frees a simplex that has collapsed too early.
-    for (double size : {0.5, 0.1}) best = run(best.parameters, size);
+    for (double size : step_sizes) best = run(best.parameters, size);
     best.parameters.sd_participant = std::abs(best.parameters.sd_participant);
     best.parameters.sd_demonstration = std::abs(best.parameters.sd_demonstration);
     return best;
@@ -225,7 +222,7 @@ class Minimiser {
     gsl_multimin_fminimizer_set(minimiser.get(), &function, x.get(), first_steps.get());
     for (int iteration = 0; iteration < 1000; ++iteration) {
       if (gsl_multimin_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
-      if (gsl_multimin_fminimizer_size(minimiser.get()) < 1e-6) break;
+      if (gsl_multimin_fminimizer_size(minimiser.get()) < 1e-5) break;
     }
     return {unpack(gsl_multimin_fminimizer_x(minimiser.get())),
             gsl_multimin_fminimizer_minimum(minimiser.get())};
@@ -264,7 +261,8 @@ class Profile {
 
  private:
   double excess(double intercept) {
-    return minimiser_.minimise(best_.parameters, intercept).deviance - best_.deviance - rise_;
+    return minimiser_.minimise(best_.parameters, intercept, {0.1}).deviance - best_.deviance -
+           rise_;
   }
   static double evaluate(double intercept, void* self) {
     return static_cast<Profile*>(self)->excess(intercept);
@@ -316,7 +314,7 @@ std::string why_not_estimable(const MixedData& data) {
   if (pinch == 0.0 || pinch == answers) {
     return "every answer is the same, so the intercept has no finite estimate";
   }
-  if (cells > 4e6 || data.demonstrations > 500) {
+  if (cells > 1e6 || data.demonstrations > 500) {
     return "too large for the built-in fit; use the exported answers.csv with lme4 or a like "
            "package";
   }
@@ -371,8 +369,9 @@ MixedModel fit_mixed_model(const MixedData& data, double alpha) {
   }
   const GslErrorsOff guard;
   Minimiser minimiser(data);
-  const Fit best = minimiser.minimise({0.0, 0.5, 0.5}, std::nullopt);
-  const Fit null = minimiser.minimise(best.parameters, 0.0);
+  // A second start from the first result frees a simplex that has collapsed too early.
+  const Fit best = minimiser.minimise({0.0, 0.5, 0.5}, std::nullopt, {0.5, 0.1});
+  const Fit null = minimiser.minimise(best.parameters, 0.0, {0.5, 0.1});
   const auto at_boundary = [](double sd) { return sd < 1e-3 ? 0.0 : sd; };
   const double sd_p = at_boundary(best.parameters.sd_participant);
   const double sd_d = at_boundary(best.parameters.sd_demonstration);

@@ -148,12 +148,14 @@ TEST(Bootstrap, IntervalAndPValueAgree) {
 }
 
 TEST(Bootstrap, SameSeedSameResult) {
-  const AnswersTable table = test::clustered_table();
-  const Pooled a = pooled_tests(table, table.groups.back(), 0.05, 999, 42);
-  const Pooled b = pooled_tests(table, table.groups.back(), 0.05, 999, 42);
-  const Pooled c = pooled_tests(table, table.groups.back(), 0.05, 999, 43);
-  EXPECT_EQ(a.bootstrap.low.value, b.bootstrap.low.value);
-  EXPECT_NE(a.bootstrap.low.value, c.bootstrap.low.value);
+  const Rng rng = make_rng(RandomUse::study, 3);
+  const auto clusters = simulate_study({50, 24, 0.2}, rng.get());
+  const auto low = [&](std::uint64_t seed) {
+    const Rng resampling = make_rng(RandomUse::bootstrap, seed);
+    return cluster_bootstrap(clusters, 0.05, 999, resampling.get()).low.value;
+  };
+  EXPECT_EQ(low(42), low(42));
+  EXPECT_NE(low(42), low(43));
 }
 
 TEST(CochranQ, NullWhereNobodyDiffers) {

@@ -26,8 +26,8 @@ TEST(Laplace, IsTheBinomialDevianceWithoutRandomEffects) {
 
 // The integral over u and v of one participant and one demonstration, by a fine grid.
 TEST(Laplace, ApproachesTheIntegralAsAnswersGrow) {
-  double error_before = 1.0;
-  for (int answers : {20, 200, 2000}) {
+  double error_before = 0.0;
+  for (int answers : {100, 1000, 10000}) {
     MixedData data;
     data.demonstrations = 1;
     data.patterns.push_back(
@@ -45,8 +45,11 @@ TEST(Laplace, ApproachesTheIntegralAsAnswersGrow) {
     }
     const double exact = peak - 2.0 * std::log(integral);
     const double error = std::abs(laplace_deviance(data, parameters) - exact);
-    EXPECT_LT(error, 0.5 / answers);
-    EXPECT_LT(error, error_before);
+    // Laplace's error falls with the number of answers: order 1.
+    if (error_before > 0.0) {
+      EXPECT_LT(error, error_before / 8.0);
+    }
+    EXPECT_LT(error, 1.0 / answers);
     error_before = error;
   }
 }
@@ -69,8 +72,8 @@ TEST(MixedModel, AgreesWithLme4OnTheClusteredDataSet) {
 
 TEST(MixedModel, RecoversWhatItWasSimulatedWith) {
   const Rng rng = make_rng(RandomUse::study, 12);
-  constexpr int participants = 400;
-  constexpr int demonstrations = 30;
+  constexpr int participants = 300;
+  constexpr int demonstrations = 20;
   std::vector<double> v;
   for (int j = 0; j < demonstrations; ++j) v.push_back(gsl_ran_gaussian(rng.get(), 0.7));
   MixedData data;
