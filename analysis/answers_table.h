@@ -17,8 +17,7 @@ enum class Side : std::uint8_t { unknown, left, right };
 struct Answer {
   double reaction_time_s = -1.0;    ///< s, >= 0; -1: not recorded
   std::uint32_t participant = 0;    ///< index into AnswersTable::participants
-  std::uint32_t line = 0;           ///< line or trial in its source, from 1
-  std::uint32_t source = 0;         ///< index into AnswersTable::sources
+  std::uint32_t line = 0;           ///< running number over the lines (trials) of all inputs
   std::uint16_t demonstration = 0;  ///< index into AnswersTable::demonstrations
   std::uint16_t position = 0;       ///< place in the participant's session, from 1; 0: not recorded
   bool chose_pinch = false;         ///< the pinch clip was chosen, not the cable (baseline) clip

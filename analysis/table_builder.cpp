@@ -52,6 +52,7 @@ TableBuilder::TableBuilder(std::vector<Exclusion> exclusions, bool allow_missing
 
 void TableBuilder::begin_source(const std::string& name) {
   table_.sources.push_back(name);
+  first_line_.push_back(next_line_);
 }
 
 std::string TableBuilder::place(size_t line) const {
@@ -59,7 +60,9 @@ std::string TableBuilder::place(size_t line) const {
 }
 
 std::string TableBuilder::place_of(const Answer& answer) const {
-  return fmt::format("{}:{}", table_.sources[answer.source], answer.line);
+  const auto after = std::upper_bound(first_line_.begin(), first_line_.end(), answer.line);
+  const auto source = static_cast<size_t>(after - first_line_.begin()) - 1;
+  return fmt::format("{}:{}", table_.sources[source], answer.line - first_line_[source] + 1);
 }
 
 bool TableBuilder::excluded(std::string_view participant) {
@@ -125,8 +128,8 @@ void TableBuilder::add_answer(const RawAnswer& raw, size_t line) {
   Answer answer;
   answer.participant = participant_index(raw.participant);
   answer.demonstration = demonstration_index(raw.demonstration, raw.group, line);
-  answer.source = static_cast<std::uint32_t>(table_.sources.size() - 1);
-  answer.line = static_cast<std::uint32_t>(line);
+  answer.line = first_line_.back() + static_cast<std::uint32_t>(line) - 1;
+  next_line_ = answer.line + 1;
   answer.position = static_cast<std::uint16_t>(raw.position);
   answer.chose_pinch = raw.chose_pinch;
   answer.pinch_side = raw.pinch_side;
@@ -198,10 +201,7 @@ void TableBuilder::check_doubles() const {
     const Answer& b = table_.answers[i];
     if (a.participant != b.participant || a.demonstration != b.demonstration) continue;
     throw InputError(
-        place_of(std::max(a, b,
-                          [](const Answer& x, const Answer& y) {
-                            return std::tie(x.source, x.line) < std::tie(y.source, y.line);
-                          })),
+        place_of(std::max(a, b, [](const Answer& x, const Answer& y) { return x.line < y.line; })),
         fmt::format(
             "participant `{}` answers demonstration `{}` {} ({} and {}), {}; keep one of the "
             "answers, or say with --repetitions how often each pair was shown",

@@ -77,6 +77,8 @@ class TableBuilder {
   bool allow_missing_;
   std::string expected_from_;  // the place that set answers_per_demonstration
   std::uint32_t last_participant_ = 0;
+  std::vector<std::uint32_t> first_line_;  // of each source, as Answer::line counts
+  std::uint32_t next_line_ = 0;
 };
 
 }  // namespace pinchlab

@@ -494,6 +494,11 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
   const fs::path c = folder.write("c.json", other_clips.dump());
   json other_design = test::answer_document("p-3");
   other_design["plan"]["answers_per_demonstration"] = 2;
+  for (int again : {1, 3}) {
+    json trial = other_design["trials"][static_cast<size_t>(again)];
+    trial["position"] = 4 + again;
+    other_design["trials"].push_back(trial);
+  }
   const fs::path d = folder.write("d.json", other_design.dump());
 
   expect_says(message({}), "name at least one");

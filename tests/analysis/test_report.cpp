@@ -304,7 +304,7 @@ TEST(WriteReport, WritesEveryFileAndLeavesNothingUnfinished) {
     EXPECT_GT(fs::file_size(entry.path()), 0U) << entry.path();
   }
   EXPECT_EQ(files, written.size());
-  EXPECT_NE(test::read_text(out / "shares.svg").find("it's \"a\" @b &lt;x&gt;"), std::string::npos);
+  EXPECT_NE(test::read_text(out / "shares.svg").find("it's \"a\" @b &lt;x>"), std::string::npos);
 }
 
 TEST(WriteReport, RefusesAFileAsItsFolder) {
