@@ -12,6 +12,7 @@
 #include "analysis/input_error.h"
 #include "analysis/power.h"
 #include "analysis/report.h"
+#include "analysis/text_checks.h"
 
 using namespace pinchlab;
 
@@ -112,6 +113,11 @@ static void add_analyse(CLI::App& app) {
     args->read.separator = args->separator == "tab" ? '\t' : args->separator[0];
     if (args->read.pinch_value == args->read.cable_value) {
       throw CLI::ValidationError("--pinch-value", "must differ from --cable-value");
+    }
+    for (const std::string& label : {args->read.pinch_value, args->read.cable_value}) {
+      const std::string why = why_not_a_name(label);
+      if (!why.empty())
+        throw CLI::ValidationError("--pinch-value, --cable-value", "bad name: " + why);
     }
     args->analysis.pinch_label = args->read.pinch_value;
     args->analysis.cable_label = args->read.cable_value;

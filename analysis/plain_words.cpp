@@ -27,7 +27,7 @@ std::string list_of(const std::vector<std::string>& items) {
 }
 
 std::string p_in_words(double p) {
-  return p < 0.0001 ? "p < 0.0001" : fmt::format("p = {}", p_text(p));
+  return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
 }
 
 struct PooledP {
@@ -57,7 +57,7 @@ std::string verdict(const Report& report) {
   const bool one = report.demonstrations.size() == 1;
   const std::string where =
       one ? fmt::format(" in demonstration {}", report.demonstrations[0].row.name)
-          : fmt::format(" over all {} demonstrations", report.demonstrations.size());
+          : fmt::format(" over the {} demonstrations", report.demonstrations.size());
   return fmt::format(
       "{}: {} {}{} ({}; {}, {}).", found,
       one ? out_of(all.row.counts) + " preferred" : out_of(all.row.counts) + " answers chose",
@@ -77,11 +77,13 @@ std::string demonstrations_in_words(const Report& report) {
     }
   }
   const std::string& pinch = report.options.pinch_label;
-  std::string text = fmt::format(
-      " Taken one by one (chi-square test, p < {}), {} was preferred in {} of {} "
-      "demonstrations",
-      report.options.alpha, pinch, for_pinch.size(), report.demonstrations.size());
-  text += for_pinch.empty() ? "." : fmt::format(": {}.", list_of(for_pinch));
+  std::string text =
+      fmt::format(" Taken one by one (chi-square test, p < {}), {} was preferred in {} of ",
+                  report.options.alpha, pinch,
+                  for_pinch.empty() ? "none" : fmt::format("{}", for_pinch.size()));
+  text += for_pinch.empty() ? fmt::format("the {} demonstrations.", report.demonstrations.size())
+                            : fmt::format("{} demonstrations: {}.", report.demonstrations.size(),
+                                          list_of(for_pinch));
   if (!for_cable.empty()) {
     text += fmt::format(" {} was preferred in {}.", report.options.cable_label, list_of(for_cable));
   }
