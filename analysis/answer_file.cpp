@@ -133,7 +133,7 @@ void read_texts(JsonObject& document, AnswerFile& file) {
     for (const std::string& demonstration : clips.all_keys()) {
       JsonObject variants = clips.object(demonstration);
       for (const std::string& variant : variants.all_keys()) {
-        file.clips_sha256[demonstration + "/" + variant] = variants.sha256(variant);
+        file.clips_sha256[{demonstration, variant}] = variants.sha256(variant);
       }
     }
   }

@@ -33,8 +33,9 @@ struct AnswerFile {
   std::vector<std::string> planned;  ///< demonstrations of the plan
   int answers_per_demonstration = 1;
   std::vector<Trial> trials;
-  std::map<std::string, std::string> free_text;     ///< question -> text
-  std::map<std::string, std::string> clips_sha256;  ///< "demonstration/variant" -> hash
+  std::map<std::string, std::string> free_text;  ///< question -> text
+  /// (demonstration, variant) -> hash
+  std::map<std::pair<std::string, std::string>, std::string> clips_sha256;
 };
 
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.

@@ -89,10 +89,10 @@ class AnswerFiles {
     for (const auto& [clip, hash] : file.clips_sha256) {
       const auto [before, is_new] = clips_.emplace(clip, std::pair(hash, name));
       if (is_new || before->second.first == hash) continue;
-      throw InputError(name,
-                       fmt::format("clip `{}` is not the one of {} (other SHA-256); analyse the "
-                                   "participants who saw the same clips in one run",
-                                   clip, before->second.second));
+      throw InputError(
+          name, fmt::format("clip `{}` of `{}` is not the one of {} (other SHA-256); analyse the "
+                            "participants who saw the same clips in one run",
+                            clip.second, clip.first, before->second.second));
     }
   }
 
@@ -120,8 +120,9 @@ class AnswerFiles {
 
   TableBuilder& builder_;
   bool allow_missing_;
-  std::map<std::string, std::string> file_of_;                        // participant -> file
-  std::map<std::string, std::pair<std::string, std::string>> clips_;  // clip -> hash, file
+  std::map<std::string, std::string> file_of_;  // participant -> file
+  // (demonstration, variant) -> hash, file
+  std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> clips_;
 };
 
 void check_no_input_twice(const std::vector<fs::path>& inputs) {

@@ -72,7 +72,7 @@ void report_memory(benchmark::State& state) {
 void read_file_alone(benchmark::State& state) {
   const fs::path& path = log_of(state.range(0));
   std::vector<char> buffer(size_t{1} << 20);
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                                std::fclose);
     size_t lines = 0;
@@ -86,13 +86,13 @@ void read_file_alone(benchmark::State& state) {
 
 void read_into_table(benchmark::State& state) {
   const fs::path& path = log_of(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(read_answers({path}, {}));
+  while (state.KeepRunning()) benchmark::DoNotOptimize(read_answers({path}, {}));
   report_memory(state);
 }
 
 void read_and_analyse(benchmark::State& state) {
   const fs::path& path = log_of(state.range(0));
-  for (auto _ : state) {
+  while (state.KeepRunning()) {
     const AnswersTable table = read_answers({path}, {});
     benchmark::DoNotOptimize(report_json(analyse_table(table, {}), table));
   }

@@ -4,6 +4,7 @@
 // other, so the participant is the unit: tests that count answers as independent claim too much (or
 // too little).
 
+#include <compare>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -19,7 +20,8 @@ namespace pinchlab {
 struct Cluster {
   int answers = 0;  ///< > 0
   int pinch = 0;    ///< of them, for pinch
-  auto operator<=>(const Cluster&) const = default;
+  std::strong_ordering operator<=>(const Cluster&) const =
+      default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// The clusters of a group, one a participant with at least one answer in it.

@@ -56,6 +56,7 @@ template <size_t n>
 void find_columns(const std::array<ColumnName, n>& columns, const Fields& fields,
                   const ReadOptions& options, const std::string& place, Header& header) {
   std::vector<std::string> names;
+  names.reserve(n);
   for (const ColumnName& column : columns) names.push_back(name_in_file(options, column.name));
   for (size_t i = 0; i < fields.size(); ++i) {
     const auto found = std::find(names.begin(), names.end(), fields[i]);

@@ -184,7 +184,7 @@ Playback playback(const AnswersTable& table) {
   return result;
 }
 
-ScaleValue scale_value(double share, Estimate low, Estimate high) {
+ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) {
   const auto z = [](double p) {
     return p > 0.0 && p < 1.0 ? Estimate(gsl_cdf_ugaussian_Pinv(p))
                               : Estimate::none("a share of 0 or 1 is infinitely far on the scale");

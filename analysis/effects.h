@@ -68,6 +68,6 @@ struct ScaleValue {
   Estimate jod, jod_low, jod_high;  ///< just-objectionable differences: 1 JOD is a share of 3/4
 };
 /// `interval` is an interval of the share that is carried over to the JOD.
-ScaleValue scale_value(double share, Estimate low, Estimate high);
+ScaleValue scale_value(double share, const Estimate& low, const Estimate& high);
 
 }  // namespace pinchlab

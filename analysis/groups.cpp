@@ -40,8 +40,10 @@ void read_pairs(const std::filesystem::path& path, const std::string& first,
 // Groups in the order of their names' first demonstration; `members` maps a name to indices.
 std::vector<Group> make_groups(const std::map<std::string, std::set<std::uint16_t>>& members) {
   std::vector<Group> groups;
-  for (const auto& [name, indices] : members)
+  groups.reserve(members.size());
+  for (const auto& [name, indices] : members) {
     groups.push_back({name, {indices.begin(), indices.end()}});
+  }
   std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
     return a.demonstrations.front() < b.demonstrations.front();
   });

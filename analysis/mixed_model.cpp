@@ -59,8 +59,8 @@ class Laplace {
     for (int iteration = 0; iteration < 100; ++iteration) {
       if (assemble_and_solve() < 1e-12 * (1.0 + std::abs(f))) break;
       double trial = f;
-      for (double scale = 1.0; scale > 1e-10; scale *= 0.5) {
-        try_step(scale);
+      for (int halving = 0; halving < 34; ++halving) {
+        try_step(std::ldexp(1.0, -halving));
         trial = objective(trial_u_, trial_v_);
         if (trial <= f) break;
       }

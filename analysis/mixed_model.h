@@ -4,6 +4,7 @@
 //   logit P(pinch) = intercept + sd_p u_participant + sd_d v_demonstration,   u, v ~ N(0, 1),
 // by maximum likelihood with Laplace's approximation of the integral over u and v.
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct Cell {
   std::uint16_t demonstration;  ///< 0 .. demonstrations - 1
   std::uint16_t answers;        ///< > 0
   std::uint16_t pinch;
-  auto operator<=>(const Cell&) const = default;
+  std::strong_ordering operator<=>(const Cell&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// Participants who answered alike are one pattern with a weight.

@@ -61,7 +61,8 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options);
 struct Figure {
   std::string name;
   std::string caption;
-  std::string script;  ///< stands alone: writes NAME.svg and NAME.pdf into the current folder
+  std::string script;    ///< stands alone: writes NAME.svg and NAME.pdf into the current folder
+  std::string svg = {};  ///< the drawing, once gnuplot has made it
 };
 std::vector<Figure> make_figures(const Report& report);
 
@@ -70,9 +71,8 @@ std::vector<Figure> make_figures(const Report& report);
 std::string report_json(const Report& report, const AnswersTable& table);
 std::string report_markdown(const Report& report, const AnswersTable& table,
                             const std::vector<Figure>& figures);
-/// `svgs[i]` is the drawing of `figures[i]`, which becomes part of the page.
 std::string report_html(const Report& report, const AnswersTable& table,
-                        const std::vector<Figure>& figures, const std::vector<std::string>& svgs);
+                        const std::vector<Figure>& figures);
 
 /// CSV tables: file name and content.
 struct CsvTable {

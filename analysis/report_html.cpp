@@ -67,8 +67,7 @@ std::string base64(const std::string& bytes) {
 
 class Printer {
  public:
-  Printer(const std::vector<Figure>& figures, const std::vector<std::string>& svgs)
-      : figures_(figures), svgs_(svgs) {}
+  explicit Printer(const std::vector<Figure>& figures) : figures_(figures) {}
   std::string text;
 
   void operator()(const Heading& heading) {
@@ -100,28 +99,27 @@ class Printer {
   }
 
   void operator()(const FigureBlock& block) {
-    for (size_t i = 0; i < svgs_.size(); ++i) {
-      if (figures_[i].name != block.name) continue;
+    for (const Figure& figure : figures_) {
+      if (figure.name != block.name) continue;
       // As an image the drawing keeps its own names and styles apart from the page's.
       text += fmt::format(
           "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\">\n"
           "<figcaption>{0}</figcaption></figure>\n",
-          escape(figures_[i].caption), base64(svgs_[i]));
+          escape(figure.caption), base64(figure.svg));
     }
   }
 
  private:
   const std::vector<Figure>& figures_;
-  const std::vector<std::string>& svgs_;
   bool first_ = true;
 };
 
 }  // namespace
 
 std::string report_html(const Report& report, const AnswersTable& table,
-                        const std::vector<Figure>& figures, const std::vector<std::string>& svgs) {
+                        const std::vector<Figure>& figures) {
   const Document document = make_document(report, table);
-  Printer printer(figures, svgs);
+  Printer printer(figures);
   printer.text = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"

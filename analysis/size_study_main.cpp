@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -164,26 +165,30 @@ void run(const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Settings settings;
-  CLI::App app{
-      "Simulates studies without a true preference and charts how often each pooled test claims "
-      "one"};
-  app.add_option("--out", settings.out, "Folder for the chart, its data and a page")->required();
-  app.add_option("--studies", settings.studies, "Simulated studies a condition")
-      ->capture_default_str()
-      ->check(CLI::Range(100, 1000000));
-  app.add_option("--resamples", settings.resamples, "Bootstrap resamples a study")
-      ->capture_default_str()
-      ->check(CLI::Range(99, 100000));
-  app.add_option("--alpha", settings.alpha)->capture_default_str()->check(CLI::Range(0.001, 0.5));
-  app.add_option("--seed", settings.seed)->capture_default_str();
   try {
-    app.parse(argc, argv);
+    Settings settings;
+    CLI::App app{
+        "Simulates studies without a true preference and charts how often each pooled test claims "
+        "one"};
+    app.add_option("--out", settings.out, "Folder for the chart, its data and a page")->required();
+    app.add_option("--studies", settings.studies, "Simulated studies a condition")
+        ->capture_default_str()
+        ->check(CLI::Range(100, 1000000));
+    app.add_option("--resamples", settings.resamples, "Bootstrap resamples a study")
+        ->capture_default_str()
+        ->check(CLI::Range(99, 100000));
+    app.add_option("--alpha", settings.alpha, "Level at which each test rejects")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 0.5));
+    app.add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
     run(settings);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "pinchlab_size_study: {}\n", error.what());
+    std::fprintf(stderr, "pinchlab_size_study: %s\n", error.what());
     return 1;
   }
   return 0;

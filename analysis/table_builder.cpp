@@ -177,6 +177,7 @@ void TableBuilder::sort_names() {
   const auto demonstration = inverse<std::uint16_t>(order);
 
   std::vector<Counts> counts;
+  counts.reserve(order.size());
   for (size_t index : order) counts.push_back(table_.counts[index]);
   table_.counts = std::move(counts);
   for (Answer& answer : table_.answers) {

@@ -41,9 +41,10 @@ class Staging {
     std::ofstream file(staging_ / name, std::ios::binary);
     write(file);
     file.close();
-    if (!file)
+    if (!file) {
       throw std::runtime_error(
           fmt::format("{}: cannot be written; is the disk full?", (folder_ / name).string()));
+    }
     names_.push_back(name);
   }
   void add_text(const std::string& name, const std::string& text) {
@@ -72,16 +73,15 @@ std::string read_all(const fs::path& path) {
 std::vector<std::string> write_report(const Report& report, const AnswersTable& table,
                                       const fs::path& folder, bool with_figures) {
   Staging staging(folder);
-  const std::vector<Figure> figures = with_figures ? make_figures(report) : std::vector<Figure>{};
-  std::vector<std::string> svgs;
-  for (const Figure& figure : figures) {
+  std::vector<Figure> figures = with_figures ? make_figures(report) : std::vector<Figure>{};
+  for (Figure& figure : figures) {
     staging.add_text(figure.name + ".gp", figure.script);
     run_gnuplot(staging.path(), figure.name + ".gp");
     staging.add_existing(figure.name + ".svg");
     staging.add_existing(figure.name + ".pdf");
-    svgs.push_back(read_all(staging.path() / (figure.name + ".svg")));
+    figure.svg = read_all(staging.path() / (figure.name + ".svg"));
   }
-  staging.add_text("report.html", report_html(report, table, figures, svgs));
+  staging.add_text("report.html", report_html(report, table, figures));
   staging.add_text("report.md", report_markdown(report, table, figures));
   staging.add_text("report.json", report_json(report, table));
   for (const CsvTable& csv : report_csv(report, table)) staging.add_text(csv.name, csv.content);

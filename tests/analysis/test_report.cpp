@@ -263,7 +263,7 @@ TEST(Pages, TextFromOutsideCannotBecomeMarkup) {
   options.pinch_value = "pinch";
   const AnswersTable table = test::table_of(test::tidy_csv(test::clustered_rows()), options);
   const Report report = analyse_table(table, {});
-  const std::string html = report_html(report, table, {}, {});
+  const std::string html = report_html(report, table, {});
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
   const std::string markdown = report_markdown(report, table, {});
@@ -274,8 +274,9 @@ TEST(Pages, TextFromOutsideCannotBecomeMarkup) {
 TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   const AnswersTable table = test::clustered_table();
   const Report report = analyse_table(table, {});
-  const std::string html =
-      report_html(report, table, make_figures(report), {"<svg/>", "<svg/>", "<svg/>"});
+  std::vector<Figure> figures = make_figures(report);
+  for (Figure& figure : figures) figure.svg = "<svg/>";
+  const std::string html = report_html(report, table, figures);
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_NE(html.find("data:image/svg+xml;base64,PHN2Zy8+"), std::string::npos);
 }
