@@ -30,29 +30,29 @@ enum class BodyKind {
 
 /// A circular body.
 struct Body {
-  std::string name;                       ///< unique in the scene
+  std::string name;  ///< unique in the scene
   BodyKind kind = BodyKind::free;
-  double radius = 0.5;                    ///< m, > 0
-  double mass = 1.0;                      ///< kg, > 0; unused for fixed bodies
-  std::optional<double> inertia;          ///< kg m^2, > 0; default: disc, m r^2 / 2
-  Vec2 position = Vec2::Zero();           ///< m
-  double angle = 0.0;                     ///< rad, counter-clockwise
-  Vec2 velocity = Vec2::Zero();           ///< m/s, at time 0
-  double angular_velocity = 0.0;          ///< rad/s, at time 0
-  Vec2 rail_axis = Vec2(0.0, 1.0);        ///< unit vector; rail bodies only
+  double radius = 0.5;                            ///< m, > 0
+  double mass = 1.0;                              ///< kg, > 0; unused for fixed bodies
+  std::optional<double> inertia;                  ///< kg m^2, > 0; default: disc, m r^2 / 2
+  Vec2 position = Vec2::Zero();                   ///< m
+  double angle = 0.0;                             ///< rad, counter-clockwise
+  Vec2 velocity = Vec2::Zero();                   ///< m/s, at time 0
+  double angular_velocity = 0.0;                  ///< rad/s, at time 0
+  Vec2 rail_axis = Vec2(0.0, 1.0);                ///< unit vector; rail bodies only
   std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
-  double torque = 0.0;                    ///< N m, constant
-  double linear_drag = 0.0;               ///< 1/s: dv/dt = -drag v
-  double angular_drag = 0.0;              ///< 1/s
-  double cable_friction = infinity;       ///< capstan coefficient mu >= 0; infinity: no slip
-  double contact_friction = 0.5;          ///< Coulomb coefficient >= 0 between bare surfaces
-  double restitution = 0.0;               ///< 0..1, of bodies that hit each other or a wall
+  double torque = 0.0;                            ///< N m, constant
+  double linear_drag = 0.0;                       ///< 1/s: dv/dt = -drag v
+  double angular_drag = 0.0;                      ///< 1/s
+  double cable_friction = infinity;  ///< capstan coefficient mu >= 0; infinity: no slip
+  double contact_friction = 0.5;     ///< Coulomb coefficient >= 0 between bare surfaces
+  double restitution = 0.0;          ///< 0..1, of bodies that hit each other or a wall
 };
 
 /// Where an end of an open cable is held.
 struct Attachment {
-  int body = -1;               ///< index into Scene::bodies, or -1: the world
-  Vec2 point = Vec2::Zero();   ///< m, in the body's frame (origin at its centre), or in the world
+  int body = -1;              ///< index into Scene::bodies, or -1: the world
+  Vec2 point = Vec2::Zero();  ///< m, in the body's frame (origin at its centre), or in the world
 };
 
 /// One body that a cable runs round.
@@ -62,16 +62,17 @@ struct Wrap {
   int extra_turns = 0;  ///< whole turns beyond the one wrap in [0, 2 pi) that the tangents ask for
 };
 
-/// A massless cable, from `start` over `wraps` to `end`; a closed one has wraps only (at least two).
+/// A massless cable, from `start` over `wraps` to `end`; a closed one has wraps only (at least
+/// two).
 struct Cable {
-  std::string name;                    ///< unique in the scene
-  double half_width = 0.05;            ///< m, > 0
+  std::string name;          ///< unique in the scene
+  double half_width = 0.05;  ///< m, > 0
   bool closed = false;
-  Attachment start, end;               ///< unused when closed
+  Attachment start, end;  ///< unused when closed
   std::vector<Wrap> wraps;
-  double slack = 0.0;                  ///< m, total length beyond the taut path at time 0; >= 0,
-                                       ///< negative (pre-stretched) only with finite stiffness
-  double axial_stiffness = infinity;   ///< N, EA; infinity: inextensible
+  double slack = 0.0;                 ///< m, total length beyond the taut path at time 0; >= 0,
+                                      ///< negative (pre-stretched) only with finite stiffness
+  double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
 };
 
 /// A static straight wall: bodies cannot pass it from either side. Cables ignore walls.
@@ -87,8 +88,8 @@ struct View {
 };
 
 struct Scene {
-  std::string name;         ///< file name without folder and ending, e.g. "03-drop"
-  std::string title;        ///< for people, e.g. "Dropped roller"
+  std::string name;                 ///< file name without folder and ending, e.g. "03-drop"
+  std::string title;                ///< for people, e.g. "Dropped roller"
   Vec2 gravity = Vec2(0.0, -9.81);  ///< m/s^2
   std::vector<Body> bodies;
   std::vector<Cable> cables;

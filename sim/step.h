@@ -2,20 +2,54 @@
 #pragma once
 // START HERE: one step of the simulation.
 
+#include <array>
+
 #include "sim/world.h"
 
 namespace pinchlab {
 
-/// Advances `world` by one step of world.step_length seconds. After StepStatus::not_finite the world
-/// is not usable and world.failure says where and when.
-StepStatus step(const Scene& scene, World& world);
+/// The stages of a step, in order. Those of the thesis' Algorithm 1 keep their names; its cycle
+/// starts at update_segments, ours ends with it, so that a world between steps shows cables that
+/// fit its bodies.
+enum class Stage {
+  apply_forces,
+  init_segments,
+  init_contacts,
+  solve,
+  move_bodies,
+  update_segments,
+  remove_links,
+  broad_phase,
+  intersect_segments,
+  find_contacts,
+  configure_pinches,
+  diagnose,
+  count
+};
 
-/// Velocities at the time of the positions (m/s, rad/s, one a body), second-order accurate: the mean
-/// of the half-step velocities before and after. Costs about one step; does not change the world.
+const char* to_string(Stage stage);
+
+/// Seconds spent in each stage, added up over the steps that were given this.
+struct StageTimes {
+  std::array<double, static_cast<std::size_t>(Stage::count)> seconds{};
+};
+
+/// Advances `world` by one step of world.step_length seconds: leapfrog, the first kick half a step
+/// long, constraints solved at the positions that the kick is made at. Smooth motion is second
+/// order in the step. After StepStatus::not_finite the world is not usable and world.failure says
+/// where and when. With `times` each stage is timed.
+StepStatus step(const Scene& scene, World& world, StageTimes* times = nullptr);
+
+/// Velocities at the time of the positions (m/s, rad/s, one a body), second-order accurate: the
+/// mean of the half-step velocities before and after. Costs about one step; does not change the
+/// world.
 struct Velocities {
   std::vector<Vec2> linear;
   std::vector<double> angular;
 };
 Velocities velocities_now(const Scene& scene, const World& world);
+
+/// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
+void detect(const Scene& scene, World& world, StageTimes* times = nullptr);
 
 }  // namespace pinchlab

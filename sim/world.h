@@ -1,34 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The mutable state of a simulation. Arrays are indexed as in Scene; links and segments come and go.
+// The mutable state of a simulation. Arrays are indexed as in Scene; links and segments come and
+// go.
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "sim/contact.h"
 #include "sim/scene.h"
+#include "sim/scratch.h"
 
 namespace pinchlab {
 
-enum class Slip : std::int8_t { stick = 0, forward = 1, backward = -1 };
-
 /// Where a cable touches a body: a rolling link, or (radius 0) an attachment at its end.
 ///
-/// The material at the link's tail tangent has the coordinate material + p (alpha_tail - angle), that
-/// at its head tangent material + p (alpha_head - angle), where p = orientation * radius, alpha is the
-/// direction of the segment before or after, and angle is the body's. Without slip `material` is
-/// constant, so the cable's total length is conserved by construction.
+/// The material at the link's tail tangent has the coordinate material + p (alpha_tail - angle),
+/// that at its head tangent material + p (alpha_head - angle), where p = orientation * radius,
+/// alpha is the direction of the segment before or after, and angle is the body's. Without slip
+/// `material` is constant, so the cable's total length is conserved by construction.
 struct Link {
-  int body = -1;                       // index, or -1: attached to the world
-  int orientation = 0;                 // +1 counter-clockwise, -1 clockwise, 0 attachment
-  double radius = 0.0;                 // m, body radius + cable half width; 0 at an attachment
-  Vec2 attachment = Vec2::Zero();      // m, body frame (or world); attachments only
-  double material = 0.0;               // m along the cable; changed by slip only
-  double wrap = 0.0;                   // rad, angle of cable stored on the body, may exceed 2 pi
-  bool pinch_middle = false;           // middle link of a non-transitional pinch: no wrap, the links
-                                       // before and after lie on the pinched body
-  Slip slip = Slip::stick;             // by the active set
-  double slip_speed = 0.0;             // m/s of material through the link, forward positive
+  int body = -1;                   // index, or -1: attached to the world
+  int orientation = 0;             // +1 counter-clockwise, -1 clockwise, 0 attachment
+  double radius = 0.0;             // m, body radius + cable half width; 0 at an attachment
+  Vec2 attachment = Vec2::Zero();  // m, body frame (or world); attachments only
+  double material = 0.0;           // m along the cable; changed by slip only
+  double wrap = 0.0;               // rad, angle of cable stored on the body, may exceed 2 pi
+  bool pinch_middle = false;       // middle link of a non-transitional pinch: no wrap, the links
+                                   // before and after lie on the pinched body
+  Slip slip = Slip::stick;         // by the active set
+  double slip_speed = 0.0;         // m/s of material over the body's surface, forward positive
+  int contact = -1;                // pinch_middle: the contact that presses it, by confirm_pinches
 
   double signed_radius() const { return orientation * radius; }
 };
@@ -36,46 +38,65 @@ struct Link {
 /// The free span that arrives at the link of the same index from the link before it.
 struct Segment {
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
-  Vec2 direction = Vec2(1.0, 0.0);     // unit, from tail to head
-  double alpha = 0.0;                  // rad, angle of `direction`, continuous in time
-  double length = 0.0;                 // m, distance along the tangent; 0 when pinched
-  double rest_length = 0.0;            // m of material; may be negative by round-off when pinched
-  double tension = 0.0;                // N, of the last step
-  bool slack = false;                  // by the active set
-  bool pinched = false;                // between two touching bodies: zero length, never hit-tested
+  Vec2 direction = Vec2(1.0, 0.0);                // unit, from tail to head
+  double alpha = 0.0;                             // rad, angle of `direction`, continuous in time
+  double length = 0.0;                            // m, distance along the tangent; 0 when pinched
+  double rest_length = 0.0;  // m of material; may be negative by round-off when pinched
+  double tension = 0.0;      // N, of the last step; in a non-transitional pinch the change
+                             // of tension that the middle body takes up
+  bool slack = false;        // by the active set
+  bool pinched = false;      // between two touching bodies: zero length, never hit-tested
+  int contact = -1;          // pressing a transitional pinch, by confirm_pinches; or -1
+  Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
 };
 
 struct CableState {
-  double half_width = 0.0;             // m
-  double length = 0.0;                 // m of material, constant
+  double half_width = 0.0;  // m
+  double length = 0.0;      // m of material, constant
   bool closed = false;
-  double turning = 0.0;                // rad, total turning of a closed loop, a multiple of 2 pi
+  double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   std::vector<Link> links;
-  std::vector<Segment> segments;       // as many as links; segments[0] is unused when open and runs
-                                       // from the last link to the first when closed
+  std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
+                                  // from the last link to the first when closed
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
 double alpha_head(const CableState& cable, std::size_t link);
 
-/// Material coordinate (m from the cable's start) where the cable meets link i, and where it leaves.
+/// Material coordinate (m from the cable's start) where the cable meets link i, and where it
+/// leaves.
 double tail_material(const CableState& cable, std::size_t link, double body_angle);
 double head_material(const CableState& cable, std::size_t link, double body_angle);
 
 enum class StepStatus { ok, not_finite };
 
+/// What the last step was like. Lengths in m, at the positions that the step ended with.
+struct Diagnostics {
+  double largest_stretch = 0.0;  // m, of a segment beyond its rest length (and elastic strain)
+  double largest_gap_violation = 0.0;  // m, below a contact's target
+  double energy = 0.0;                 // J, kinetic + potential + elastic, at the step's start
+  double cable_length_error = 0.0;  // m, sum of wraps and rest lengths against the cables' lengths
+  int active_set_solves = 0;        // in the last step
+  std::int64_t total_solves = 0;    // since the start
+  std::int64_t fallbacks = 0;       // steps whose active set did not settle, since the start
+};
+
 struct World {
   Method method = Method::pinch;
-  double step_length = 0.0;            // s
-  std::int64_t step = 0;               // steps done; the time is step * step_length
+  double step_length = 0.0;  // s
+  std::int64_t step = 0;     // steps done; the time is step * step_length
 
-  std::vector<Vec2> position;          // m, one a body, at `time()`
-  std::vector<double> angle;           // rad
-  std::vector<Vec2> velocity;          // m/s, half a step before `time()` (leapfrog), see step.h
+  std::vector<Vec2> position;            // m, one a body, at `time()`
+  std::vector<double> angle;             // rad
+  std::vector<Vec2> velocity;            // m/s, half a step before `time()` (leapfrog), see step.h
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;
 
-  std::string failure;                 // where and when, if a step was not finite
+  std::vector<Contact> contacts;  // sorted by (a, b, wall)
+  Diagnostics diagnostics;
+  std::string failure;  // where and when, if a step was not finite
+
+  Scratch scratch;  // storage kept from step to step; no state of the simulation
 
   double time() const { return static_cast<double>(step) * step_length; }
 };

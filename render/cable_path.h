@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A cable's centre line as points with material coordinates.
+
+#include <vector>
+
+#include "render/picture.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// Distance of a cable's marks, m of material: about eight half widths, and a whole number of them
+/// in a closed cable.
+double mark_spacing(const CableState& cable);
+
+/// Appends the centre line from the first link to the last (a closed cable: round to the first
+/// again), arcs as chords that stray at most `tolerance` m. Slack spans hang with their rest
+/// length. A middle link of a non-transitional pinch has no wrap: its two segments are left out.
+void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
+                       double tolerance, std::vector<StripPoint>& points);
+
+}  // namespace pinchlab

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Pictures to pixels, off-screen, with analytic anti-aliasing.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "render/picture.h"
+
+namespace pinchlab {
+
+constexpr int smallest_frame = 16;   // px
+constexpr int largest_frame = 8192;  // px
+
+/// Draws pictures into a frame of its own. The same picture gives the same bytes in every run on a
+/// machine.
+///
+/// One canvas draws at a time in a process: use worker processes for more, and fork them before the
+/// first canvas is made.
+class Canvas {
+ public:
+  /// Throws std::runtime_error if the size is not within smallest_frame..largest_frame, or no
+  /// OpenGL 3.3 context can be made.
+  Canvas(int width, int height);
+  ~Canvas();
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
+
+  int width() const;
+  int height() const;
+
+  /// RGBA, 8 bits each, opaque, top row first, width * 4 bytes a row; valid until the next draw.
+  /// Throws std::runtime_error if the font is missing or the driver reports an error.
+  const std::uint8_t* draw(const Picture& picture);
+
+  /// The same for several pictures side by side, left to right, each in an equal share of the
+  /// width.
+  const std::uint8_t* draw(std::span<const Picture* const> pictures);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pinchlab

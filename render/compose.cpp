@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/compose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/cable_path.h"
+#include "sim/cable.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+// The palette of Okabe and Ito, told apart with any colour vision, with tints and shades of its
+// colours.
+namespace palette {
+constexpr Colour paper{252, 252, 250};
+constexpr Colour ink{38, 43, 51};
+constexpr Colour faint{205, 209, 214};
+constexpr Colour cable{236, 165, 46}, cable_edge{110, 62, 8}, cable_mark{152, 84, 6};
+// Half of what lies under a body shows through it.
+constexpr Colour body{172, 206, 236, 128}, body_edge{0, 82, 130};
+constexpr Colour driven{148, 214, 190, 128}, driven_edge{0, 100, 74};
+constexpr Colour fixed{184, 188, 194, 128}, fixed_edge{84, 92, 102};
+constexpr Colour clear{0, 0, 0, 0};
+}  // namespace palette
+
+Vec2 unit_vector(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Stroke disc(const Vec2& centre, double radius, Colour fill) {
+  return {centre, centre, radius, 0.0, fill, palette::clear};
+}
+
+Stroke line(const Vec2& a, const Vec2& b, double half_width, Colour colour) {
+  return {a, b, half_width, 0.0, colour, palette::clear};
+}
+
+bool is_driven(const Body& body) {
+  return body.driven_angular_velocity.value_or(body.torque) != 0.0;
+}
+
+/// Sizes that belong to the page rather than to the scene, m: the same in every clip of a scene.
+struct Page {
+  double unit;  // a hundredth of the view's longer side
+  explicit Page(const View& view) : unit(0.01 * (view.high - view.low).maxCoeff()) {}
+  double hairline() const { return 0.1 * unit; }
+  double text() const { return 2.6 * unit; }
+};
+
+class Composer {
+ public:
+  Composer(const Scene& scene, const World& world, Picture& picture)
+      : scene_(scene), world_(world), picture_(picture), page_(scene.view) {}
+
+  void run() {
+    picture_.clear();
+    picture_.view = scene_.view;
+    picture_.background = palette::paper;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
+    for (const Wall& wall : scene_.walls) {
+      picture_.add(line(wall.a, wall.b, 0.25 * page_.unit, palette::fixed_edge));
+    }
+    // Bodies hide what is behind the page, but not the cables.
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      picture_.add(disc(world_.position[i], scene_.bodies[i].radius, palette::paper));
+    }
+    for (const CableState& cable : world_.cables) add_cable(cable);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
+    for (const CableState& cable : world_.cables) add_fastenings(cable);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_drive(i);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_weight(i);
+  }
+
+ private:
+  /// A faint line where the body's centre can go.
+  void add_rail(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    if (body.kind != BodyKind::rail) return;
+    const double reach = 400.0 * page_.unit;
+    const Vec2 centre = body.position;
+    picture_.add(line(centre - reach * body.rail_axis, centre + reach * body.rail_axis,
+                      1.5 * page_.hairline(), palette::faint));
+  }
+
+  void add_cable(const CableState& cable) {
+    Strip strip;
+    strip.first = picture_.points.size();
+    const double bend = 5e-3 * page_.unit;  // 1/20 px in 960
+    append_cable_path(scene_, world_, cable, bend, picture_.points);
+    strip.count = picture_.points.size() - strip.first;
+    strip.half_width = cable.half_width;
+    strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * page_.hairline());
+    strip.mark_spacing = mark_spacing(cable);
+    strip.mark_length = 0.25 * strip.mark_spacing;
+    strip.fill = palette::cable;
+    strip.edge = palette::cable_edge;
+    strip.mark = palette::cable_mark;
+    picture_.add(strip);
+  }
+
+  void add_body(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    const Vec2& centre = world_.position[i];
+    const double r = body.radius, angle = world_.angle[i];
+    const bool fixed = body.kind == BodyKind::fixed;
+    const Colour fill = fixed ? palette::fixed : is_driven(body) ? palette::driven : palette::body;
+    const Colour edge = fixed             ? palette::fixed_edge
+                        : is_driven(body) ? palette::driven_edge
+                                          : palette::body_edge;
+    picture_.add(Stroke{centre, centre, r, std::min(0.09 * r, 0.4 * page_.unit), fill, edge});
+
+    // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
+    // like none.
+    for (int k = 0; k < 3; ++k) {
+      const Vec2 e = unit_vector(angle + k * turn / 3.0);
+      picture_.add(line(centre, centre + 0.9 * r * e, 0.045 * r, edge));
+    }
+    picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
+    picture_.add(disc(centre, 0.17 * r, edge));
+    if (body.kind == BodyKind::fixed_axle || fixed) {
+      picture_.add(disc(centre, 0.11 * r, palette::paper));
+      picture_.add(disc(centre, 0.055 * r, palette::ink));
+    }
+  }
+
+  /// What holds the ends of an open cable: a bolt in the world, a pin on a body.
+  void add_fastenings(const CableState& cable) {
+    if (cable.closed || cable.links.size() < 2) return;
+    for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
+      if (link->body >= 0) {
+        picture_.add(
+            disc(link_centre(world_, *link), 1.05 * cable.half_width, palette::cable_edge));
+      } else {
+        const double r = std::max(1.7 * cable.half_width, 0.6 * page_.unit);
+        picture_.add(disc(link->attachment, r, palette::ink));
+        picture_.add(disc(link->attachment, 0.4 * r, palette::paper));
+      }
+    }
+  }
+
+  /// An arrow in the sense in which the body is driven; it does not turn with the body.
+  void add_drive(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    if (!is_driven(body)) return;
+    const double sense = body.driven_angular_velocity.value_or(body.torque) > 0.0 ? 1.0 : -1.0;
+    const Vec2& centre = world_.position[i];
+    const double r = 0.42 * body.radius, half = std::min(0.055 * body.radius, 0.35 * page_.unit);
+    const double from = 0.25 * turn + sense * -0.36 * turn, sweep = sense * 0.72 * turn;
+    Strip shaft;
+    shaft.first = picture_.points.size();
+    constexpr int pieces = 48;
+    for (int k = 0; k <= pieces; ++k) {
+      const double a = from + sweep * k / pieces;
+      const Vec2 e = unit_vector(a);
+      picture_.points.push_back({centre + r * e, sense * left(e), 0.0});
+    }
+    shaft.count = picture_.points.size() - shaft.first;
+    shaft.half_width = half;
+    shaft.fill = palette::ink;
+    picture_.add(shaft);
+    picture_.add(disc(centre + r * unit_vector(from), half, palette::ink));
+    const Vec2 radial = unit_vector(from + sweep), tip = centre + r * radial;
+    const Vec2 ahead = sense * left(radial);
+    for (const double side : {-1.0, 1.0}) {
+      const Vec2 barb = tip + 0.2 * body.radius * (-0.8 * ahead + side * 0.8 * radial);
+      picture_.add(line(tip, barb, half, palette::ink));
+    }
+  }
+
+  /// The mass of a body that hangs on a cable's end, under it.
+  void add_weight(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    if (body.kind == BodyKind::fixed || body.kind == BodyKind::fixed_axle || !holds_cable_end(i))
+      return;
+    const Vec2 centre = world_.position[i] - Vec2(0.0, body.radius + 0.8 * page_.text());
+    picture_.add(Label{centre, page_.text(), fmt::format("{:.4g} kg", body.mass), palette::ink});
+  }
+
+  bool holds_cable_end(std::size_t i) const {
+    return std::any_of(scene_.cables.begin(), scene_.cables.end(), [i](const Cable& cable) {
+      const auto body = static_cast<int>(i);
+      return !cable.closed && (cable.start.body == body || cable.end.body == body);
+    });
+  }
+
+  const Scene& scene_;
+  const World& world_;
+  Picture& picture_;
+  Page page_;
+};
+
+}  // namespace
+
+void compose(const Scene& scene, const World& world, Picture& picture) {
+  Composer(scene, world, picture).run();
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/gl.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "render/gl_context.h"
+
+namespace pinchlab {
+
+namespace {
+
+template <typename Pointer>
+void load(Pointer& pointer, const char* name) {
+  pointer = reinterpret_cast<Pointer>(GlContext::function(name));
+  if (pointer == nullptr) throw std::runtime_error(std::string("OpenGL function missing: ") + name);
+}
+
+constexpr const char* vertex_source = R"(#version 330 core
+uniform vec2 frame_size;
+layout(location = 0) in vec2 position;  // px, from the top left
+layout(location = 1) in vec2 place;     // where in the shape, see each fragment shader
+layout(location = 2) in vec4 shape;
+layout(location = 3) in vec4 fill;
+layout(location = 4) in vec4 edge;
+layout(location = 5) in vec4 mark;
+noperspective out vec2 at;
+flat out vec4 form;
+flat out vec4 fill_colour, edge_colour, mark_colour;  // premultiplied
+void main() {
+  gl_Position = vec4(2.0 * position / frame_size - 1.0, 0.0, 1.0);
+  at = place;
+  form = shape;
+  fill_colour = vec4(fill.rgb * fill.a, fill.a);
+  edge_colour = vec4(edge.rgb * edge.a, edge.a);
+  mark_colour = vec4(mark.rgb * mark.a, mark.a);
+}
+)";
+
+// The share of a pixel whose centre lies `t` px from the middle of a band of half width `h`: the
+// overlap of [t - 1/2, t + 1/2] and [-h, h]. Right for bands thinner than a pixel too.
+constexpr const char* coverage_source = R"(#version 330 core
+noperspective in vec2 at;
+flat in vec4 form;
+flat in vec4 fill_colour, edge_colour, mark_colour;
+out vec4 colour;
+float coverage(float t, float h) { return max(0.0, min(t + 0.5, h) - max(t - 0.5, -h)); }
+)";
+
+// at: px along and across the line; form: its length, outer and inner half width, px.
+constexpr const char* stroke_source = R"(
+void main() {
+  float t = length(vec2(at.x - clamp(at.x, 0.0, form.x), at.y));
+  float inner = coverage(t, form.z);
+  colour = edge_colour * (coverage(t, form.y) - inner) + fill_colour * inner;
+}
+)";
+
+// at: px across, material in mark spacings; form: outer and inner half width, mark spacing, half a
+// mark, px.
+constexpr const char* strip_source = R"(
+void main() {
+  float t = abs(at.x);
+  float inner = coverage(t, form.y);
+  float marked = coverage(form.z * abs(fract(at.y + 0.5) - 0.5), form.w);
+  vec4 core = mix(fill_colour, mark_colour, marked);
+  colour = edge_colour * (coverage(t, form.x) - inner) + core * inner;
+}
+)";
+
+// at: texture coordinates.
+constexpr const char* label_source = R"(
+uniform sampler2D text;
+void main() { colour = fill_colour * texture(text, at).r; }
+)";
+
+GLuint compile(const Gl& gl, GLenum kind, const char* head, const char* body) {
+  const GLuint shader = gl.CreateShader(kind);
+  const std::array<const GLchar*, 2> parts = {head, body};
+  gl.ShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
+  gl.CompileShader(shader);
+  GLint good = GL_FALSE;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  if (good == GL_FALSE) {
+    std::array<char, 2048> log{};
+    gl.GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("OpenGL shader does not compile: ") + log.data());
+  }
+  return shader;
+}
+
+GLuint link(const Gl& gl, const char* fragment_body) {
+  const GLuint vertex = compile(gl, GL_VERTEX_SHADER, vertex_source, "");
+  const GLuint fragment = compile(gl, GL_FRAGMENT_SHADER, coverage_source, fragment_body);
+  const GLuint program = gl.CreateProgram();
+  gl.AttachShader(program, vertex);
+  gl.AttachShader(program, fragment);
+  gl.LinkProgram(program);
+  gl.DeleteShader(vertex);
+  gl.DeleteShader(fragment);
+  GLint good = GL_FALSE;
+  gl.GetProgramiv(program, GL_LINK_STATUS, &good);
+  if (good == GL_FALSE) {
+    std::array<char, 2048> log{};
+    gl.GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    throw std::runtime_error(std::string("OpenGL program does not link: ") + log.data());
+  }
+  return program;
+}
+
+}  // namespace
+
+Gl load_gl() {
+  Gl gl{};
+  load(gl.AttachShader, "glAttachShader");
+  load(gl.BindBuffer, "glBindBuffer");
+  load(gl.BindFramebuffer, "glBindFramebuffer");
+  load(gl.BindRenderbuffer, "glBindRenderbuffer");
+  load(gl.BindTexture, "glBindTexture");
+  load(gl.BindVertexArray, "glBindVertexArray");
+  load(gl.BlendFunc, "glBlendFunc");
+  load(gl.BufferData, "glBufferData");
+  load(gl.CheckFramebufferStatus, "glCheckFramebufferStatus");
+  load(gl.Clear, "glClear");
+  load(gl.ClearColor, "glClearColor");
+  load(gl.CompileShader, "glCompileShader");
+  load(gl.CreateProgram, "glCreateProgram");
+  load(gl.CreateShader, "glCreateShader");
+  load(gl.DeleteShader, "glDeleteShader");
+  load(gl.DeleteTextures, "glDeleteTextures");
+  load(gl.DrawElements, "glDrawElements");
+  load(gl.Enable, "glEnable");
+  load(gl.EnableVertexAttribArray, "glEnableVertexAttribArray");
+  load(gl.FramebufferRenderbuffer, "glFramebufferRenderbuffer");
+  load(gl.GenBuffers, "glGenBuffers");
+  load(gl.GenFramebuffers, "glGenFramebuffers");
+  load(gl.GenRenderbuffers, "glGenRenderbuffers");
+  load(gl.GenTextures, "glGenTextures");
+  load(gl.GenVertexArrays, "glGenVertexArrays");
+  load(gl.GetError, "glGetError");
+  load(gl.GetProgramInfoLog, "glGetProgramInfoLog");
+  load(gl.GetProgramiv, "glGetProgramiv");
+  load(gl.GetShaderInfoLog, "glGetShaderInfoLog");
+  load(gl.GetShaderiv, "glGetShaderiv");
+  load(gl.GetUniformLocation, "glGetUniformLocation");
+  load(gl.LinkProgram, "glLinkProgram");
+  load(gl.PixelStorei, "glPixelStorei");
+  load(gl.ReadPixels, "glReadPixels");
+  load(gl.RenderbufferStorage, "glRenderbufferStorage");
+  load(gl.Scissor, "glScissor");
+  load(gl.ShaderSource, "glShaderSource");
+  load(gl.TexImage2D, "glTexImage2D");
+  load(gl.TexParameteri, "glTexParameteri");
+  load(gl.Uniform2f, "glUniform2f");
+  load(gl.UseProgram, "glUseProgram");
+  load(gl.VertexAttribPointer, "glVertexAttribPointer");
+  load(gl.Viewport, "glViewport");
+  return gl;
+}
+
+Programs build_programs(const Gl& gl) {
+  return {link(gl, stroke_source), link(gl, strip_source), link(gl, label_source)};
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The OpenGL 3.3 core functions that the canvas uses, and its shader programs.
+
+#include <GL/glcorearb.h>
+
+#include <string>
+
+namespace pinchlab {
+
+/// Loaded by name from the current context, so that nothing is linked to one OpenGL library.
+struct Gl {
+  PFNGLATTACHSHADERPROC AttachShader;
+  PFNGLBINDBUFFERPROC BindBuffer;
+  PFNGLBINDFRAMEBUFFERPROC BindFramebuffer;
+  PFNGLBINDRENDERBUFFERPROC BindRenderbuffer;
+  PFNGLBINDTEXTUREPROC BindTexture;
+  PFNGLBINDVERTEXARRAYPROC BindVertexArray;
+  PFNGLBLENDFUNCPROC BlendFunc;
+  PFNGLBUFFERDATAPROC BufferData;
+  PFNGLCHECKFRAMEBUFFERSTATUSPROC CheckFramebufferStatus;
+  PFNGLCLEARPROC Clear;
+  PFNGLCLEARCOLORPROC ClearColor;
+  PFNGLCOMPILESHADERPROC CompileShader;
+  PFNGLCREATEPROGRAMPROC CreateProgram;
+  PFNGLCREATESHADERPROC CreateShader;
+  PFNGLDELETESHADERPROC DeleteShader;
+  PFNGLDELETETEXTURESPROC DeleteTextures;
+  PFNGLDRAWELEMENTSPROC DrawElements;
+  PFNGLENABLEPROC Enable;
+  PFNGLENABLEVERTEXATTRIBARRAYPROC EnableVertexAttribArray;
+  PFNGLFRAMEBUFFERRENDERBUFFERPROC FramebufferRenderbuffer;
+  PFNGLGENBUFFERSPROC GenBuffers;
+  PFNGLGENFRAMEBUFFERSPROC GenFramebuffers;
+  PFNGLGENRENDERBUFFERSPROC GenRenderbuffers;
+  PFNGLGENTEXTURESPROC GenTextures;
+  PFNGLGENVERTEXARRAYSPROC GenVertexArrays;
+  PFNGLGETERRORPROC GetError;
+  PFNGLGETPROGRAMINFOLOGPROC GetProgramInfoLog;
+  PFNGLGETPROGRAMIVPROC GetProgramiv;
+  PFNGLGETSHADERINFOLOGPROC GetShaderInfoLog;
+  PFNGLGETSHADERIVPROC GetShaderiv;
+  PFNGLGETUNIFORMLOCATIONPROC GetUniformLocation;
+  PFNGLLINKPROGRAMPROC LinkProgram;
+  PFNGLPIXELSTOREIPROC PixelStorei;
+  PFNGLREADPIXELSPROC ReadPixels;
+  PFNGLRENDERBUFFERSTORAGEPROC RenderbufferStorage;
+  PFNGLSCISSORPROC Scissor;
+  PFNGLSHADERSOURCEPROC ShaderSource;
+  PFNGLTEXIMAGE2DPROC TexImage2D;
+  PFNGLTEXPARAMETERIPROC TexParameteri;
+  PFNGLUNIFORM2FPROC Uniform2f;
+  PFNGLUSEPROGRAMPROC UseProgram;
+  PFNGLVERTEXATTRIBPOINTERPROC VertexAttribPointer;
+  PFNGLVIEWPORTPROC Viewport;
+};
+
+/// Throws std::runtime_error that names the first missing function.
+Gl load_gl();
+
+/// The three programs. Each takes the canvas' one vertex layout (canvas.cpp) and the frame's size
+/// in px.
+struct Programs {
+  GLuint stroke = 0, strip = 0, label = 0;
+};
+
+/// Compiles and links them; throws std::runtime_error with the driver's log.
+Programs build_programs(const Gl& gl);
+
+}  // namespace pinchlab

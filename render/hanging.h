@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How a slack span hangs: a catenary of its rest length, tangent to the bodies at its ends.
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+/// A uniform chain of given length between two points under gravity, by arc length. As the length
+/// nears the distance it becomes the straight line, and so it is where the chain is too short.
+class Catenary {
+ public:
+  Catenary() = default;
+  /// `up`: unit vector against gravity. `length` in m.
+  Catenary(const Vec2& from, const Vec2& to, double length, const Vec2& up);
+
+  double length() const { return length_; }  // m, at least the distance
+  bool straight() const { return straight_; }
+  Vec2 point(double s) const;    // s in 0..length(), m
+  Vec2 tangent(double s) const;  // unit, towards `to`
+
+ private:
+  Vec2 from_ = Vec2::Zero(), across_ = Vec2(1.0, 0.0), up_ = Vec2(0.0, 1.0);
+  double length_ = 0.0;
+  double parameter_ = 1.0;  // m, a of y = a cosh(x / a)
+  double start_ = 0.0;      // m, arc length from the lowest point to `from`, signed
+  bool straight_ = true;    // then `across_` is the direction
+};
+
+/// One end of a span: a circle that the cable runs round, or a point (signed radius 0).
+struct SpanEnd {
+  Vec2 centre = Vec2::Zero();  // m
+  double signed_radius = 0.0;  // m, orientation * (body radius + half width)
+  double most_unwrap = 0.0;    // rad >= 0, by how much the wrap may shrink
+};
+
+/// A span's shape between two ends. The cable leaves the first circle in direction `tail_angle` and
+/// meets the second one in direction `head_angle` (rad); the wraps grow or shrink accordingly.
+struct HangingSpan {
+  double tail_angle = 0.0, head_angle = 0.0;
+  Catenary curve;
+};
+
+/// The shape of a span whose straight tangent has the direction `alpha` (rad) and whose material
+/// measures `rest_length` m between the straight tangent's points. Material on the circles stays
+/// where it is.
+HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double rest_length,
+                 const Vec2& up);
+
+}  // namespace pinchlab

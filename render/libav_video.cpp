@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file that knows FFmpeg's libraries.
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/dict.h>
+#include <libavutil/pixdesc.h>
+#include <libswscale/swscale.h>
+}
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "render/canvas.h"
+#include "render/partial_file.h"
+#include "render/processor_time.h"
+#include "render/video.h"
+#include "render/yuv.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// What differs from codec to codec. Options are FFmpeg's; "g" is the distance of key frames.
+struct CodecTraits {
+  const char* name;
+  const char* ending;
+  const char* encoder;
+  const char* container;
+  AVPixelFormat pixel_format;
+  const char* options;  // for stimuli, see describe()
+  const char* muxer_options;
+};
+
+const CodecTraits& traits(Codec codec) {
+  // Stimuli: adaptive quantisation spoils flat areas, so it is off; one encoder thread and x264's
+  // plain arithmetic order make the bytes the same on any processor. FFV1 has key frames only.
+  static constexpr CodecTraits h264{
+      "h264",
+      ".mp4",
+      "libx264",
+      "mp4",
+      AV_PIX_FMT_YUV420P,
+      "preset=veryfast:crf=14:aq-mode=0:x264-params=cpu-independent=1",
+      "movflags=+faststart+write_colr"};
+  static constexpr CodecTraits vp9{"vp9",
+                                   ".webm",
+                                   "libvpx-vp9",
+                                   "webm",
+                                   AV_PIX_FMT_YUV420P,
+                                   "deadline=good:cpu-used=5:crf=16:b=0:row-mt=0:tile-columns=0",
+                                   ""};
+  static constexpr CodecTraits ffv1{
+      "ffv1", ".mkv", "ffv1", "matroska", AV_PIX_FMT_0RGB32, "level=3:slicecrc=1:slices=4:g=1", ""};
+  switch (codec) {
+    case Codec::h264:
+      return h264;
+    case Codec::vp9:
+      return vp9;
+    case Codec::ffv1:
+      return ffv1;
+  }
+  throw std::invalid_argument("unknown codec");
+}
+
+std::string encoder_options(const VideoSettings& settings) {
+  if (!settings.encoder_options.empty()) return settings.encoder_options;
+  const std::string options = traits(settings.codec).options;
+  // A key frame a second: a player can start anywhere without delay.
+  return settings.codec == Codec::ffv1
+             ? options
+             : fmt::format("g={}:{}", settings.frames_per_second, options);
+}
+
+std::string reason(int error) {
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
+  av_strerror(error, text.data(), text.size());
+  return text.data();
+}
+
+void check(int result, const std::string& path, const char* what) {
+  if (result < 0) throw std::runtime_error(fmt::format("{}: {}: {}", path, what, reason(result)));
+}
+
+template <typename Pointer>
+Pointer* made(Pointer* pointer) {
+  if (pointer == nullptr) throw std::bad_alloc();
+  return pointer;
+}
+
+struct Delete {
+  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+template <typename Type>
+using Owned = std::unique_ptr<Type, Delete>;
+
+/// Options as a dictionary; what FFmpeg did not take afterwards is an error.
+class Options {
+ public:
+  explicit Options(const std::string& text) {
+    if (av_dict_parse_string(&dictionary_, text.c_str(), "=", ":", 0) < 0) {
+      av_dict_free(&dictionary_);
+      throw std::invalid_argument(
+          fmt::format("encoder options \"{}\": expected key=value:key=value", text));
+    }
+  }
+  ~Options() { av_dict_free(&dictionary_); }
+  Options(const Options&) = delete;
+  Options& operator=(const Options&) = delete;
+  AVDictionary** get() { return &dictionary_; }
+  void expect_all_taken() const {
+    if (const AVDictionaryEntry* left =
+            av_dict_get(dictionary_, "", nullptr, AV_DICT_IGNORE_SUFFIX)) {
+      throw std::invalid_argument(fmt::format("encoder option \"{}\" is unknown", left->key));
+    }
+  }
+
+ private:
+  AVDictionary* dictionary_ = nullptr;
+};
+
+void check_settings(const std::string& path, const VideoSettings& settings) {
+  const int w = settings.width, h = settings.height;
+  if (w < smallest_frame || h < smallest_frame || w > largest_frame || h > largest_frame) {
+    throw std::invalid_argument(
+        fmt::format("{}: a video of {} x {} px cannot be made: each side must be {} to {} px", path,
+                    w, h, smallest_frame, largest_frame));
+  }
+  if (settings.codec != Codec::ffv1 && (w % 2 != 0 || h % 2 != 0)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {} stores colour for 2 x 2 px, so {} x {} px cannot be made: use even sides, or ffv1",
+        path, to_string(settings.codec), w, h));
+  }
+  if (settings.frames_per_second < 1 || settings.frames_per_second > 1000) {
+    throw std::invalid_argument(fmt::format("{}: {} frames a second cannot be made: 1 to 1000",
+                                            path, settings.frames_per_second));
+  }
+}
+
+/// RGBA to the byte order that FFV1 stores, without loss.
+void rgba_to_bgr0(const std::uint8_t* rgba, int width, int height, std::uint8_t* to,
+                  std::ptrdiff_t stride) {
+  for (int y = 0; y < height; ++y, to += stride) {
+    for (int x = 0; x < width; ++x, rgba += 4) {
+      to[4 * x] = rgba[2];
+      to[4 * x + 1] = rgba[1];
+      to[4 * x + 2] = rgba[0];
+      to[4 * x + 3] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+const char* to_string(Codec codec) {
+  return traits(codec).name;
+}
+
+Codec codec_from_string(const std::string& name) {
+  for (const Codec codec : {Codec::h264, Codec::vp9, Codec::ffv1}) {
+    if (name == to_string(codec)) return codec;
+  }
+  throw std::invalid_argument(fmt::format("unknown codec \"{}\": one of h264, vp9, ffv1", name));
+}
+
+const char* file_ending(Codec codec) {
+  return traits(codec).ending;
+}
+
+std::string describe(const VideoSettings& settings) {
+  const CodecTraits& t = traits(settings.codec);
+  const bool rgb = settings.codec == Codec::ffv1;
+  return fmt::format("{} in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
+                     t.container, av_get_pix_fmt_name(t.pixel_format),
+                     rgb ? "sRGB, lossless" : "BT.709 limited range", settings.width,
+                     settings.height, settings.frames_per_second, encoder_options(settings));
+}
+
+struct VideoWriter::State {
+  VideoSettings settings;
+  PartialFile partial;
+  AVFormatContext* format = nullptr;
+  AVStream* stream = nullptr;
+  Owned<AVCodecContext> codec;
+  Owned<AVFrame> frame;
+  Owned<AVPacket> packet;
+  std::int64_t frames = 0;
+  double convert_seconds = 0.0, encode_seconds = 0.0;
+
+  State(const std::string& path, const VideoSettings& settings_)
+      : settings(settings_), partial(path) {
+    av_log_set_level(AV_LOG_ERROR);
+    try {
+      open_encoder();
+      open_file();
+    } catch (...) {
+      close();
+      throw;
+    }
+  }
+  ~State() { close(); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void close() {
+    if (format == nullptr) return;
+    if (format->pb != nullptr) avio_closep(&format->pb);
+    avformat_free_context(format);
+    format = nullptr;
+  }
+
+  void open_encoder() {
+    const CodecTraits& t = traits(settings.codec);
+    const AVCodec* encoder = avcodec_find_encoder_by_name(t.encoder);
+    if (encoder == nullptr) {
+      throw std::runtime_error(
+          fmt::format("{}: this system's FFmpeg has no encoder {}; Debian's libavcodec59 does",
+                      partial.path(), t.encoder));
+    }
+    check(avformat_alloc_output_context2(&format, nullptr, t.container, partial.name().c_str()),
+          partial.path(), "cannot set up the container");
+    codec.reset(made(avcodec_alloc_context3(encoder)));
+    codec->width = settings.width;
+    codec->height = settings.height;
+    codec->time_base = {1, settings.frames_per_second};
+    codec->framerate = {settings.frames_per_second, 1};
+    codec->sample_aspect_ratio = {1, 1};
+    codec->pix_fmt = t.pixel_format;
+    codec->thread_count = 1;
+    codec->flags |= AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
+    if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0)
+      codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    const bool rgb = settings.codec == Codec::ffv1;
+    codec->color_primaries = AVCOL_PRI_BT709;
+    codec->color_trc = rgb ? AVCOL_TRC_IEC61966_2_1 : AVCOL_TRC_BT709;
+    codec->colorspace = rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
+    codec->color_range = rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    if (!rgb) codec->chroma_sample_location = AVCHROMA_LOC_CENTER;
+    Options options(encoder_options(settings));
+    check(avcodec_open2(codec.get(), encoder, options.get()), partial.path(),
+          "cannot start the encoder");
+    options.expect_all_taken();
+
+    frame.reset(made(av_frame_alloc()));
+    frame->format = codec->pix_fmt;
+    frame->width = settings.width;
+    frame->height = settings.height;
+    check(av_frame_get_buffer(frame.get(), 0), partial.path(), "no memory for a frame");
+    packet.reset(made(av_packet_alloc()));
+  }
+
+  void open_file() {
+    stream = made(avformat_new_stream(format, nullptr));
+    stream->time_base = codec->time_base;
+    stream->avg_frame_rate = codec->framerate;
+    check(avcodec_parameters_from_context(stream->codecpar, codec.get()), partial.path(),
+          "cannot describe the stream");
+    format->flags |= AVFMT_FLAG_BITEXACT;  // no dates, no random identifiers
+    check(avio_open(&format->pb, partial.name().c_str(), AVIO_FLAG_WRITE), partial.path(),
+          "cannot be written");
+    Options options(traits(settings.codec).muxer_options);
+    check(avformat_write_header(format, options.get()), partial.path(), "cannot be written");
+  }
+
+  void convert(const std::uint8_t* rgba) {
+    check(av_frame_make_writable(frame.get()), partial.path(), "no memory for a frame");
+    AVFrame& f = *frame;
+    if (settings.codec == Codec::ffv1) {
+      rgba_to_bgr0(rgba, settings.width, settings.height, f.data[0], f.linesize[0]);
+    } else {
+      rgba_to_yuv420(
+          rgba, settings.width, settings.height,
+          {f.data[0], f.data[1], f.data[2], f.linesize[0], f.linesize[1], f.linesize[2]});
+    }
+  }
+
+  /// Sends a frame (null: no more) and writes the packets that come out.
+  void encode(const AVFrame* next) {
+    check(avcodec_send_frame(codec.get(), next), partial.path(), "the encoder refused a frame");
+    for (;;) {
+      const int result = avcodec_receive_packet(codec.get(), packet.get());
+      if (result == AVERROR(EAGAIN) || result == AVERROR_EOF) return;
+      check(result, partial.path(), "the encoder failed");
+      packet->stream_index = stream->index;
+      packet->duration = 1;
+      av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+      check(av_interleaved_write_frame(format, packet.get()), partial.path(), "cannot be written");
+    }
+  }
+
+  void finish() {
+    if (frames == 0)
+      throw std::runtime_error(partial.path() + ": a video needs at least one frame");
+    encode(nullptr);
+    check(av_write_trailer(format), partial.path(), "cannot be completed");
+    check(avio_closep(&format->pb), partial.path(), "cannot be completed");
+    partial.keep();
+  }
+};
+
+VideoWriter::VideoWriter(const std::string& path, const VideoSettings& settings) {
+  check_settings(path, settings);
+  state_ = std::make_unique<State>(path, settings);
+}
+
+VideoWriter::~VideoWriter() = default;
+
+void VideoWriter::add(const std::uint8_t* rgba) {
+  const double start = processor_seconds();
+  state_->convert(rgba);
+  const double converted = processor_seconds();
+  state_->frame->pts = state_->frames++;
+  state_->encode(state_->frame.get());
+  state_->convert_seconds = converted - start;
+  state_->encode_seconds = processor_seconds() - converted;
+}
+
+void VideoWriter::finish() {
+  state_->finish();
+}
+
+double VideoWriter::convert_seconds() const {
+  return state_->convert_seconds;
+}
+double VideoWriter::encode_seconds() const {
+  return state_->encode_seconds;
+}
+
+struct VideoReader::State {
+  std::string path;
+  AVFormatContext* format = nullptr;
+  AVStream* stream = nullptr;
+  Owned<AVCodecContext> codec;
+  Owned<AVFrame> frame;
+  Owned<AVPacket> packet;
+  Owned<SwsContext> scaler;
+  VideoInfo info;
+
+  explicit State(const std::string& path_) : path(path_) {
+    av_log_set_level(AV_LOG_ERROR);
+    try {
+      open();
+    } catch (...) {
+      avformat_close_input(&format);
+      throw;
+    }
+  }
+  ~State() { avformat_close_input(&format); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  void open() {
+    check(avformat_open_input(&format, path.c_str(), nullptr, nullptr), path, "cannot be read");
+    check(avformat_find_stream_info(format, nullptr), path, "cannot be read");
+    const AVCodec* decoder = nullptr;
+    const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    check(index, path, "has no video that can be read");
+    stream = format->streams[index];
+    codec.reset(made(avcodec_alloc_context3(decoder)));
+    check(avcodec_parameters_to_context(codec.get(), stream->codecpar), path, "cannot be read");
+    codec->thread_count = 1;
+    check(avcodec_open2(codec.get(), decoder, nullptr), path, "cannot be decoded");
+    frame.reset(made(av_frame_alloc()));
+    packet.reset(made(av_packet_alloc()));
+
+    const auto text = [](const char* name) { return std::string(name == nullptr ? "" : name); };
+    const AVCodecParameters& p = *stream->codecpar;
+    const auto pixel_format = static_cast<AVPixelFormat>(p.format);
+    info = {text(format->iformat->name),
+            text(avcodec_get_name(p.codec_id)),
+            text(av_get_pix_fmt_name(pixel_format)),
+            text(av_color_space_name(p.color_space)),
+            text(av_color_range_name(p.color_range)),
+            text(av_color_primaries_name(p.color_primaries)),
+            text(av_color_transfer_name(p.color_trc)),
+            p.width,
+            p.height,
+            stream->avg_frame_rate.den == 1 ? stream->avg_frame_rate.num : 0};
+    scaler.reset(sws_getContext(p.width, p.height, pixel_format, p.width, p.height, AV_PIX_FMT_RGBA,
+                                SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_ACCURATE_RND, nullptr,
+                                nullptr, nullptr));
+    if (!scaler) throw std::runtime_error(path + ": its pixel format cannot be shown");
+    const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
+    sws_setColorspaceDetails(scaler.get(), bt709, 0, bt709, 1, 0, 1 << 16, 1 << 16);
+  }
+
+  bool decode() {
+    for (;;) {
+      const int result = avcodec_receive_frame(codec.get(), frame.get());
+      if (result == 0) return true;
+      if (result == AVERROR_EOF) return false;
+      if (result != AVERROR(EAGAIN)) check(result, path, "cannot be decoded");
+      int read = 0;
+      do {
+        av_packet_unref(packet.get());
+        read = av_read_frame(format, packet.get());
+      } while (read == 0 && packet->stream_index != stream->index);
+      if (read != 0 && read != AVERROR_EOF) check(read, path, "cannot be read");
+      check(avcodec_send_packet(codec.get(), read == 0 ? packet.get() : nullptr), path,
+            "cannot be decoded");
+    }
+  }
+
+  DecodedFrame take() {
+    const int w = info.width, h = info.height;
+    const auto row = static_cast<std::size_t>(w);
+    DecodedFrame out;
+    out.time_s = static_cast<double>(frame->best_effort_timestamp) * av_q2d(stream->time_base);
+    out.key = frame->key_frame != 0;
+    if (frame->format == AV_PIX_FMT_YUV420P) {
+      for (int y = 0; y < h; ++y) {
+        const std::uint8_t* from = frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0];
+        out.luma.insert(out.luma.end(), from, from + row);
+      }
+    }
+    out.rgba.resize(row * static_cast<std::size_t>(h) * 4);
+    std::uint8_t* const to[4] = {out.rgba.data(), nullptr, nullptr, nullptr};
+    const int to_stride[4] = {w * 4, 0, 0, 0};
+    sws_scale(scaler.get(), frame->data, frame->linesize, 0, h, to, to_stride);
+    return out;
+  }
+};
+
+VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>(path)) {}
+VideoReader::~VideoReader() = default;
+
+const VideoInfo& VideoReader::info() const {
+  return state_->info;
+}
+
+std::optional<DecodedFrame> VideoReader::next() {
+  if (!state_->decode()) return std::nullopt;
+  return state_->take();
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which bodies, and which spans and bodies, may touch: boxes swept along the scene's longer axis.
+
+#include <vector>
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+struct World;
+
+struct BodyPair {
+  int a, b;  // a < b
+};
+struct SpanPair {
+  int cable, segment, body;
+};
+
+struct BroadPhase {
+  std::vector<int> order;            // bodies by the low end of their box; nearly sorted every step
+  std::vector<Vec2> low, high;       // m, boxes of bodies: where they were, are, and may be next
+  std::vector<double> key;           // low end along the swept axis, in `order`
+  int axis = 0;                      // 0: x, 1: y
+  std::vector<BodyPair> body_pairs;  // sorted
+  std::vector<SpanPair> span_pairs;  // sorted
+};
+
+/// Boxes of the bodies at their present positions, and the pairs of bodies whose boxes overlap.
+void find_body_pairs(const Scene& scene, World& world);
+
+/// The bodies whose boxes meet the boxes of free spans (zero-length ones cannot hit anything).
+void find_span_pairs(const Scene& scene, World& world);
+
+}  // namespace pinchlab

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Links and segments: geometry and transport, insertion, removal and merging.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// Centre of the circle that link i lies on: its body's, or the attachment's point (m).
+Vec2 link_centre(const World& world, const Link& link);
+
+/// Angle (rad) of the body that carries the link; 0 for the world.
+inline double body_angle(const World& world, const Link& link) {
+  return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
+}
+
+/// First segment that exists: 1 in an open cable, 0 in a closed one.
+inline std::size_t first_segment(const CableState& cable) {
+  return cable.closed ? 0 : 1;
+}
+
+/// Index of the link before or after `link`, around a closed cable; -1 beyond an end.
+int previous_link(const CableState& cable, int link);
+int next_link(const CableState& cable, int link);
+
+/// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
+inline bool opposite(const Link& a, const Link& b) {
+  return a.orientation * b.orientation < 0;
+}
+
+/// Whether the segment between the two only fastens the cable's end to the rim of the body that it
+/// is wound on. It has no length and exerts nothing.
+inline bool wound_end(const Link& a, const Link& b) {
+  return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0);
+}
+
+/// New tangents, directions, wraps and rest lengths for the bodies' present positions (thesis:
+/// UpdateSegments). Material stays where it is on every body.
+void update_segments(World& world);
+
+/// Tangent, direction and length of segment i alone; its angle is kept continuous.
+void update_tangent(const World& world, CableState& cable, std::size_t segment);
+
+/// Wraps of all links and rest lengths of all segments of a cable whose tangents are up to date.
+void update_wraps_and_rest_lengths(const World& world, CableState& cable);
+
+/// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
+/// RemoveJoints).
+void remove_links(World& world);
+
+/// Takes link i out of the cable. If its neighbours lie on one body they become one link.
+void remove_link(const World& world, CableState& cable, int link);
+
+/// Puts a rolling link on `body` into free segment i, between its tail and head links, and shares
+/// the segment's material so that both parts are stretched alike (thesis: AddJoints).
+void insert_link(const Scene& scene, const World& world, CableState& cable, std::size_t segment,
+                 int body, int orientation);
+
+/// Splits link i, `arc` rad after its tail, by a middle link on `body`: i, middle, i + 2
+/// (thesis 4.2.2).
+void insert_pinch(const Scene& scene, const World& world, CableState& cable, std::size_t link,
+                  double arc, int body);
+
+}  // namespace pinchlab

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Sliding with friction over bodies: the capstan law, with the friction of pinches on the way.
+// Nothing here runs for cables all of whose bodies have infinite friction.
+
+#include <vector>
+
+#include "sim/contact.h"
+#include "sim/terms.h"
+
+namespace pinchlab {
+
+struct World;
+
+/// Something on a cable's way over a body that changes its tension: an arc, or a pinch.
+struct Passage {
+  double factor = 1.0;    // arc: exp(friction * wrap)
+  int normal = -1;        // pinch: row of the contact's force, or -1
+  double friction = 0.0;  // pinch: the wrapped body's friction is at most friction * that force
+  int middle = -1;        // non-transitional pinch: the middle body's row, or -1
+};
+
+/// All links of a cable on one body in succession: one link, or the parts into which pinches divide
+/// it. Material slides over the body at one speed everywhere in the run.
+struct Run {
+  int cable = 0, first_link = 0, last_link = 0;
+  int row_in = -1, row_out = -1;  // segment rows before and after
+  bool frictionless = false;      // always slides; the direction does not matter
+  Slip slip = Slip::stick;
+  double speed = 0.0;   // m/s, of the material over the body, by slip_speeds
+  int flipped = 0;      // solve of this step at which `slip` last changed
+  bool frozen = false;  // sticks for this step, whatever its bounds
+  int passages_begin = 0, passages_end = 0;
+};
+
+/// Segments joined by sliding runs, in the cable's order: their tensions depend on one unknown.
+struct Group {
+  int begin = 0, end = 0;              // of members
+  int slack = -1;                      // the slack member, or -1
+  int slack_begin = 0, slack_end = 0;  // of slack_terms: what of the group must not be taut
+};
+
+struct CapstanScratch {
+  std::vector<Run> runs;
+  std::vector<Passage> passages;
+  std::vector<int> segments, run_before;  // rows of the sliding cables' segments, and the run
+                                          // before each; -1 at an open cable's start
+  std::vector<int> cable_begin;           // into these two, one a sliding cable; and the end
+  std::vector<int> members, member_runs;  // rows of the groups' segments, and the run before each;
+                                          // -1 for the first of a group
+  std::vector<Group> groups;
+  std::vector<int> group_of_row;  // -1: not of a sliding cable
+  std::vector<Term> expression, sums, slack_terms;
+  std::vector<int> sums_begin, borders;
+};
+
+/// Lists the runs of all cables that touch a body of finite friction; empty if none do.
+void find_runs(const Scene& scene, World& world);
+
+/// Joins segments into groups for the present states of runs and segments.
+///
+/// Two slack segments of one group would determine the tension between them twice, from either
+/// side. One run between them must stick then; the one that has kept its state longest is made to.
+void make_groups(World& world);
+
+/// Impulses of the groups' members in terms of the unknowns, appended to the active set's lists.
+void express_impulses(World& world);
+
+/// Equations of the groups' unknowns, and of middle bodies that stick on their way: sums of rows in
+/// which the sliding speeds cancel.
+void add_group_equations(World& world);
+
+/// Sliding speeds of all runs for the rows' present speeds.
+void slip_speeds(World& world);
+
+/// Appends a flip for every run or group whose state the present solution contradicts.
+void check_runs(World& world, double speed_tolerance, double impulse_tolerance);
+
+}  // namespace pinchlab

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Bodies that touch, or may do so within the next step.
+
+#include <cstdint>
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+enum class Slip : std::int8_t { stick = 0, forward = 1, backward = -1 };
+
+/// Two bodies, or a body and a wall, that touch or may touch within the next step.
+struct Contact {
+  int a = -1;                  // body index
+  int b = -1;                  // body index > a, or -1: a wall
+  int wall = -1;               // index into Scene::walls, or -1
+  Vec2 normal = Vec2::Zero();  // unit, from a towards b
+  double gap = 0.0;            // m, between the surfaces
+  double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0
+  int pinch_points = 0;        // cables (or turns of one) that share the contact's force
+  bool pinch_linked = false;   // a cable between the two takes the place of bare friction
+  bool touching = false;       // by the active set
+  Slip slip = Slip::stick;     // of bare surfaces, by the active set
+  double normal_force = 0.0;   // N, of the last step, >= 0
+  double tangent_force = 0.0;  // N, on b along left(normal)
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/diagnostics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cable.h"
+
+namespace pinchlab {
+
+bool check_finite(const Scene& scene, World& world) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (std::isfinite(world.velocity[b].x()) && std::isfinite(world.velocity[b].y()) &&
+        std::isfinite(world.angular_velocity[b])) {
+      continue;
+    }
+    std::string cables;
+    for (std::size_t c = 0; c < world.cables.size(); ++c) {
+      const auto& links = world.cables[c].links;
+      for (std::size_t i = 0; i < links.size(); ++i) {
+        if (links[i].body == static_cast<int>(b)) {
+          cables += fmt::format(", cable '{}' link {}", scene.cables[c].name, i);
+        }
+      }
+    }
+    world.failure = fmt::format(
+        "step {} (t = {} s): velocity of body '{}' is not finite{}; method {}", world.step,
+        world.time(), scene.bodies[b].name, cables, to_string(world.method));
+    return false;
+  }
+  return true;
+}
+
+void measure_energy(const Scene& scene, World& world) {
+  const Scratch& s = world.scratch;
+  double energy = 0.0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.kind == BodyKind::fixed) continue;
+    const Vec2 v = 0.5 * (s.velocity_before[b] + world.velocity[b]);
+    const double omega = 0.5 * (s.angular_velocity_before[b] + world.angular_velocity[b]);
+    energy += 0.5 * disc_inertia(body) * omega * omega;
+    if (body.kind == BodyKind::fixed_axle) continue;
+    energy += 0.5 * body.mass * v.squaredNorm() - body.mass * scene.gravity.dot(world.position[b]);
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const double stiffness = scene.cables[c].axial_stiffness;
+    if (stiffness == infinity) continue;
+    for (const Segment& segment : world.cables[c].segments) {
+      if (segment.rest_length <= 0.0) continue;
+      const double stretch = std::max(segment.length - segment.rest_length, 0.0);
+      energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
+    }
+  }
+  world.diagnostics.energy = energy;
+}
+
+void measure_cables(const Scene& scene, World& world) {
+  Diagnostics& d = world.diagnostics;
+  d.largest_stretch = d.largest_gap_violation = d.cable_length_error = 0.0;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    double length = 0.0;
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      const Link& link = cable.links[i];
+      length += link.radius * link.wrap;
+      if (i < first_segment(cable)) continue;
+      const Segment& segment = cable.segments[i];
+      length += segment.rest_length;
+      double stretch = segment.length - segment.rest_length;
+      if (scene.cables[c].axial_stiffness < infinity) {
+        stretch -= segment.tension * segment.rest_length / scene.cables[c].axial_stiffness;
+      }
+      if (!segment.pinched) d.largest_stretch = std::max(d.largest_stretch, stretch);
+    }
+    d.cable_length_error = std::max(d.cable_length_error, std::abs(length - cable.length));
+  }
+  for (const Contact& contact : world.contacts) {
+    d.largest_gap_violation = std::max(d.largest_gap_violation, contact.target - contact.gap);
+  }
+}
+
+}  // namespace pinchlab

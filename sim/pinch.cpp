@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/pinch.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "sim/cable.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+bool can_move(const Scene& scene, int body) {
+  const BodyKind kind = scene.bodies[static_cast<std::size_t>(body)].kind;
+  return kind == BodyKind::free || kind == BodyKind::rail;
+}
+
+double full_width(const World& world) {
+  double width = 0.0;
+  if (world.method != Method::cable) {
+    for (const CableState& cable : world.cables) width = std::max(width, 2.0 * cable.half_width);
+  }
+  return width;
+}
+
+/// How much nearer two things with relative velocity v may come within the next step, generously.
+double reach(const Scene& scene, const World& world, const Vec2& v, double radius) {
+  const double h = world.step_length;
+  return 2.0 * h * (v.norm() + scene.gravity.norm() * h) + 0.01 * radius;
+}
+
+Vec2 nearest_point(const Wall& wall, const Vec2& x) {
+  const Vec2 d = wall.b - wall.a;
+  const double t = std::clamp((x - wall.a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+  return wall.a + t * d;
+}
+
+double normal_speed(const World& world, const Contact& contact) {
+  Vec2 v = -world.velocity[static_cast<std::size_t>(contact.a)];
+  if (contact.b >= 0) v += world.velocity[static_cast<std::size_t>(contact.b)];
+  return contact.normal.dot(v);
+}
+
+/// Whether the bodies press what lies between them: they did in the last step, or will in the next.
+bool presses(const World& world, const Contact& contact, double gap) {
+  if (world.method == Method::pinch_no_contact) return contact.gap <= gap;
+  return contact.touching || contact.gap <= gap * (1.0 + 1e-12) ||
+         contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
+}
+
+Contact* find_contact(World& world, int body, int other) {
+  const int a = std::min(body, other), b = std::max(body, other);
+  const auto it = std::lower_bound(
+      world.contacts.begin(), world.contacts.end(), std::pair(a, b),
+      [](const Contact& c, const std::pair<int, int>& p) { return std::pair(c.a, c.b) < p; });
+  return it != world.contacts.end() && it->a == a && it->b == b ? &*it : nullptr;
+}
+
+struct NewPinch {
+  int cable, link;
+  double arc;
+  int body;
+};
+
+/// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
+/// than the cable's width it would press the span against the link's body, so it must keep that
+/// distance already before it hits the span.
+bool over_adjacent_span(const World& world, const CableState& cable, std::size_t i, int other) {
+  const int after = next_link(cable, static_cast<int>(i));
+  for (const int s : {static_cast<int>(i), after}) {
+    const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
+    const Vec2 x = world.position[static_cast<std::size_t>(other)] - segment.tail;
+    const double along = segment.direction.dot(x);
+    const double side = cross(segment.direction, x) * cable.links[i].orientation;
+    if (!segment.pinched && along > 0.0 && along < segment.length && side < 0.0) return true;
+  }
+  return false;
+}
+
+/// The turns of link i that `contact` presses, apart from the end at which the other body is the
+/// cable's next or previous one (there the pinch is transitional or made already).
+void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_t i, int other,
+                     const Vec2& u, std::vector<NewPinch>& found) {
+  CableState& cable = world.cables[static_cast<std::size_t>(cable_index)];
+  const Link& link = cable.links[i];
+  const int before = previous_link(cable, static_cast<int>(i));
+  const int after = next_link(cable, static_cast<int>(i));
+  const auto is_other = [&](int neighbour) {
+    return neighbour >= 0 && cable.links[static_cast<std::size_t>(neighbour)].body == other &&
+           opposite(cable.links[static_cast<std::size_t>(neighbour)], link);
+  };
+  constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
+  const double width = 2.0 * cable.half_width;
+  if (world.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
+    contact.target = std::max(contact.target, width);
+    contact.pinch_linked = true;
+  }
+  for (double arc = arc_of_direction(cable, i, u); arc <= link.wrap + arc_tolerance;
+       arc += 2.0 * std::numbers::pi) {
+    if (is_other(before) && arc < near_end) continue;
+    if (is_other(after) && link.wrap - arc < near_end) continue;
+    if (world.method == Method::pinch) contact.target = std::max(contact.target, width);
+    contact.pinch_linked = true;
+    if (arc >= 0.0 && arc <= link.wrap && presses(world, contact, width)) {
+      found.push_back({cable_index, static_cast<int>(i), arc, other});
+    }
+  }
+}
+
+/// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
+/// closes by the second-order gap of a rolling step.
+void remove_open_pinches(World& world) {
+  for (CableState& cable : world.cables) {
+    for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
+      const Link& link = cable.links[static_cast<std::size_t>(i)];
+      if (!link.pinch_middle) continue;
+      const int pressed = cable.links[static_cast<std::size_t>(previous_link(cable, i))].body;
+      const Contact* contact = find_contact(world, link.body, pressed);
+      const double width = 2.0 * cable.half_width;
+      if (contact == nullptr ||
+          (!presses(world, *contact, width) && contact->gap > width * (1.0 + 5e-4))) {
+        remove_link(world, cable, i);
+      }
+    }
+  }
+}
+
+/// Tells each pinch its contact, and each contact how many cables it presses and how far apart it
+/// must keep its bodies.
+void assign_contacts(World& world) {
+  for (CableState& cable : world.cables) {
+    const double width = 2.0 * cable.half_width;
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      Link& to = cable.links[s];
+      const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
+      const Link& from = cable.links[tail];
+      Segment& segment = cable.segments[s];
+      segment.contact = -1;
+      if (!opposite(from, to) || from.pinch_middle) continue;
+      to.contact = -1;
+      Contact* contact = find_contact(world, from.body, to.body);
+      if (contact == nullptr) continue;
+      if (world.method == Method::pinch) contact->target = std::max(contact->target, width);
+      contact->pinch_linked = true;
+      const int index = static_cast<int>(contact - world.contacts.data());
+      ++contact->pinch_points;
+      if (to.pinch_middle) {
+        to.contact = index;
+      } else {
+        segment.contact = index;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
+  double arc = link.orientation * (std::atan2(e.y(), e.x()) - cable.segments[i].alpha);
+  constexpr double turn = 2.0 * std::numbers::pi;
+  arc -= turn * std::floor((arc + arc_tolerance) / turn);
+  return arc;
+}
+
+void find_contacts(const Scene& scene, World& world) {
+  std::vector<Contact>& old = world.scratch.old_contacts;
+  std::swap(old, world.contacts);
+  world.contacts.clear();
+  const double width = full_width(world);
+  for (const BodyPair& pair : world.scratch.broad_phase.body_pairs) {
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const Vec2 d = world.position[b] - world.position[a];
+    const double distance = d.norm();
+    const double radii = scene.bodies[a].radius + scene.bodies[b].radius;
+    const double least = std::min(scene.bodies[a].radius, scene.bodies[b].radius);
+    const Vec2 v = world.velocity[b] - world.velocity[a];
+    if (distance - radii > width + reach(scene, world, v, least)) continue;
+    Contact contact;
+    contact.a = pair.a;
+    contact.b = pair.b;
+    contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(1.0, 0.0);
+    contact.gap = distance - radii;
+    world.contacts.push_back(contact);
+  }
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      if (!can_move(scene, static_cast<int>(b))) continue;
+      const Vec2 d = nearest_point(scene.walls[w], world.position[b]) - world.position[b];
+      const double distance = d.norm(), radius = scene.bodies[b].radius;
+      if (distance - radius > reach(scene, world, world.velocity[b], radius)) continue;
+      Contact contact;
+      contact.a = static_cast<int>(b);
+      contact.wall = static_cast<int>(w);
+      contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(0.0, -1.0);
+      contact.gap = distance - radius;
+      world.contacts.push_back(contact);
+    }
+  }
+  const auto less = [](const Contact& p, const Contact& q) {
+    return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
+  };
+  if (!scene.walls.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
+  auto previous = old.begin();
+  for (Contact& contact : world.contacts) {
+    while (previous != old.end() && less(*previous, contact)) ++previous;
+    if (previous != old.end() && !less(contact, *previous)) {
+      contact.touching = previous->touching;
+      contact.slip = previous->slip;
+      contact.normal_force = previous->normal_force;
+      contact.tangent_force = previous->tangent_force;
+    }
+  }
+}
+
+void configure_pinches(const Scene& scene, World& world) {
+  if (world.method == Method::cable) return;
+  remove_open_pinches(world);
+  if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
+
+  // Only links of bodies that have contacts matter.
+  auto& contacts_of_body = world.scratch.contacts_of_body;
+  contacts_of_body.begin.assign(scene.bodies.size() + 1, 0);
+  for (const Contact& c : world.contacts) {
+    if (c.b < 0) continue;
+    ++contacts_of_body.begin[static_cast<std::size_t>(c.a) + 1];
+    ++contacts_of_body.begin[static_cast<std::size_t>(c.b) + 1];
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    contacts_of_body.begin[b + 1] += contacts_of_body.begin[b];
+  }
+  contacts_of_body.items.resize(static_cast<std::size_t>(contacts_of_body.begin.back()));
+  auto& next = world.scratch.fill;
+  next = contacts_of_body.begin;
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const Contact& c = world.contacts[i];
+    if (c.b < 0) continue;
+    for (const int body : {c.a, c.b}) {
+      auto& position = next[static_cast<std::size_t>(body)];
+      contacts_of_body.items[static_cast<std::size_t>(position++)] = static_cast<int>(i);
+    }
+  }
+  std::vector<NewPinch> found;  // allocates only when a pinch is made
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    for (std::size_t i = 0; i < world.cables[c].links.size(); ++i) {
+      const Link& link = world.cables[c].links[i];
+      if (link.orientation == 0 || link.pinch_middle) continue;
+      const auto body = static_cast<std::size_t>(link.body);
+      for (int k = contacts_of_body.begin[body]; k < contacts_of_body.begin[body + 1]; ++k) {
+        Contact& contact = world.contacts[static_cast<std::size_t>(
+            contacts_of_body.items[static_cast<std::size_t>(k)])];
+        const bool is_a = contact.a == link.body;
+        find_pinches_on(world, contact, static_cast<int>(c), i, is_a ? contact.b : contact.a,
+                        is_a ? contact.normal : Vec2(-contact.normal), found);
+      }
+    }
+  }
+  // Last first, so that indices and arcs of those before stay true.
+  std::sort(found.begin(), found.end(), [](const NewPinch& p, const NewPinch& q) {
+    return std::tie(p.cable, p.link, p.arc, p.body) > std::tie(q.cable, q.link, q.arc, q.body);
+  });
+  for (const NewPinch& pinch : found) {
+    insert_pinch(scene, world, world.cables[static_cast<std::size_t>(pinch.cable)],
+                 static_cast<std::size_t>(pinch.link), pinch.arc, pinch.body);
+  }
+  assign_contacts(world);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cable.h"
+#include "sim/tangent.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+namespace {
+
+double diagonal_of(const Row& row, const std::vector<Mobility>& mobility) {
+  double sum = 0.0;
+  if (row.a >= 0) sum += row.ja.dot(mobility[static_cast<std::size_t>(row.a)] * row.ja);
+  if (row.b >= 0) sum += row.jb.dot(mobility[static_cast<std::size_t>(row.b)] * row.jb);
+  return sum;
+}
+
+/// Body-fixed lever of a force along e at the link: torque = lever * force. For a rolling link it
+/// is the signed radius, since cross(-p left(e), e) = p.
+double lever(const World& world, const Link& link, const Vec2& e) {
+  if (link.orientation != 0 || link.body < 0) return link.signed_radius();
+  const Vec2 arm = link_centre(world, link) - world.position[static_cast<std::size_t>(link.body)];
+  return cross(arm, e);
+}
+
+/// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
+/// tension (p >= 0) shortens the segment.
+Row segment_row(const World& world, const Link& from, const Link& to, const Segment& segment) {
+  Row row;
+  row.kind = RowKind::segment;
+  row.a = from.body;
+  row.b = to.body;
+  const Vec2& e = segment.direction;
+  row.ja = {e.x(), e.y(), lever(world, from, e)};
+  row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
+  row.bias = -(segment.length - segment.rest_length) / world.step_length;
+  return row;
+}
+
+/// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
+/// attachment points along the centre line, backwards (thesis 4.2.1, Figure 4.3). It then pushes
+/// the bodies apart, but leaves their rolling alone: the origin of the method's jitter.
+void turn_to_centre_line(const World& world, const Link& from, const Link& to,
+                         const Segment& segment, Row& row) {
+  const Vec2 d = link_centre(world, to) - link_centre(world, from);
+  const double distance = d.norm();
+  if (!(distance > 0.0)) return;
+  const Vec2 u = d / distance;
+  row.ja = {-u.x(), -u.y(), 0.0};
+  row.jb = {u.x(), u.y(), 0.0};
+  const double overlap = from.radius + to.radius - distance;
+  row.bias = -(overlap - segment.rest_length) / world.step_length;
+}
+
+/// What presses the middle body of a non-transitional pinch, and how much of it this cable gets.
+void bound_pinch_friction(const Scene& scene, const World& world, Row& row) {
+  const Link& middle =
+      world.cables[static_cast<std::size_t>(row.index)].links[static_cast<std::size_t>(row.item)];
+  const Contact* contact =
+      middle.contact >= 0 ? &world.contacts[static_cast<std::size_t>(middle.contact)] : nullptr;
+  const int normal =
+      contact ? world.scratch.normal_row_of_contact[static_cast<std::size_t>(middle.contact)] : -1;
+  const bool clamped =
+      normal >= 0 && world.scratch.rows[static_cast<std::size_t>(normal)].diagonal == 0.0;
+  if (row.friction == infinity && (clamped || world.method == Method::pinch_no_contact)) {
+    row.on = true;  // held by axles that do not give way, or (thesis) by the joint alone
+    row.slip = Slip::stick;
+    return;
+  }
+  row.normal = clamped ? -1 : normal;
+  if (row.normal < 0) row.friction = 0.0;
+  if (contact == nullptr) return;
+  const Link& wrapped = world.cables[static_cast<std::size_t>(row.index)]
+                            .links[static_cast<std::size_t>(row.item - 1)];
+  const int points = std::max(1, contact->pinch_points);
+  row.friction /= points;
+  row.wrapped_friction =
+      scene.bodies[static_cast<std::size_t>(wrapped.body)].cable_friction / points;
+}
+
+}  // namespace
+
+void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out) {
+  out.assign(scene.bodies.size(), Mobility{});
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    Mobility& m = out[b];
+    // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what
+    // an impulse adds is divided by 1 + c k / 2.
+    const double linear = 1.0 / (body.mass * (1.0 + 0.5 * kick * body.linear_drag));
+    if (body.kind == BodyKind::free) m.xx = m.yy = linear;
+    if (body.kind == BodyKind::rail) {
+      const Vec2 n = body.rail_axis.normalized();
+      m.xx = linear * n.x() * n.x();
+      m.xy = linear * n.x() * n.y();
+      m.yy = linear * n.y() * n.y();
+    }
+    if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+      m.angular = 1.0 / (disc_inertia(body) * (1.0 + 0.5 * kick * body.angular_drag));
+    }
+  }
+}
+
+void make_segment_rows(const Scene& scene, World& world, double kick) {
+  Scratch& scratch = world.scratch;
+  scratch.segment_begin.clear();
+  scratch.row_of_segment.clear();
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    CableState& cable = world.cables[c];
+    scratch.segment_begin.push_back(static_cast<int>(scratch.row_of_segment.size()));
+    scratch.row_of_segment.resize(scratch.row_of_segment.size() + cable.segments.size(), -1);
+    const double stiffness = scene.cables[c].axial_stiffness;
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      const Link& to = cable.links[s];
+      const Link& from =
+          cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
+      if (from.pinch_middle)
+        continue;  // the opposite of the row before: one signed row serves both
+      const Segment& segment = cable.segments[s];
+      Row row = segment_row(world, from, to, segment);
+      row.index = static_cast<int>(c);
+      row.item = static_cast<int>(s);
+      row.on = !segment.slack;
+      if (to.pinch_middle) {
+        row.kind = RowKind::pinch_middle;
+        row.slip = to.slip;
+        row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
+      }
+      if (world.method == Method::cable && segment.pinched) {
+        turn_to_centre_line(world, from, to, segment, row);
+      }
+      // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.
+      if (stiffness < infinity && !segment.pinched) {
+        row.compliance =
+            std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
+      }
+      row.diagonal = diagonal_of(row, scratch.mobility);
+      scratch.row_of_segment[static_cast<std::size_t>(scratch.segment_begin.back()) + s] =
+          static_cast<int>(scratch.rows.size());
+      scratch.rows.push_back(row);
+    }
+  }
+}
+
+void make_contact_rows(const Scene& scene, World& world) {
+  world.scratch.normal_row_of_contact.clear();
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const Contact& contact = world.contacts[i];
+    const auto a = static_cast<std::size_t>(contact.a), b = static_cast<std::size_t>(contact.b);
+    const Vec2& n = contact.normal;
+    world.scratch.normal_row_of_contact.push_back(static_cast<int>(world.scratch.rows.size()));
+    Row row;
+    row.kind = RowKind::normal;
+    row.on = contact.touching;
+    row.index = static_cast<int>(i);
+    row.a = contact.a;
+    row.b = contact.b;
+    row.ja = {-n.x(), -n.y(), 0.0};
+    row.jb = {n.x(), n.y(), 0.0};
+    const double clearance = contact.gap - contact.target;
+    row.bias = clearance / world.step_length;
+    const double restitution =
+        contact.b >= 0 ? std::max(scene.bodies[a].restitution, scene.bodies[b].restitution)
+                       : std::max(scene.bodies[a].restitution,
+                                  scene.walls[static_cast<std::size_t>(contact.wall)].restitution);
+    if (restitution > 0.0) {
+      Vec2 v = -world.velocity[a];
+      if (contact.b >= 0) v += world.velocity[b];
+      const double speed = n.dot(v);
+      // Slower than what gravity gives in four steps, a body rests rather than bounces.
+      const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
+      if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
+        row.bias = restitution * speed;
+      }
+    }
+    row.diagonal = diagonal_of(row, world.scratch.mobility);
+    world.scratch.rows.push_back(row);
+
+    if (contact.pinch_linked) continue;
+    const Body& body = scene.bodies[a];
+    const double other_friction =
+        contact.b >= 0 ? scene.bodies[b].contact_friction
+                       : scene.walls[static_cast<std::size_t>(contact.wall)].contact_friction;
+    const double friction_coefficient = std::sqrt(body.contact_friction * other_friction);
+    if (friction_coefficient == 0.0) continue;
+    const Vec2 t = left(n);
+    Row friction;
+    friction.kind = RowKind::tangent;
+    friction.index = row.index;
+    friction.friction = friction_coefficient;
+    friction.slip = contact.slip;
+    friction.normal = world.scratch.normal_row_of_contact.back();
+    friction.a = contact.a;
+    friction.b = contact.b;
+    // Both forces act at one point, a share of the gap off the surfaces, so that they have no
+    // moment.
+    const double radii = body.radius + (contact.b >= 0 ? scene.bodies[b].radius : 0.0);
+    const double reach = (radii + contact.gap) / radii;
+    friction.ja = {-t.x(), -t.y(), -body.radius * reach};
+    friction.jb = {t.x(), t.y(), contact.b >= 0 ? -scene.bodies[b].radius * reach : 0.0};
+    friction.diagonal = diagonal_of(friction, world.scratch.mobility);
+    world.scratch.rows.push_back(friction);
+  }
+  for (Row& row : world.scratch.rows) {
+    if (row.kind == RowKind::pinch_middle) bound_pinch_friction(scene, world, row);
+  }
+}
+
+}  // namespace pinchlab

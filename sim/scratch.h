@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Storage that the stages of a step reuse, so that a warm step allocates nothing.
+
+#include <vector>
+
+#include "sim/broad_phase.h"
+#include "sim/capstan.h"
+#include "sim/contact.h"
+#include "sim/profile_lu.h"
+#include "sim/rows.h"
+#include "sim/terms.h"
+
+namespace pinchlab {
+
+/// What an unknown does to a body (a column of the system), or what its equation sees of one (a
+/// row).
+struct BodyTerm {
+  int unknown;
+  int body;
+  Eigen::Vector3d vector;
+};
+
+/// A change of state that the last solution asks for.
+struct Flip {
+  int row;  // or run, where is_run
+  bool is_run;
+  bool on;
+  Slip slip;
+};
+
+struct ActiveSet {
+  CapstanScratch capstan;           // empty without finite friction on a cable
+  std::vector<int> unknown_of_row;  // of rows that have one of their own, or -1
+  std::vector<int> row_of_unknown;
+  std::vector<int> impulse_begin, impulse_end;  // of each row's impulse, in impulse_terms
+  std::vector<Term> impulse_terms;              // of unknowns
+  std::vector<EquationTerm> equation_terms;     // of rows
+  std::vector<BodyTerm> columns;                // unordered; columns_of_body lists them by body
+  std::vector<BodyTerm> equations;
+  Lists<BodyTerm> columns_of_body;
+  std::vector<int> fill;
+  std::vector<int> least_column, least_equation;  // least unknown that moves, or sees, each body
+  std::vector<int> first;                         // profile
+  std::vector<double> scale, right_side, solution, residual;
+  ProfileLu lu;
+  std::vector<Flip> flips;
+};
+
+/// A body that has just left a cable.
+struct Release {
+  int cable, body;
+};
+
+struct Scratch {
+  std::vector<Release> released;  // since update_segments
+  BroadPhase broad_phase;
+  std::vector<Contact> old_contacts;
+  Lists<int> contacts_of_body;
+  std::vector<int> fill;  // cursors while Lists are made
+  std::vector<Row> rows;
+  std::vector<Mobility> mobility;                  // one a body
+  std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
+  std::vector<int> normal_row_of_contact;
+  std::vector<int> order;  // of the rows, by order_rows
+  std::vector<int> structure,
+      ordered_structure;                   // bodies that the rows couple; what `order` is for
+  std::vector<int> row_stamp, body_stamp;  // marks of order_rows
+
+  Lists<int> rows_of_body;  // rows that a mobile body couples
+  ActiveSet active_set;
+
+  std::vector<Vec2> velocity_before;  // m/s, at the start of the step
+  std::vector<double> angular_velocity_before;
+  std::vector<Vec2> velocity_free;  // m/s, after forces, before constraints
+  std::vector<double> angular_velocity_free;
+};
+
+}  // namespace pinchlab

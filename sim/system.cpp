@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/capstan.h"
+
+namespace pinchlab {
+
+namespace {
+
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+double body_speed(const World& world, int body, const Eigen::Vector3d& j) {
+  const Vec2& v = world.velocity[index(body)];
+  return j.x() * v.x() + j.y() * v.y() + j.z() * world.angular_velocity[index(body)];
+}
+
+void push_body(World& world, int body, const Eigen::Vector3d& j, double impulse) {
+  const Eigen::Vector3d dv = world.scratch.mobility[index(body)] * j;
+  world.velocity[index(body)] += impulse * dv.head<2>();
+  world.angular_velocity[index(body)] += impulse * dv.z();
+}
+
+/// A row has an unknown of its own unless it bears nothing, slips, or follows from its group's.
+bool has_unknown(const World& world, std::size_t r) {
+  const Row& row = world.scratch.rows[r];
+  const CapstanScratch& capstan = world.scratch.active_set.capstan;
+  if (!row.on) return false;
+  if (row.kind == RowKind::segment && !capstan.runs.empty() && capstan.group_of_row[r] >= 0) {
+    const Group& group = capstan.groups[index(capstan.group_of_row[r])];
+    return group.slack < 0 && capstan.members[index(group.begin)] == static_cast<int>(r);
+  }
+  const bool slips = (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) &&
+                     row.slip != Slip::stick;
+  return !slips && row.diagonal > 0.0;
+}
+
+void number_unknowns(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  set.unknown_of_row.assign(s.rows.size(), -1);
+  set.row_of_unknown.clear();
+  for (const int r : s.order) {
+    if (!has_unknown(world, index(r))) continue;
+    set.unknown_of_row[index(r)] = static_cast<int>(set.row_of_unknown.size());
+    set.row_of_unknown.push_back(r);
+  }
+}
+
+/// p = F z and the equations G, row by row; groups of sliding cables add theirs.
+void express(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  const bool slides = !set.capstan.runs.empty();
+  set.impulse_begin.assign(s.rows.size(), 0);
+  set.impulse_end.assign(s.rows.size(), 0);
+  set.impulse_terms.clear();
+  set.equation_terms.clear();
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    const int unknown = set.unknown_of_row[r];
+    const bool grouped = slides && set.capstan.group_of_row[r] >= 0;
+    set.impulse_begin[r] = static_cast<int>(set.impulse_terms.size());
+    if (unknown >= 0 && !grouped) {
+      set.impulse_terms.push_back({unknown, 1.0});
+      const bool later = slides && row.kind == RowKind::pinch_middle;
+      if (!later) set.equation_terms.push_back({unknown, static_cast<int>(r), 1.0});
+    } else if (row.on && row.slip != Slip::stick && row.normal >= 0) {
+      // Sliding friction opposes the sliding: p = -slip * friction * normal.
+      const int normal = set.unknown_of_row[index(row.normal)];
+      if (normal >= 0)
+        set.impulse_terms.push_back({normal, -static_cast<int>(row.slip) * row.bound});
+    }
+    set.impulse_end[r] = static_cast<int>(set.impulse_terms.size());
+  }
+  if (!slides) return;
+  for (Row& row : s.rows) row.in_group_equation = false;
+  express_impulses(world);
+  add_group_equations(world);
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    if (s.rows[r].kind == RowKind::pinch_middle && set.unknown_of_row[r] >= 0 &&
+        !s.rows[r].in_group_equation) {
+      set.equation_terms.push_back({set.unknown_of_row[r], static_cast<int>(r), 1.0});
+    }
+  }
+}
+
+/// Adds vector * coefficient to the list's entry for (unknown, body), which if it exists is among
+/// the entries from `begin` on.
+void accumulate(std::vector<BodyTerm>& list, std::size_t begin, int unknown, int body,
+                const Eigen::Vector3d& vector, double coefficient) {
+  for (std::size_t k = begin; k < list.size(); ++k) {
+    if (list[k].unknown == unknown && list[k].body == body) {
+      list[k].vector += coefficient * vector;
+      return;
+    }
+  }
+  list.push_back({unknown, body, coefficient * vector});
+}
+
+bool moves(const Scratch& s, int body) {
+  return body >= 0 && s.mobility[index(body)].any();
+}
+
+/// Effects of unknowns on bodies, listed by body, and what each equation sees of the bodies.
+void gather_body_terms(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  const std::size_t bodies = s.mobility.size();
+  set.columns.clear();
+  set.equations.clear();
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
+      const Term& term = set.impulse_terms[index(k)];
+      if (moves(s, row.a)) set.columns.push_back({term.index, row.a, term.coefficient * row.ja});
+      if (moves(s, row.b)) set.columns.push_back({term.index, row.b, term.coefficient * row.jb});
+    }
+  }
+  std::size_t begin = 0;
+  int unknown = -1;
+  for (const EquationTerm& term : set.equation_terms) {
+    const Row& row = s.rows[index(term.row)];
+    if (term.unknown != unknown) {
+      unknown = term.unknown;
+      begin = set.equations.size();
+    }
+    if (moves(s, row.a)) accumulate(set.equations, begin, unknown, row.a, row.ja, term.coefficient);
+    if (moves(s, row.b)) accumulate(set.equations, begin, unknown, row.b, row.jb, term.coefficient);
+  }
+
+  Lists<BodyTerm>& lists = set.columns_of_body;
+  lists.begin.assign(bodies + 1, 0);
+  for (const BodyTerm& term : set.columns) ++lists.begin[index(term.body) + 1];
+  for (std::size_t b = 0; b < bodies; ++b) lists.begin[b + 1] += lists.begin[b];
+  lists.items.resize(set.columns.size());
+  set.fill = lists.begin;
+  for (const BodyTerm& term : set.columns) {
+    lists.items[index(set.fill[index(term.body)]++)] = term;
+  }
+}
+
+/// The profile: unknown u reaches back to the least one that shares a body with it.
+void find_profile(ActiveSet& set, std::size_t bodies) {
+  const int count = static_cast<int>(set.row_of_unknown.size());
+  set.least_column.assign(bodies, count);
+  set.least_equation.assign(bodies, count);
+  for (const BodyTerm& t : set.columns) {
+    set.least_column[index(t.body)] = std::min(set.least_column[index(t.body)], t.unknown);
+  }
+  for (const BodyTerm& t : set.equations) {
+    set.least_equation[index(t.body)] = std::min(set.least_equation[index(t.body)], t.unknown);
+  }
+  set.first.resize(index(count));
+  for (int u = 0; u < count; ++u) set.first[index(u)] = u;
+  for (const BodyTerm& t : set.columns) {
+    set.first[index(t.unknown)] =
+        std::min(set.first[index(t.unknown)], set.least_equation[index(t.body)]);
+  }
+  for (const BodyTerm& t : set.equations) {
+    set.first[index(t.unknown)] =
+        std::min(set.first[index(t.unknown)], set.least_column[index(t.body)]);
+  }
+}
+
+void assemble(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  find_profile(set, s.mobility.size());
+  for (const EquationTerm& term : set.equation_terms) {
+    for (int k = set.impulse_begin[index(term.row)]; k < set.impulse_end[index(term.row)]; ++k) {
+      const int other = set.impulse_terms[index(k)].index;  // through compliance, without a body
+      const auto [low, high] = std::minmax(other, term.unknown);
+      set.first[index(high)] = std::min(set.first[index(high)], low);
+    }
+  }
+  set.lu.reset(set.first);
+  for (const BodyTerm& t : set.equations) {
+    const Eigen::Vector3d seen = s.mobility[index(t.body)] * t.vector;
+    const auto& lists = set.columns_of_body;
+    for (int k = lists.begin[index(t.body)]; k < lists.begin[index(t.body) + 1]; ++k) {
+      const BodyTerm& column = lists.items[index(k)];
+      set.lu.add(t.unknown, column.unknown, seen.dot(column.vector));
+    }
+  }
+  set.scale.assign(set.row_of_unknown.size(), 0.0);
+  for (const EquationTerm& term : set.equation_terms) {
+    const Row& row = s.rows[index(term.row)];
+    for (int k = set.impulse_begin[index(term.row)]; k < set.impulse_end[index(term.row)]; ++k) {
+      const Term& impulse = set.impulse_terms[index(k)];
+      const double both = term.coefficient * impulse.coefficient;
+      if (row.compliance > 0.0) set.lu.add(term.unknown, impulse.index, both * row.compliance);
+      if (impulse.index == term.unknown) {
+        set.scale[index(term.unknown)] += std::abs(both) * (row.diagonal + row.compliance);
+      }
+    }
+  }
+  for (double& scale : set.scale) {
+    if (scale == 0.0) scale = 1.0;
+  }
+}
+
+/// Impulses of the rows for the unknowns' values; velocities, and the rows' speeds.
+void apply_solution(World& world, const std::vector<double>& z) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    double p = 0.0;
+    for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
+      const Term& term = set.impulse_terms[index(k)];
+      p += term.coefficient * z[index(term.index)];
+    }
+    s.rows[r].impulse = p;
+  }
+  apply_impulses(world);
+  for (Row& row : s.rows) row.speed = row_speed(world, row) + row.compliance * row.impulse;
+}
+
+/// What each equation misses at the rows' present speeds; returns the largest.
+double equation_residuals(World& world) {
+  ActiveSet& set = world.scratch.active_set;
+  set.residual.assign(set.row_of_unknown.size(), 0.0);
+  for (const EquationTerm& term : set.equation_terms) {
+    set.residual[index(term.unknown)] +=
+        term.coefficient * world.scratch.rows[index(term.row)].speed;
+  }
+  double largest = 0.0;
+  for (const double r : set.residual) largest = std::max(largest, std::abs(r));
+  return largest;
+}
+
+double fastest(const World& world) {
+  double speed = 0.0;
+  for (const Vec2& v : world.velocity) speed = std::max(speed, v.cwiseAbs().maxCoeff());
+  return speed;
+}
+
+/// One step of iterative refinement. The residual is measured at the velocities, where heavy and
+/// light bodies do not mix, so that it restores what elimination loses at large mass ratios.
+void refine(World& world) {
+  ActiveSet& set = world.scratch.active_set;
+  set.lu.solve(set.residual);
+  for (std::size_t u = 0; u < set.solution.size(); ++u) set.solution[u] -= set.residual[u];
+  apply_solution(world, set.solution);
+}
+
+/// Of all solutions of a system with repeated rows, (nearly) the one of least norm: that of the
+/// system with a small ridge on its diagonal, whose right side is first made consistent by a basic
+/// solution.
+void spread_over_repeated_rows(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  constexpr double ridge = 1e-8;
+  equation_residuals(world);
+  set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
+  assemble(world);
+  set.lu.factor(set.scale, ridge);
+  std::fill(set.solution.begin(), set.solution.end(), 0.0);
+  apply_solution(world, set.solution);
+  for (int k = 0; k < 3; ++k) {
+    equation_residuals(world);
+    for (std::size_t u = 0; u < set.residual.size(); ++u) set.residual[u] -= set.right_side[u];
+    refine(world);
+  }
+}
+
+}  // namespace
+
+double row_speed(const World& world, const Row& row) {
+  double w = row.bias;
+  if (row.a >= 0) w += body_speed(world, row.a, row.ja);
+  if (row.b >= 0) w += body_speed(world, row.b, row.jb);
+  return w;
+}
+
+void push(World& world, const Row& row, double impulse) {
+  if (impulse == 0.0) return;
+  if (row.a >= 0) push_body(world, row.a, row.ja, impulse);
+  if (row.b >= 0) push_body(world, row.b, row.jb, impulse);
+}
+
+void apply_impulses(World& world) {
+  world.velocity = world.scratch.velocity_free;
+  world.angular_velocity = world.scratch.angular_velocity_free;
+  for (const Row& row : world.scratch.rows) push(world, row, row.impulse);
+}
+
+void solve_for_states(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  if (!set.capstan.runs.empty()) make_groups(world);
+  number_unknowns(world);
+  express(world);
+  gather_body_terms(world);
+  assemble(world);
+  const int repeated = set.lu.factor(set.scale, 0.0);
+
+  set.solution.assign(set.row_of_unknown.size(), 0.0);
+  apply_solution(world, set.solution);
+  const double start = equation_residuals(world);
+  refine(world);
+  const double rounding = 1e-13 * start + 4e-16 * fastest(world);
+  for (int k = 0; k < 2 && repeated == 0 && equation_residuals(world) > rounding; ++k)
+    refine(world);
+  if (repeated > 0) spread_over_repeated_rows(world);
+}
+
+}  // namespace pinchlab
