@@ -247,7 +247,7 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
                                  fmt::format("`{}` is not of the form OURS=THEIRS", pair));
     }
     const std::string ours = pair.substr(0, equals);
-    if (!is_input_column(ours)) {
+    if (!analysis::is_input_column(ours)) {
       throw CLI::ValidationError("--map-column",
                                  fmt::format("there is no column `{}`; see --help", ours));
     }
@@ -265,8 +265,8 @@ void add_analyse(CLI::App& app) {
     std::vector<std::string> mapped;
     std::string separator = ",";
     bool no_figures = false;
-    ReadOptions read;
-    AnalysisOptions analysis;
+    analysis::ReadOptions read;
+    analysis::AnalysisOptions analyse;
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* command =
@@ -287,13 +287,13 @@ void add_analyse(CLI::App& app) {
       ->required();
   command->add_option("--out", args->out, "Folder to write the report to (made if need be)")
       ->required();
-  command->add_option("--alpha", args->analysis.alpha, "Significance level")
+  command->add_option("--alpha", args->analyse.alpha, "Significance level")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 0.5));
-  command->add_option("--bootstrap", args->analysis.bootstrap, "Resamples of the cluster bootstrap")
+  command->add_option("--bootstrap", args->analyse.bootstrap, "Resamples of the cluster bootstrap")
       ->capture_default_str()
       ->check(CLI::Range(99, 1000000));
-  command->add_option("--seed", args->analysis.seed, "Seed of all random numbers")
+  command->add_option("--seed", args->analyse.seed, "Seed of all random numbers")
       ->capture_default_str();
   command->add_option(
       "--groups", args->read.groups_file,
@@ -336,23 +336,23 @@ void add_analyse(CLI::App& app) {
       throw CLI::ValidationError("--pinch-value", "must differ from --cable-value");
     }
     for (const std::string& label : {args->read.pinch_value, args->read.cable_value}) {
-      const std::string why = why_not_a_name(label);
+      const std::string why = analysis::why_not_a_name(label);
       if (!why.empty())
         throw CLI::ValidationError("--pinch-value, --cable-value", "bad name: " + why);
     }
-    args->analysis.pinch_label = args->read.pinch_value;
-    args->analysis.cable_label = args->read.cable_value;
-    const AnswersTable table = read_answers(args->inputs, args->read);
-    const Report report = analyse_table(table, args->analysis);
+    args->analyse.pinch_label = args->read.pinch_value;
+    args->analyse.cable_label = args->read.cable_value;
+    const analysis::AnswersTable table = analysis::read_answers(args->inputs, args->read);
+    const analysis::Report report = analysis::analyse_table(table, args->analyse);
     const std::vector<std::string> written =
-        write_report(report, table, args->out, !args->no_figures);
-    fmt::print("{}\n\nWritten to {}: {}\n", plain_words(report, table), args->out.string(),
-               fmt::join(written, ", "));
+        analysis::write_report(report, table, args->out, !args->no_figures);
+    fmt::print("{}\n\nWritten to {}: {}\n", analysis::plain_words(report, table),
+               args->out.string(), fmt::join(written, ", "));
   });
 }
 
 void add_power(CLI::App& app) {
-  auto question = std::make_shared<PowerQuestion>();
+  auto question = std::make_shared<analysis::PowerQuestion>();
   CLI::App* command =
       app.add_subcommand("power", "How many participants a study needs (exact binomial)");
   command->footer(
@@ -374,8 +374,8 @@ void add_power(CLI::App& app) {
       ->capture_default_str();
   command->callback([question] {
     try {
-      fmt::print("{}", power_text(*question, participants_needed(*question)));
-    } catch (const InputError& error) {
+      fmt::print("{}", analysis::power_text(*question, analysis::participants_needed(*question)));
+    } catch (const analysis::InputError& error) {
       throw CLI::ValidationError(error.what());  // all of its input stands on the command line
     }
   });

@@ -6,7 +6,7 @@
 #include "analysis/input_error.h"
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -94,4 +94,4 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   return report;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -10,7 +10,7 @@
 #include "analysis/json_object.h"
 #include "analysis/text_checks.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -171,4 +171,4 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   return file;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

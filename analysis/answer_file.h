@@ -10,7 +10,7 @@
 
 #include "analysis/answers_table.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 enum class TrialKind { main, training, attention };
 
@@ -42,4 +42,4 @@ struct AnswerFile {
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -13,7 +13,7 @@
 #include "analysis/json_object.h"
 #include "analysis/table_builder.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace fs = std::filesystem;
 
@@ -164,4 +164,4 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
   return table;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Left, right, or not recorded.
 enum class Side : std::uint8_t { unknown, left, right };
@@ -96,4 +96,4 @@ bool is_input_column(const std::string& name);
 /// The name of the group that holds every demonstration.
 inline constexpr const char* all_group = "all";
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

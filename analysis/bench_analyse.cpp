@@ -19,7 +19,7 @@
 #include "analysis/gsl_support.h"
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,6 +106,6 @@ BENCHMARK(read_into_table)->Arg(125000)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_and_analyse)->Arg(125000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis
 
 BENCHMARK_MAIN();

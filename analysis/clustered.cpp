@@ -12,7 +12,7 @@
 
 #include "analysis/tests_2afc.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -334,4 +334,4 @@ Pooled pooled_tests(const AnswersTable& table, const Group& group, double alpha,
   return result;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

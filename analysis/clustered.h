@@ -14,7 +14,7 @@
 #include "analysis/estimate.h"
 #include "analysis/gsl_support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// The answers of one participant to the demonstrations that are pooled.
 struct Cluster {
@@ -81,4 +81,4 @@ struct Pooled {
 Pooled pooled_tests(const AnswersTable& table, const Group& group, double alpha, int resamples,
                     std::uint64_t seed);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

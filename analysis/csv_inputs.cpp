@@ -10,7 +10,7 @@
 #include "analysis/input_error.h"
 #include "analysis/text_checks.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -270,4 +270,4 @@ void read_csv_input(const std::filesystem::path& path, const ReadOptions& option
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

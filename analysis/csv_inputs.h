@@ -3,7 +3,7 @@
 
 #include "analysis/table_builder.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Reads a CSV file into `builder`: a tidy one (columns participant, demonstration, choice;
 /// optional group, side, position, reaction_time_s, kind) or a table of counts (demonstration,
@@ -11,4 +11,4 @@ namespace pinchlab {
 void read_csv_input(const std::filesystem::path& path, const ReadOptions& options,
                     TableBuilder& builder);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

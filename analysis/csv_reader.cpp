@@ -8,7 +8,7 @@
 
 #include "analysis/input_error.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 constexpr size_t buffer_size = size_t{1} << 20;
@@ -127,4 +127,4 @@ bool CsvReader::next(std::vector<std::string_view>& fields) {
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -435,4 +435,4 @@ Document make_document(const Report& report, const AnswersTable& table) {
   return Writer(report, table).write();
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 struct Heading {
   std::string text;
@@ -53,4 +53,4 @@ std::string p_text(const Estimate& p);
 /// "83.3 %".
 std::string percent(double share);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -10,7 +10,7 @@
 
 #include "analysis/clustered.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -207,4 +207,4 @@ ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) 
   return value;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -10,7 +10,7 @@
 #include "analysis/estimate.h"
 #include "analysis/tests_2afc.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Was one side of the screen preferred, whatever it showed?
 struct SideBias {
@@ -70,4 +70,4 @@ struct ScaleValue {
 /// `interval` is an interval of the share that is carried over to the JOD.
 ScaleValue scale_value(double share, const Estimate& low, const Estimate& high);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// A number, or the reason why there is none. Never a NaN, never an infinity.
 struct Estimate {
@@ -22,4 +22,4 @@ struct Estimate {
   explicit operator bool() const { return why_not.empty(); }
 };
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

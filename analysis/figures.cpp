@@ -8,7 +8,7 @@
 #include "analysis/document.h"
 #include "analysis/gnuplot.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::vector<Figure> make_figures(const Report& report) {
   return figures;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

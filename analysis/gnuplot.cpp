@@ -13,7 +13,7 @@
 #include <iterator>
 #include <stdexcept>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 std::string gnuplot_quote(const std::string& text) {
   // In single quotes only the quote itself is special; backquotes go too, lest a script that is
@@ -71,4 +71,4 @@ void run_gnuplot(const std::filesystem::path& folder, const std::string& script_
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// `text` as a gnuplot string that nothing is expanded in.
 std::string gnuplot_quote(const std::string& text);
@@ -18,4 +18,4 @@ std::string gnuplot_script(const std::string& name, int width_px, int height_px,
 /// fails, or with the cure if it is not installed.
 void run_gnuplot(const std::filesystem::path& folder, const std::string& script_name);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -12,7 +12,7 @@
 #include "analysis/input_error.h"
 #include "analysis/text_checks.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -146,4 +146,4 @@ std::vector<Exclusion> read_exclusions(const std::filesystem::path& path) {
   return exclusions;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/answers_table.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Sets `table.groups` and `table.groups_from`: from `groups_file` (CSV `demonstration,group`) if
 /// it is not empty, otherwise from the inputs' own `group` column, otherwise from the project's
@@ -16,4 +16,4 @@ void assign_groups(AnswersTable& table, const std::filesystem::path& groups_file
 /// Reads a list of participants to leave out: CSV `participant,reason`, both required.
 std::vector<Exclusion> read_exclusions(const std::filesystem::path& path);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

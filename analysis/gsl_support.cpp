@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -54,4 +54,4 @@ double beta_quantile(double probability, double a, double b) {
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// While this lives, GSL returns its error codes (and values such as 0 on underflow) instead of
 /// aborting the program. GSL keeps the handler in a global: not for several threads at once.
@@ -39,4 +39,4 @@ Rng make_rng(RandomUse use, std::uint64_t seed, std::uint64_t index = 0);
 /// to round-off (GSL stops early for some arguments). probability in (0, 1), a and b positive.
 double beta_quantile(double probability, double a, double b);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

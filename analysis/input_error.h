@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Something in an input of the analysis cannot be. `what()` reads "place: message": the place is a
 /// file with a line ("answers.csv:17") or with a JSON pointer ("p3.json: /trials/0/choice"), the
@@ -15,4 +15,4 @@ class InputError : public std::runtime_error {
       : std::runtime_error(place + ": " + message) {}
 };
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -10,7 +10,7 @@
 #include "analysis/input_error.h"
 #include "analysis/text_checks.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 using nlohmann::json;
 
@@ -218,4 +218,4 @@ void JsonObject::finish() const {
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// Reads and parses one JSON file of at most `limit_bytes`. Syntax errors, doubled keys and numbers
 /// that do not fit throw InputError with the file and, where it is known, line and column.
@@ -54,4 +54,4 @@ class JsonObject {
   std::set<std::string> asked_;
 };
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

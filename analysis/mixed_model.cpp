@@ -17,7 +17,7 @@
 #include "analysis/gsl_support.h"
 #include "analysis/tests_2afc.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -392,4 +392,4 @@ MixedModel fit_mixed_model(const MixedData& data, double alpha) {
   return model;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -12,7 +12,7 @@
 #include "analysis/answers_table.h"
 #include "analysis/estimate.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// The answers of one participant to one demonstration.
 struct Cell {
@@ -57,4 +57,4 @@ struct MixedModel {
 /// Fits the model, or gives the reason why it cannot be estimated.
 MixedModel fit_mixed_model(const MixedData& data, double alpha);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

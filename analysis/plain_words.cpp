@@ -4,7 +4,7 @@
 
 #include "analysis/document.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -133,4 +133,4 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
   return text;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

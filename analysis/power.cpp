@@ -10,7 +10,7 @@
 #include "analysis/gsl_support.h"
 #include "analysis/input_error.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::string power_text(const PowerQuestion& question, const PowerAnswer& answer)
   return text;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// The two-sided exact binomial test of one half with `answers` answers: it rejects from `critical`
 /// choices of one method on.
@@ -39,4 +39,4 @@ PowerAnswer participants_needed(const PowerQuestion& question);
 /// The answer in words, as `pinchlab power` prints it.
 std::string power_text(const PowerQuestion& question, const PowerAnswer& answer);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -14,7 +14,7 @@
 #include "analysis/mixed_model.h"
 #include "analysis/tests_2afc.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 struct AnalysisOptions {
   double alpha = 0.05;   ///< in (0, 1)
@@ -94,4 +94,4 @@ std::string plain_words(const Report& report, const AnswersTable& table);
 std::vector<std::string> write_report(const Report& report, const AnswersTable& table,
                                       const std::filesystem::path& folder, bool with_figures);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -5,7 +5,7 @@
 
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -187,4 +187,4 @@ std::vector<CsvTable> report_csv(const Report& report, const AnswersTable& table
   return tables;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -3,7 +3,7 @@
 
 #include "analysis/document.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::string report_html(const Report& report, const AnswersTable& table,
   return printer.text;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -4,7 +4,7 @@
 
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -217,4 +217,4 @@ std::string report_json(const Report& report, const AnswersTable& table) {
   return document.dump(2) + "\n";
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

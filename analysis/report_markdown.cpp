@@ -3,7 +3,7 @@
 
 #include "analysis/document.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::string report_markdown(const Report& report, const AnswersTable& table,
   return printer.text;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -5,7 +5,7 @@
 
 #include "analysis/tests_2afc.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 std::vector<Cluster> simulate_study(const SizeCondition& condition, gsl_rng* rng) {
   std::vector<Cluster> clusters;
@@ -50,4 +50,4 @@ std::array<double, 6> false_positive_rates(const SizeCondition& condition, int s
   return rates;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

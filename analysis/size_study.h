@@ -9,7 +9,7 @@
 
 #include "analysis/clustered.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// A design and how alike the answers of one participant are.
 struct SizeCondition {
@@ -37,4 +37,4 @@ std::array<double, 6> pooled_p_values(const std::vector<Cluster>& clusters, int 
 std::array<double, 6> false_positive_rates(const SizeCondition& condition, int studies,
                                            double alpha, int resamples, std::uint64_t seed);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

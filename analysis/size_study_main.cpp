@@ -14,7 +14,7 @@
 #include "analysis/gnuplot.h"
 #include "analysis/size_study.h"
 
-using namespace pinchlab;
+using namespace pinchlab::analysis;
 namespace fs = std::filesystem;
 
 namespace {

@@ -11,7 +11,7 @@
 #include "analysis/input_error.h"
 #include "analysis/text_checks.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -300,4 +300,4 @@ AnswersTable TableBuilder::finish() {
   return std::move(table_);
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -7,7 +7,7 @@
 
 #include "analysis/answers_table.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 /// What one row or trial says, still in words.
 struct RawAnswer {
@@ -81,4 +81,4 @@ class TableBuilder {
   std::uint32_t next_line_ = 0;
 };
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -11,7 +11,7 @@
 
 #include "analysis/gsl_support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 double chi_square_half(const Counts& counts) {
   const auto difference = static_cast<double>(counts.pinch - counts.cable);
@@ -147,4 +147,4 @@ void adjust_family(std::span<Row*> rows) {
   }
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -9,7 +9,7 @@
 #include "analysis/answers_table.h"
 #include "analysis/estimate.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 struct Interval {
   double low = 0.0;
@@ -75,4 +75,4 @@ Row make_row(const std::string& name, const Counts& counts, double alpha);
 /// Adjusts the chi-square p-values of rows that are tested together.
 void adjust_family(std::span<Row*> rows);
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace {
 
@@ -132,4 +132,4 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a_ended && b_ended ? a < b : a_ended;
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -9,7 +9,7 @@
 #include "analysis/gnuplot.h"
 #include "analysis/report.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 
 namespace fs = std::filesystem;
 
@@ -91,4 +91,4 @@ std::vector<std::string> write_report(const Report& report, const AnswersTable& 
   return staging.publish();
 }
 
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

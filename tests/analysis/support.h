@@ -16,7 +16,7 @@
 #include "analysis/answers_table.h"
 #include "analysis/report.h"
 
-namespace pinchlab::test {
+namespace pinchlab::analysis::test {
 
 namespace fs = std::filesystem;
 
@@ -136,4 +136,4 @@ inline nlohmann::json answer_document(const std::string& participant = "p-1") {
   return document;
 }
 
-}  // namespace pinchlab::test
+}  // namespace pinchlab::analysis::test

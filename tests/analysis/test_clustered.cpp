@@ -7,7 +7,7 @@
 #include "analysis/size_study.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 TEST(ClusteredDataSet, MeetsTheReferences) {
@@ -165,4 +165,4 @@ TEST(CochranQ, NullWhereNobodyDiffers) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

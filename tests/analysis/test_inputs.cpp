@@ -6,7 +6,7 @@
 #include "analysis/text_checks.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 using nlohmann::json;
@@ -546,4 +546,4 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

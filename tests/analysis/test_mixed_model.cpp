@@ -7,7 +7,7 @@
 #include "analysis/mixed_model.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 double minus_two_log_likelihood(double answers, double pinch, double eta) {
@@ -138,4 +138,4 @@ TEST(MixedModel, SaysWhyItCannotBeEstimated) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

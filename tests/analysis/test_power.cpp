@@ -9,7 +9,7 @@
 #include "analysis/tests_2afc.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 double binomial(std::int64_t n, std::int64_t k, double p) {
@@ -98,4 +98,4 @@ TEST(Power, RefusesQuestionsWithoutAnAnswer) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -10,7 +10,7 @@
 #include "analysis/gsl_support.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST(AgreementWithR, MixedModelOfLme4) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

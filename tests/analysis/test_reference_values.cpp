@@ -5,7 +5,7 @@
 #include "analysis/tests_2afc.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 // Six significant digits of a reference that is itself printed with six.
@@ -37,6 +37,10 @@ TEST_P(ReferenceValues, AreMetToSixDigits) {
   expect_decimals(row.cohens_h, r.h);
 }
 
+std::string name_of(const testing::TestParamInfo<Reference>& info) {
+  return fmt::format("Pinch{}Cable{}", info.param.counts.pinch, info.param.counts.cable);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     R, ReferenceValues,
     testing::Values(
@@ -57,7 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
                   .894726,
                   0.729728},
         Reference{
-            {96, 32}, 32, 1.54173e-8, 1.28418e-8, .665786, .822291, .668444, .816987, 0.523599}));
+            {96, 32}, 32, 1.54173e-8, 1.28418e-8, .665786, .822291, .668444, .816987, 0.523599}),
+    name_of);
 
 TEST(Multiplicity, HolmAndBenjaminiHochbergOfTheThesis) {
   std::vector<double> p;
@@ -150,4 +155,4 @@ TEST(Row, IntervalsHoldTheShareAndStayInTheUnitInterval) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

@@ -8,7 +8,7 @@
 #include "analysis/input_error.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 using nlohmann::json;
@@ -316,4 +316,4 @@ TEST(WriteReport, RefusesAFileAsItsFolder) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis

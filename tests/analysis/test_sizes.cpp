@@ -5,7 +5,7 @@
 #include "analysis/size_study.h"
 #include "tests/analysis/support.h"
 
-namespace pinchlab {
+namespace pinchlab::analysis {
 namespace {
 
 constexpr int studies = 10000;
@@ -36,9 +36,15 @@ TEST_P(PooledTestSize, CorrectedTestsHoldItAndTheNaiveOneDoesNot) {
   }
 }
 
+std::string name_of(const testing::TestParamInfo<SizeCondition>& info) {
+  return fmt::format("Participants{}IccPercent{}", info.param.participants,
+                     std::lround(100.0 * info.param.icc));
+}
+
 INSTANTIATE_TEST_SUITE_P(Designs, PooledTestSize,
                          testing::Values(SizeCondition{16, 8, 0.0}, SizeCondition{16, 8, 0.3},
-                                         SizeCondition{64, 8, 0.1}));
+                                         SizeCondition{64, 8, 0.1}),
+                         name_of);
 
 TEST(SimulateStudy, HasTheCorrelationAskedFor) {
   const Rng rng = make_rng(RandomUse::study, 2);
@@ -47,4 +53,4 @@ TEST(SimulateStudy, HasTheCorrelationAskedFor) {
 }
 
 }  // namespace
-}  // namespace pinchlab
+}  // namespace pinchlab::analysis
