@@ -23,6 +23,7 @@
 #include "demos/version.h"
 #include "render/bench.h"
 #include "render/canvas.h"
+#include "study/commands.h"
 
 namespace pinchlab {
 namespace {
@@ -381,6 +382,33 @@ void add_power(CLI::App& app) {
   });
 }
 
+void add_study(CLI::App& app) {
+  study::Stimuli stimuli;
+  stimuli.demonstrations = [] {
+    std::vector<std::string> names;
+    if (std::filesystem::is_directory("demos")) {
+      for (const std::filesystem::path& scene : find_scenes({"demos"})) {
+        names.push_back(scene.stem().string());
+      }
+    }
+    return names;
+  };
+  stimuli.render = [](const std::vector<std::string>& names, const std::filesystem::path& folder,
+                      study::Encoding encoding) {
+    BatchOptions options;
+    for (const std::string& name : names) {
+      options.scenes.push_back(demos_folder() / (name + ".json"));
+    }
+    options.out = folder;
+    options.codec = encoding == study::Encoding::mp4 ? Codec::h264 : Codec::vp9;
+    options.side_by_side = true;
+    if (render_batch(options) > 0) {
+      throw std::runtime_error(folder.string() + ": clips are missing; the study cannot begin");
+    }
+  };
+  study::add_commands(app, stimuli);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Pinchlab: cables that run over and between bodies in 2D. Paired videos of their "
@@ -400,6 +428,7 @@ int run(int argc, char** argv) {
   add_bench(app);
   add_analyse(app);
   add_power(app);
+  add_study(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& error) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/answers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "analysis/answer_file.h"
+#include "analysis/json_object.h"
+#include "study/durable_file.h"
+#include "study/secrets.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::size_t largest_file = 16U << 20U;  // bytes
+
+ordered_json plan_entry(const PlanOptions& options) {
+  return {{"demonstrations", options.demonstrations},
+          {"answers_per_demonstration", answers_per_demonstration(options)},
+          {"both_orders", options.both_orders},
+          {"training_trials", options.training.size()},
+          {"attention_checks", options.attention_checks.size()}};
+}
+
+const Clip& clip_of(const PlannedTrial& trial, Encoding encoding, const Clips& clips) {
+  const PairFiles& files = clips.at(trial.demonstration);
+  return (encoding == Encoding::mp4 ? files.mp4 : files.webm.value()).at(trial.pinch);
+}
+
+// In a check the right answer and the wrong one are no methods.
+std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
+  if (trial.kind == TrialKind::attention) {
+    return {"check", "check"};
+  }
+  return trial.pinch == Side::left ? std::pair{"pinch", "baseline"}
+                                   : std::pair{"baseline", "pinch"};
+}
+
+ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
+                         const AnsweredTrial& answered, const Clips& clips) {
+  const TrialAnswer& answer = answered.answer;
+  const auto [left, right] = sides(trial);
+  ordered_json entry = {{"position", position},
+                        {"kind", to_string(trial.kind)},
+                        {"demonstration", trial.demonstration},
+                        {"left", left},
+                        {"right", right},
+                        {"choice", to_string(answer.choice)}};
+  if (trial.kind == TrialKind::attention) {
+    entry["expected"] = to_string(trial.pinch);
+  }
+  entry["reaction_time_s"] = answer.reaction_time_s;
+  entry["loops_watched"] = answer.loops_watched;
+  entry["focus_lost_count"] = answer.focus_lost_count;
+  entry["dropped_frames"] = answer.dropped_frames;
+  entry["playback_errors"] = answer.playback_errors;
+  entry["clip"] = clip_of(trial, answer.encoding, clips).name();
+  entry["shown_utc"] = answered.shown_utc;
+  entry["input"] = answer.input;
+  entry["window_width_px"] = answer.window_width_px;
+  entry["window_height_px"] = answer.window_height_px;
+  entry["clip_width_px"] = answer.clip_width_px;
+  entry["clip_height_px"] = answer.clip_height_px;
+  entry["screen_width_px"] = answer.screen_width_px;
+  entry["screen_height_px"] = answer.screen_height_px;
+  entry["device_pixel_ratio"] = answer.device_pixel_ratio;
+  return entry;
+}
+
+std::string variant(const PlannedTrial& trial, Encoding encoding) {
+  const char* role = trial.kind == TrialKind::attention ? "check" : "pinch";
+  return fmt::format("{}_{}{}", role, to_string(trial.pinch),
+                     encoding == Encoding::mp4 ? "" : "_webm");
+}
+
+void check(const std::string& bytes, const fs::path& path) {
+  analysis::parse_answer_file(nlohmann::json::parse(bytes), path.string());
+}
+
+}  // namespace
+
+ordered_json answer_file(const Session& session, const PlanOptions& options, const Clips& clips,
+                         const std::map<std::string, std::string>& free_text,
+                         const std::string& saved_utc, const std::string& code_hash) {
+  if (!is_finished(session)) {
+    throw Refused(409, "there are trials left to answer");
+  }
+  ordered_json hashes = ordered_json::object();
+  ordered_json trials = ordered_json::array();
+  for (std::size_t i = 0; i < session.plan.size(); ++i) {
+    const PlannedTrial& trial = session.plan[i];
+    const Encoding encoding = session.answers[i].answer.encoding;
+    hashes[trial.demonstration][variant(trial, encoding)] =
+        clip_of(trial, encoding, clips).sha256();
+    trials.push_back(trial_entry(trial, i + 1, session.answers[i], clips));
+  }
+  return {{"format", "pinchlab-answers"},
+          {"version", 1},
+          {"participant", session.id},
+          {"participant_number", session.number},
+          {"seed", session.seed},
+          {"plan", plan_entry(options)},
+          {"started_utc", session.started_utc},
+          {"saved_utc", std::max(saved_utc, session.started_utc)},
+          {"software_version", PINCHLAB_VERSION},
+          {"language", session.language},
+          {"user_agent", session.user_agent},
+          {"resumed_count", session.resumed_count},
+          {"withdrawal_code_sha256", code_hash},
+          {"clips_sha256", hashes},
+          {"trials", trials},
+          {"free_text", free_text}};
+}
+
+fs::path answer_path(const fs::path& folder, const std::string& id) {
+  return folder / (id + ".json");
+}
+
+void save_answers(const fs::path& path, const ordered_json& file) {
+  const std::string bytes = file.dump(2) + "\n";
+  check(bytes, path);
+  try {
+    write_durably(path, bytes);
+    check(read_whole(path), path);
+  } catch (const std::exception&) {
+    // Who is told that nothing is saved may leave, and then nothing may be there.
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    throw;
+  }
+}
+
+std::vector<fs::path> answer_files(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    const std::string name = path.filename().string();
+    if (entry.is_regular_file() && path.extension() == ".json" && !name.starts_with(".") &&
+        name != "dataset_description.json") {
+      files.push_back(path);
+    }
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string withdraw(const fs::path& folder, const std::string& code) {
+  const std::string hash = withdrawal_hash(code);
+  if (hash.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "`{}` is no withdrawal code; it looks like 7K3M-9Q2X-0BVA", code.substr(0, 60)));
+  }
+  for (const fs::path& path : answer_files(folder)) {
+    const nlohmann::json file = analysis::read_json_file(path, largest_file);
+    if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
+      remove_durably(path);
+      return path.stem().string();
+    }
+  }
+  return "";
+}
+
+}  // namespace pinchlab::study

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The answers as they are kept: one whole file a participant (analysis/answers.schema.json).
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "study/clips.h"
+#include "study/plan.h"
+#include "study/session.h"
+
+namespace pinchlab::study {
+
+/// The answer file of a finished session. `code_hash` is withdrawal_hash() of the participant's
+/// code.
+nlohmann::ordered_json answer_file(const Session& session, const PlanOptions& options,
+                                   const Clips& clips,
+                                   const std::map<std::string, std::string>& free_text,
+                                   const std::string& saved_utc, const std::string& code_hash);
+
+/// Where the answers of a participant are.
+std::filesystem::path answer_path(const std::filesystem::path& folder, const std::string& id);
+
+/// Checks that the statistics will read the file, writes it durably, reads it back and checks
+/// again. When it returns, the answers are safe. Throws std::runtime_error; then there is no file.
+void save_answers(const std::filesystem::path& path, const nlohmann::ordered_json& file);
+
+/// The answer files of a folder, in order of their names. Partial files are none.
+std::vector<std::filesystem::path> answer_files(const std::filesystem::path& folder);
+
+/// Removes the answers that belong to a code and returns the participant's id; empty if there are
+/// none. Throws std::invalid_argument if it cannot be a code.
+std::string withdraw(const std::filesystem::path& folder, const std::string& code);
+
+}  // namespace pinchlab::study

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/clips.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include "analysis/json_object.h"
+#include "analysis/text_checks.h"
+#include "study/durable_file.h"
+#include "study/secrets.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t largest_manifest = 16U << 20U;  // bytes
+constexpr std::uint64_t size_step = 1U << 16U;        // bytes; served sizes are multiples
+
+// The manifest's clips: file name to SHA-256.
+std::map<std::string, std::string> read_hashes(const fs::path& folder) {
+  const fs::path path = folder / "manifest.json";
+  std::map<std::string, std::string> hashes;
+  if (!fs::exists(path)) {
+    return hashes;
+  }
+  const json manifest = analysis::read_json_file(path, largest_manifest);
+  const bool is_ours = manifest.is_object() &&
+                       manifest.value("format", json()) == "pinchlab clips 1" &&
+                       manifest.value("clips", json()).is_array();
+  if (!is_ours) {
+    throw std::runtime_error(
+        fmt::format("{}: is not a manifest of this program; render the clips anew", path.string()));
+  }
+  for (const json& entry : manifest["clips"]) {
+    const bool is_entry = entry.is_object() && entry.value("file", json()).is_string() &&
+                          entry.value("sha256", json()).is_string();
+    if (!is_entry) {
+      throw std::runtime_error(
+          fmt::format("{}: a clip without file or sha256; render the clips anew", path.string()));
+    }
+    hashes[entry["file"]] = entry["sha256"];
+  }
+  return hashes;
+}
+
+std::string file_name(const std::string& demonstration, Side pinch, Encoding encoding) {
+  return fmt::format("{}.left-{}.{}", demonstration, pinch == Side::left ? "pinch" : "baseline",
+                     to_string(encoding));
+}
+
+// What tells a player to skip the padding: an MP4 box of type "free" (ISO/IEC 14496-12, 8.1.2), or
+// a Void element (RFC 8794, 11.3.2), both with a length of 8 bytes.
+std::string padding_head(Encoding encoding, std::uint64_t size) {
+  std::string head =
+      encoding == Encoding::mp4 ? std::string("\0\0\0\1free", 8) : std::string("\xEC", 1);
+  // An MP4 box counts its head, an EBML element does not and marks the length's own length.
+  const std::uint64_t length =
+      encoding == Encoding::mp4 ? size : (size - 9) | (std::uint64_t{1} << 56U);
+  for (unsigned shift = 64; shift > 0; shift -= 8) {
+    head += static_cast<char>((length >> (shift - 8)) & 0xFFU);
+  }
+  return head;
+}
+
+std::unique_ptr<Clip> open_checked(const fs::path& folder, const std::string& name,
+                                   Encoding encoding,
+                                   const std::map<std::string, std::string>& hashes) {
+  auto clip = std::make_unique<Clip>(folder / name, encoding);
+  const auto known = hashes.find(name);
+  if (known != hashes.end() && known->second != clip->sha256()) {
+    throw std::runtime_error(
+        fmt::format("{}: is not the clip that manifest.json lists (another SHA-256); remove it to "
+                    "have it rendered anew",
+                    (folder / name).string()));
+  }
+  return clip;
+}
+
+ClipPair padded(ClipPair pair) {
+  constexpr std::uint64_t head = 16;  // bytes, at most
+  const std::uint64_t larger = std::max(pair.left->file_size(), pair.right->file_size());
+  const std::uint64_t size = (larger + head + size_step - 1) / size_step * size_step;
+  pair.left->pad_to(size);
+  pair.right->pad_to(size);
+  return pair;
+}
+
+ClipPair open_pair(const fs::path& folder, const std::string& left, const std::string& right,
+                   Encoding encoding, const std::map<std::string, std::string>& hashes) {
+  return padded({open_checked(folder, left, encoding, hashes),
+                 open_checked(folder, right, encoding, hashes)});
+}
+
+PairFiles open_demonstration(const fs::path& folder, const std::string& name,
+                             const std::map<std::string, std::string>& hashes) {
+  const auto open = [&](Encoding encoding) {
+    return open_pair(folder, file_name(name, Side::left, encoding),
+                     file_name(name, Side::right, encoding), encoding, hashes);
+  };
+  PairFiles files{open(Encoding::mp4), std::nullopt};
+  if (hashes.contains(file_name(name, Side::left, Encoding::webm)) &&
+      hashes.contains(file_name(name, Side::right, Encoding::webm))) {
+    files.webm = open(Encoding::webm);
+  }
+  return files;
+}
+
+}  // namespace
+
+const char* to_string(Encoding encoding) {
+  return encoding == Encoding::mp4 ? "mp4" : "webm";
+}
+
+Clip::Clip(const fs::path& path, Encoding encoding)
+    : name_(path.filename().string()), encoding_(encoding) {
+  sha256_ = study::sha256(read_whole(path));
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  struct stat status = {};
+  if (file_ < 0 || ::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
+  }
+  file_size_ = served_size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+Clip::~Clip() {
+  if (file_ >= 0) {
+    ::close(file_);
+  }
+}
+
+void Clip::pad_to(std::uint64_t served_size) {
+  served_size_ = served_size;
+  padding_head_ = padding_head(encoding_, served_size - file_size_);
+}
+
+std::string Clip::read(std::uint64_t offset, std::size_t length) const {
+  std::string bytes;
+  while (bytes.size() < length && offset + bytes.size() < file_size_) {
+    const std::uint64_t at = offset + bytes.size();
+    std::string part(std::min<std::uint64_t>(length - bytes.size(), file_size_ - at), '\0');
+    const ssize_t got = ::pread(file_, part.data(), part.size(), static_cast<off_t>(at));
+    if (got == 0 || (got < 0 && errno != EINTR)) {
+      throw std::runtime_error(name_ + ": cannot be read any more");
+    }
+    bytes.append(part, 0, got > 0 ? static_cast<std::size_t>(got) : 0);
+  }
+  while (bytes.size() < length && offset + bytes.size() < served_size_) {
+    const std::uint64_t in_padding = offset + bytes.size() - file_size_;
+    if (in_padding < padding_head_.size()) {
+      bytes += padding_head_[in_padding];
+    } else {
+      const std::uint64_t rest = served_size_ - offset - bytes.size();
+      bytes.append(std::min<std::uint64_t>(length - bytes.size(), rest), '\0');
+    }
+  }
+  return bytes;
+}
+
+std::vector<std::string> paired_demonstrations(const fs::path& folder, Encoding encoding) {
+  const std::map<std::string, std::string> hashes = read_hashes(folder);
+  const std::string ending = fmt::format(".left-pinch.{}", to_string(encoding));
+  std::vector<std::string> names;
+  for (const auto& [file, sha] : hashes) {
+    const std::string name =
+        file.ends_with(ending) ? file.substr(0, file.size() - ending.size()) : "";
+    if (name.empty()) {
+      continue;
+    }
+    const std::string other = file_name(name, Side::right, encoding);
+    if (hashes.contains(other) && fs::exists(folder / file) && fs::exists(folder / other)) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+Clips open_clips(const fs::path& folder, const Config& config) {
+  const std::map<std::string, std::string> hashes = read_hashes(folder);
+  const std::vector<std::string> known = paired_demonstrations(folder, Encoding::mp4);
+  Clips clips;
+  for (const auto* names : {&config.demonstrations, &config.training}) {
+    for (const std::string& name : *names) {
+      if (std::ranges::find(known, name) == known.end()) {
+        throw std::runtime_error(
+            fmt::format("{}: has no side-by-side clips of `{}`{}; pinchlab render --side-by-side "
+                        "makes them",
+                        folder.string(), name, analysis::did_you_mean(name, known)));
+      }
+      if (!clips.contains(name)) {
+        clips.emplace(name, open_demonstration(folder, name, hashes));
+      }
+    }
+  }
+  for (const AttentionCheck& check : config.attention_checks) {
+    if (clips.contains(check.name)) {
+      throw std::runtime_error(fmt::format(
+          "attention check `{}` has the name of a demonstration; give it another", check.name));
+    }
+    clips.emplace(
+        check.name,
+        PairFiles{open_pair(folder, check.left, check.right, Encoding::mp4, hashes), std::nullopt});
+  }
+  return clips;
+}
+
+}  // namespace pinchlab::study

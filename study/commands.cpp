@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/commands.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "study/answers.h"
+#include "study/config.h"
+#include "study/desk.h"
+#include "study/durable_file.h"
+#include "study/page_assets.h"
+#include "study/server.h"
+#include "study/tables.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ServeOptions {
+  fs::path clips, answers, config;
+  ServerOptions server{"127.0.0.1", 8080};
+  int participants = 0;
+  std::uint64_t seed = 0;
+  bool has_seed = false, no_webm = false;
+};
+
+Config read_or_default(const fs::path& path) {
+  return path.empty() ? default_config() : read_config(path);
+}
+
+// The demonstrations of a configuration that names none.
+std::vector<std::string> all_demonstrations(const Stimuli& stimuli, const fs::path& clips) {
+  std::vector<std::string> names = stimuli.demonstrations();
+  return names.empty() ? paired_demonstrations(clips, Encoding::mp4) : names;
+}
+
+void render_missing(const Stimuli& stimuli, const ServeOptions& options, const Config& config) {
+  std::vector<Encoding> encodings = {Encoding::mp4};
+  if (!options.no_webm) {
+    encodings.push_back(Encoding::webm);
+  }
+  const std::vector<std::string> known = stimuli.demonstrations();
+  for (const Encoding encoding : encodings) {
+    const std::vector<std::string> present = paired_demonstrations(options.clips, encoding);
+    std::vector<std::string> missing;
+    for (const auto* names : {&config.demonstrations, &config.training}) {
+      for (const std::string& name : *names) {
+        const bool is_missing = std::ranges::find(present, name) == present.end() &&
+                                std::ranges::find(missing, name) == missing.end();
+        // What cannot be made here is told by open_clips; WebM is only offered where it is.
+        if (is_missing && std::ranges::find(known, name) != known.end()) {
+          missing.push_back(name);
+        }
+      }
+    }
+    if (!missing.empty()) {
+      fmt::print(stderr, "Rendering the side-by-side clips that are missing ({}): {}\n",
+                 to_string(encoding), fmt::join(missing, ", "));
+      stimuli.render(missing, options.clips, encoding);
+    }
+  }
+}
+
+// Ctrl-C ends the server; everything that was confirmed is on the disk already.
+class StopOnSignal {
+ public:
+  explicit StopOnSignal(Server& server) {
+    sigemptyset(&signals_);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+      sigaddset(&signals_, signal);
+    }
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // in every thread that is begun from here on
+    waiter_ = std::thread([this, &server] {
+      int signal = 0;
+      sigwait(&signals_, &signal);
+      server.stop();
+    });
+  }
+  ~StopOnSignal() {
+    ::pthread_kill(waiter_.native_handle(), SIGTERM);
+    waiter_.join();
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+ private:
+  sigset_t signals_{};
+  std::thread waiter_;
+};
+
+void tell(const std::string& line) {
+  fmt::print("{} {}\n", utc_now().substr(11, 8), line);
+  std::fflush(stdout);
+}
+
+void serve(const ServeOptions& options, const Stimuli& stimuli) {
+  if (!has_page()) {
+    throw std::runtime_error(
+        "this program was built without the page, because npm had not installed jsPsych; run: npm "
+        "ci --prefix study/page, then build again");
+  }
+  DeskOptions desk_options;
+  desk_options.config = read_or_default(options.config);
+  Config& config = desk_options.config;
+  if (options.participants > 0) {
+    config.participant_limit = options.participants;
+  }
+  if (config.one_time_links && config.participant_limit == 0) {
+    throw std::invalid_argument(
+        "one-time links need to know for how many: give --participants, or participant_limit in "
+        "the "
+        "configuration");
+  }
+  if (config.demonstrations.empty()) {
+    config.demonstrations = all_demonstrations(stimuli, options.clips);
+  }
+  if (config.demonstrations.empty()) {
+    throw std::runtime_error(fmt::format(
+        "{}: has no side-by-side clips, and there is no folder demos here to render them from; go "
+        "to the project's folder, or run pinchlab render --side-by-side",
+        options.clips.string()));
+  }
+  render_missing(stimuli, options, config);
+  desk_options.clips = open_clips(options.clips, config);
+  desk_options.answers = options.answers;
+  if (options.has_seed) {
+    desk_options.seed = options.seed;
+  }
+  desk_options.tell = tell;
+
+  Desk desk(std::move(desk_options));
+  Server server(desk, options.server);
+  const StopOnSignal stop(server);
+  fmt::print("Participants open  {}/\nYou can watch at   {}/researcher#{}\n", server.address(),
+             server.address(), server.researcher_token());
+  fmt::print("Seed {}; {} trials; answers go to {}; Ctrl-C ends\n", desk.seed(),
+             make_plan(desk.seed(), 0, plan_options(desk.config())).size(),
+             options.answers.string());
+  for (const std::string& link : desk.links()) {
+    fmt::print("One-time link      {}/?link={}\n", server.address(), link);
+  }
+  const std::size_t running = desk.overview().running.size();
+  if (running > 0) {
+    fmt::print("{} running before the last stop can go on\n", running);
+  }
+  std::fflush(stdout);
+  server.run();
+  const Overview end = desk.overview();
+  fmt::print("Stopped: {} finished, {} running can go on at the next start\n", end.finished,
+             end.running.size());
+}
+
+void add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+  command.add_option("--seed", seed, help)
+      ->type_name("S")
+      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+}
+
+void add_config(CLI::App& command, fs::path& config) {
+  command
+      .add_option("--config", config, "What to show and say; study/README.md has the keys [all]")
+      ->type_name("study.json");
+}
+
+void add_serve(CLI::App& study, const Stimuli& stimuli) {
+  auto options = std::make_shared<ServeOptions>();
+  CLI::App* command = study.add_subcommand("serve", "Run the study for participants' browsers");
+  command->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--port", options->server.port, "Port to listen on; 0: any that is free")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
+  command
+      ->add_option("--host", options->server.host,
+                   "Address to listen on; 0.0.0.0: all, for participants on other computers")
+      ->type_name("H")
+      ->capture_default_str();
+  command
+      ->add_option("--participants", options->participants,
+                   "Most that may take part [the configuration's, or no limit]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  add_seed(*command, options->seed, "Seed of the plan [the answers folder's, or a random one]");
+  add_config(*command, options->config);
+  command->add_flag("--no-webm", options->no_webm,
+                    "Do not render a second encoding for browsers without H.264");
+  command->footer(
+      "Prints the address to open, and who starts, finishes and leaves. Stop it and start it again "
+      "as you\nlike: participants go on where they were.\n\n"
+      "Examples:\n"
+      "  pinchlab study serve --clips clips --answers answers\n"
+      "  pinchlab study serve --clips clips --answers answers --participants 16 --seed 7 --config "
+      "study.json\n"
+      "  pinchlab analyse answers --out report      afterwards");
+  command->callback([options, command, stimuli] {
+    options->has_seed = command->count("--seed") > 0;
+    serve(*options, stimuli);
+  });
+}
+
+// "-" is standard output.
+void write_text(const fs::path& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}", text);
+  } else {
+    write_durably(path, text);
+  }
+}
+
+void add_plan(CLI::App& study, const Stimuli& stimuli) {
+  struct Options {
+    std::uint64_t participants = 0, seed = 0;
+    fs::path config, json, csv;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      study.add_subcommand("plan", "Who will see what, in which order and on which side");
+  command->add_option("--participants", options->participants, "For how many")
+      ->type_name("N")
+      ->required()
+      ->check(CLI::Range(1, 100000));
+  add_seed(*command, options->seed, "Seed of the plan");
+  command->get_option("--seed")->required();
+  add_config(*command, options->config);
+  command->add_option("--csv", options->csv, "File for one row a trial; - is standard output [-]")
+      ->type_name("FILE.csv");
+  command->add_option("--json", options->json, "File for the same as JSON; - is standard output")
+      ->type_name("FILE.json");
+  command->footer(
+      "The plan is the one that `study serve` follows with the same seed and configuration.\n\n"
+      "Examples:\n"
+      "  pinchlab study plan --participants 16 --seed 7\n"
+      "  pinchlab study plan --participants 16 --seed 7 --csv plan.csv --json plan.json");
+  command->callback([options, stimuli] {
+    Config config = read_or_default(options->config);
+    if (config.demonstrations.empty()) {
+      config.demonstrations = stimuli.demonstrations();
+    }
+    if (config.demonstrations.empty()) {
+      throw std::runtime_error(
+          "there is no folder demos here; go to the project's folder, or name the demonstrations "
+          "in "
+          "a configuration");
+    }
+    const PlanOptions plan = plan_options(config);
+    if (!options->json.empty()) {
+      write_text(options->json,
+                 plan_json(options->seed, options->participants, plan).dump(2) + "\n");
+    }
+    if (!options->csv.empty() || options->json.empty()) {
+      write_text(options->csv.empty() ? "-" : options->csv,
+                 plan_csv(options->seed, options->participants, plan));
+    }
+  });
+}
+
+fs::path existing_folder(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw std::runtime_error(folder.string() + ": there is no such folder");
+  }
+  return folder;
+}
+
+void add_export(CLI::App& study) {
+  struct Options {
+    fs::path answers, csv, psych_ds;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = study.add_subcommand("export", "Answers for other programs");
+  command->add_option("--answers", options->answers, "Folder of the answers")
+      ->type_name("DIR")
+      ->required();
+  CLI::Option* csv =
+      command
+          ->add_option("--csv", options->csv, "Tidy table, one row a trial; - is standard output")
+          ->type_name("FILE.csv");
+  CLI::Option* psych_ds =
+      command->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
+          ->type_name("DIR");
+  csv->excludes(psych_ds);
+  command->footer(
+      "Examples:\n"
+      "  pinchlab study export --answers answers --csv answers.csv\n"
+      "  pinchlab study export --answers answers --psych-ds dataset");
+  command->callback([options] {
+    if (options->csv.empty() && options->psych_ds.empty()) {
+      throw CLI::RequiredError("--csv or --psych-ds");
+    }
+    existing_folder(options->answers);
+    if (!options->csv.empty()) {
+      write_text(options->csv, answers_csv(options->answers));
+    }
+    if (!options->psych_ds.empty()) {
+      write_psych_ds(options->answers, options->psych_ds);
+    }
+  });
+}
+
+void add_withdraw(CLI::App& study) {
+  struct Options {
+    fs::path answers;
+    std::string code;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = study.add_subcommand("withdraw", "Remove one participant's answers");
+  command->add_option("--answers", options->answers, "Folder of the answers")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("code", options->code, "What the page showed the participant at the end")
+      ->type_name("CODE")
+      ->required();
+  command->footer("Example:\n  pinchlab study withdraw --answers answers 7K3M-9Q2X-0BVA");
+  command->callback([options] {
+    const std::string participant = withdraw(existing_folder(options->answers), options->code);
+    if (participant.empty()) {
+      throw std::runtime_error(
+          fmt::format("{}: no answers have this code; they were removed already, or it belongs to "
+                      "another study",
+                      options->answers.string()));
+    }
+    fmt::print("The answers of {} are removed\n", participant);
+  });
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, const Stimuli& stimuli) {
+  CLI::App* study =
+      app.add_subcommand("study", "Ask people which clip looks most realistic, in a browser")
+          ->require_subcommand(1);
+  add_serve(*study, stimuli);
+  add_plan(*study, stimuli);
+  add_export(*study);
+  add_withdraw(*study);
+}
+
+}  // namespace pinchlab::study

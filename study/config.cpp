@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/config.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "analysis/input_error.h"
+#include "analysis/json_object.h"
+#include "analysis/text_checks.h"
+#include "study/page_assets.h"
+
+namespace pinchlab::study {
+namespace {
+
+using analysis::InputError;
+using analysis::JsonObject;
+using nlohmann::json;
+
+constexpr std::size_t largest_file = 1U << 20U;  // bytes
+constexpr std::size_t longest_text = 10000;      // bytes
+constexpr std::size_t most_trials = 1000;        // of one participant
+
+// Ahead of everything else, so that a misspelt key is told as such.
+void check_keys(const json& object, const std::string& place,
+                const std::vector<std::string>& known) {
+  if (!object.is_object()) {
+    throw InputError(place, fmt::format("must be an object, not {}", object.type_name()));
+  }
+  for (const auto& item : object.items()) {
+    if (std::ranges::find(known, item.key()) == known.end()) {
+      throw InputError(fmt::format("{}: /{}", place, item.key().substr(0, 64)),
+                       fmt::format("unknown key{}; study/README.md has the keys",
+                                   analysis::did_you_mean(item.key(), known)));
+    }
+  }
+}
+
+std::vector<std::string> read_names(JsonObject& object, const std::string& key) {
+  std::vector<std::string> names;
+  for (const json& entry : object.array(key, most_trials)) {
+    if (!entry.is_string()) {
+      object.fail(key, "must hold names of demonstrations, such as \"03-drop\"");
+    }
+    names.push_back(entry.get<std::string>());
+    const std::string why = analysis::why_not_a_name(names.back());
+    if (!why.empty() || names.back().find('/') != std::string::npos) {
+      object.fail(key, fmt::format("`{}` is no name of a demonstration{}{}",
+                                   names.back().substr(0, 60), why.empty() ? "" : ": ", why));
+    }
+    if (std::count(names.begin(), names.end(), names.back()) > 1) {
+      object.fail(key, fmt::format("`{}` stands twice; to show it more often, use repetitions",
+                                   names.back()));
+    }
+  }
+  return names;
+}
+
+// A file in the folder of the clips, not a way out of it.
+std::string read_clip_name(JsonObject& object, const std::string& key) {
+  std::string name = object.name(key);
+  const std::filesystem::path path = name;
+  if (path != path.filename() || path.extension() != ".mp4") {
+    object.fail(key, fmt::format("`{}` must be the name of an .mp4 file in the clips' folder",
+                                 name.substr(0, 60)));
+  }
+  return name;
+}
+
+std::vector<AttentionCheck> read_checks(JsonObject& object, const std::string& file) {
+  std::vector<AttentionCheck> checks;
+  std::set<std::string> names;
+  const json& entries = object.array("attention_checks", 100);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string pointer = fmt::format("/attention_checks/{}", i);
+    check_keys(entries[i], fmt::format("{}: {}", file, pointer), {"name", "left", "right"});
+    JsonObject entry(entries[i], file, pointer);
+    checks.push_back(
+        {entry.name("name"), read_clip_name(entry, "left"), read_clip_name(entry, "right")});
+    if (!names.insert(checks.back().name).second) {
+      entry.fail("name", fmt::format("`{}` stands twice", checks.back().name));
+    }
+    if (checks.back().left == checks.back().right) {
+      entry.fail("right", "the same file as left; its right answer must be on the other side");
+    }
+  }
+  return checks;
+}
+
+// Texts of a language that is not delivered must be complete: half a translation is worse than
+// none.
+std::map<std::string, std::string> read_texts(const json& document, const std::string& file,
+                                              const std::string& language) {
+  std::map<std::string, std::string> texts = delivered_texts(language);
+  const std::map<std::string, std::string> english = delivered_texts("en");
+  std::vector<std::string> known;
+  for (const auto& [key, text] : english) {
+    known.push_back(key);
+  }
+  if (document.contains("texts")) {
+    check_keys(document["texts"], file + ": /texts", known);
+    JsonObject object(document["texts"], file, "/texts");
+    for (const std::string& key : object.all_keys()) {
+      texts[key] = object.text(key, longest_text);
+      if (texts[key].find_first_not_of(" \n") == std::string::npos) {
+        object.fail(key, "is empty");
+      }
+    }
+  }
+  for (const std::string& key : known) {
+    if (!texts.contains(key)) {
+      throw InputError(file + ": /texts",
+                       fmt::format("no texts are delivered in the language `{}`, so all must be "
+                                   "given; `{}` is missing (English: \"{}\")",
+                                   language, key, english.at(key)));
+    }
+  }
+  return texts;
+}
+
+std::string read_language(JsonObject& object) {
+  std::string language = object.name("language");
+  const auto is_tag = [](char c) {
+    return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '-';
+  };
+  if (language.size() > 35 || !std::ranges::all_of(language, is_tag)) {
+    object.fail("language", "must be a language tag such as en, sv or pt-BR");
+  }
+  return language;
+}
+
+void check_number_of_trials(const Config& config, const std::string& file) {
+  const std::size_t demonstrations = std::max<std::size_t>(1, config.demonstrations.size());
+  const std::size_t trials =
+      demonstrations * static_cast<std::size_t>(answers_per_demonstration(plan_options(config)));
+  if (trials > most_trials) {
+    throw InputError(file, fmt::format("{} trials a participant; at most {} can be asked for",
+                                       trials, most_trials));
+  }
+}
+
+}  // namespace
+
+std::map<std::string, std::string> delivered_texts(const std::string& language) {
+  const PageAsset* asset = find_asset("texts/" + language + ".json");
+  return asset == nullptr ? std::map<std::string, std::string>()
+                          : json::parse(asset->bytes).get<std::map<std::string, std::string>>();
+}
+
+Config default_config() {
+  Config config;
+  config.texts = delivered_texts(config.language);
+  return config;
+}
+
+Config parse_config(const json& document, const std::string& file) {
+  check_keys(document, file,
+             {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
+              "both_orders", "participant_limit", "one_time_links", "texts"});
+  JsonObject object(document, file, "");
+  object.choice("format", {"pinchlab-study 1"});
+  Config config;
+  if (object.has("language")) config.language = read_language(object);
+  if (object.has("demonstrations")) {
+    config.demonstrations = read_names(object, "demonstrations");
+    if (config.demonstrations.empty()) {
+      object.fail("demonstrations", "is empty; leave it out to show all");
+    }
+  }
+  if (object.has("training")) config.training = read_names(object, "training");
+  if (object.has("attention_checks")) config.attention_checks = read_checks(object, file);
+  if (object.has("repetitions")) {
+    config.repetitions = static_cast<int>(object.whole("repetitions", 1, 50));
+  }
+  if (object.has("both_orders")) config.both_orders = object.flag("both_orders");
+  if (object.has("participant_limit")) {
+    config.participant_limit = static_cast<int>(object.whole("participant_limit", 1, 100000));
+  }
+  if (object.has("one_time_links")) config.one_time_links = object.flag("one_time_links");
+  config.texts = read_texts(document, file, config.language);
+  check_number_of_trials(config, file);
+  return config;
+}
+
+Config read_config(const std::filesystem::path& path) {
+  return parse_config(analysis::read_json_file(path, largest_file), path.string());
+}
+
+PlanOptions plan_options(const Config& config) {
+  PlanOptions options;
+  options.demonstrations = config.demonstrations;
+  options.training = config.training;
+  for (const AttentionCheck& check : config.attention_checks) {
+    options.attention_checks.push_back(check.name);
+  }
+  options.repetitions = config.repetitions;
+  options.both_orders = config.both_orders;
+  return options;
+}
+
+}  // namespace pinchlab::study

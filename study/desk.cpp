@@ -1,0 +1,521 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/desk.h"
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <stdexcept>
+
+#include "analysis/input_error.h"
+#include "analysis/json_object.h"
+#include "study/answers.h"
+#include "study/durable_file.h"
+#include "study/secrets.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t largest_file = 16U << 20U;  // bytes
+constexpr std::chrono::hours longest_idle{24};
+
+// What a study is counterbalanced by: participants of two plans must not come into one folder.
+json fingerprint(const Config& config) {
+  const PlanOptions options = plan_options(config);
+  return {{"demonstrations", options.demonstrations},
+          {"training", options.training},
+          {"attention_checks", options.attention_checks},
+          {"repetitions", options.repetitions},
+          {"both_orders", options.both_orders}};
+}
+
+std::chrono::sys_seconds parse_utc(const std::string& text) {
+  const auto number = [&](std::size_t at, std::size_t length) {
+    int value = 0;
+    std::from_chars(text.data() + at, text.data() + at + length, value);
+    return value;
+  };
+  using namespace std::chrono;
+  const year_month_day date{year(number(0, 4)), month(static_cast<unsigned>(number(5, 2))),
+                            day(static_cast<unsigned>(number(8, 2)))};
+  return sys_days(date) + hours(number(11, 2)) + minutes(number(14, 2)) + seconds(number(17, 2));
+}
+
+// "<id>.<secret>"
+std::pair<std::string, std::string> split(const std::string& token) {
+  const std::size_t dot = token.find('.');
+  const auto is_hex = [](const std::string& text, std::size_t length) {
+    return text.size() == length && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  };
+  std::string id = token.substr(0, dot);
+  std::string secret = dot == std::string::npos ? "" : token.substr(dot + 1);
+  if (!is_hex(id, 16) || !is_hex(secret, 32)) {
+    throw Refused(401, "no session");
+  }
+  return {std::move(id), std::move(secret)};
+}
+
+// A header that any bytes may stand in.
+std::string printable(const std::string& text) {
+  std::string clean = text.substr(0, 1000);
+  std::ranges::replace_if(
+      clean, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return clean;
+}
+
+}  // namespace
+
+std::string utc_now() {
+  using namespace std::chrono;
+  const auto now = floor<milliseconds>(system_clock::now());
+  return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(now)),
+                     (now - floor<seconds>(now)).count());
+}
+
+Desk::Desk(DeskOptions options)
+    : options_(std::move(options)), running_folder_(options_.answers / ".running") {
+  if (!options_.utc_now) {
+    options_.utc_now = &utc_now;
+  }
+  if (!options_.tell) {
+    options_.tell = [](const std::string&) {};
+  }
+  fs::create_directories(running_folder_);
+  lock_folder();
+  try {
+    read_study_file();
+    read_finished();
+    read_running();
+  } catch (...) {
+    ::close(lock_);
+    throw;
+  }
+}
+
+Desk::~Desk() {
+  ::close(lock_);
+}
+
+// The lock is on the folder itself and goes with the process.
+void Desk::lock_folder() {
+  lock_ = ::open(running_folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) {
+    throw std::runtime_error(running_folder_.string() + ": is not a folder that can be used");
+  }
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    throw std::runtime_error(
+        fmt::format("{}: another server is using this folder; stop it or use another --answers",
+                    options_.answers.string()));
+  }
+}
+
+void Desk::read_study_file() {
+  const fs::path path = running_folder_ / "study.json";
+  if (!fs::exists(path)) {
+    std::uint64_t random = 0;
+    const std::string digits = random_hex(6);
+    std::from_chars(digits.data(), digits.data() + digits.size(), random, 16);
+    seed_ = options_.seed.value_or(random);
+    link_secret_ = random_hex(32);
+    write_study_file();
+    return;
+  }
+  const json file = analysis::read_json_file(path, largest_file);
+  analysis::JsonObject study(file, path.string(), "");
+  study.choice("format", {"pinchlab-running 1"});
+  seed_ = static_cast<std::uint64_t>(study.whole("seed", 0, static_cast<long>(largest_seed)));
+  link_secret_ = study.text("link_secret", 64);
+  for (const json& number : study.array("used_links", 1000000)) {
+    used_links_.insert(number.get<std::uint64_t>());
+  }
+  if (options_.seed && *options_.seed != seed_) {
+    throw std::runtime_error(
+        fmt::format("{}: the study in this folder has the seed {}, not {}; leave --seed out, or "
+                    "use another --answers",
+                    options_.answers.string(), seed_, *options_.seed));
+  }
+  if (study.need("plan") != fingerprint(options_.config)) {
+    throw std::runtime_error(
+        fmt::format("{}: the study in this folder shows something else; use its configuration, or "
+                    "another --answers",
+                    options_.answers.string()));
+  }
+}
+
+void Desk::write_study_file() const {
+  const json file = {{"format", "pinchlab-running 1"},
+                     {"seed", seed_},
+                     {"link_secret", link_secret_},
+                     {"used_links", used_links_},
+                     {"plan", fingerprint(options_.config)}};
+  write_durably(running_folder_ / "study.json", file.dump(2) + "\n");
+}
+
+void Desk::read_finished() {
+  for (const fs::path& path : answer_files(options_.answers)) {
+    const json file = analysis::read_json_file(path, largest_file);
+    if (!file.is_object() || file.value("format", json()) != "pinchlab-answers") {
+      throw std::runtime_error(
+          fmt::format("{}: is no answer file; keep other files elsewhere", path.string()));
+    }
+    if (file.value("participant_number", json()).is_number_unsigned()) {
+      taken_.insert(file["participant_number"].get<std::uint64_t>());
+    }
+    ++finished_;
+  }
+}
+
+void Desk::read_running() {
+  for (const fs::directory_entry& file : fs::directory_iterator(running_folder_)) {
+    const fs::path& path = file.path();
+    if (path.extension() != ".json" || path.filename() == "study.json") {
+      continue;
+    }
+    auto entry = std::make_shared<Entry>();
+    try {
+      entry->session = session_from_json(analysis::read_json_file(path, largest_file));
+    } catch (const analysis::InputError& error) {
+      throw std::runtime_error(
+          fmt::format("{}: {}; remove the file to go on without this participant", path.string(),
+                      error.what()));
+    }
+    // Killed between saving the answers and forgetting the session.
+    if (fs::exists(answer_path(options_.answers, entry->session.id))) {
+      remove_durably(path);
+      continue;
+    }
+    add(entry);
+  }
+}
+
+void Desk::add(const std::shared_ptr<Entry>& entry) {
+  const Session& session = entry->session;
+  for (std::size_t i = 0; i < session.plan.size(); ++i) {
+    const auto files = options_.clips.find(session.plan[i].demonstration);
+    if (files == options_.clips.end()) {
+      throw std::runtime_error(fmt::format("{}: no clips of `{}`",
+                                           session_path(session.id).string(),
+                                           session.plan[i].demonstration));
+    }
+    media_[session.media[i]] = {&files->second, session.plan[i].pinch};
+  }
+  taken_.insert(session.number);
+  entries_[session.id] = entry;
+}
+
+void Desk::remove(const Entry& entry) {
+  for (const std::string& media : entry.session.media) {
+    media_.erase(media);
+  }
+  entries_.erase(entry.session.id);
+}
+
+// Who has not been seen for a day has left; the number goes to somebody else.
+void Desk::drop_idle() {
+  const auto now = parse_utc(options_.utc_now());
+  std::vector<std::shared_ptr<Entry>> all;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [id, entry] : entries_) {
+      all.push_back(entry);
+    }
+  }
+  for (const auto& entry : all) {
+    const std::scoped_lock entry_lock(entry->mutex);
+    if (entry->is_gone || now - parse_utc(entry->session.last_seen_utc) < longest_idle) {
+      continue;
+    }
+    remove_durably(session_path(entry->session.id));
+    entry->is_gone = true;
+    const std::scoped_lock lock(mutex_);
+    remove(*entry);
+    taken_.erase(entry->session.number);
+    ++left_;
+    options_.tell(fmt::format("{} was not seen for a day and is dropped", entry->session.id));
+  }
+}
+
+std::string Desk::link_of(std::uint64_t number) const {
+  return sha256(fmt::format("link {} {}", link_secret_, number)).substr(0, 32);
+}
+
+std::vector<std::string> Desk::links() const {
+  std::vector<std::string> links;
+  if (options_.config.one_time_links) {
+    for (int i = 0; i < options_.config.participant_limit; ++i) {
+      links.push_back(link_of(static_cast<std::uint64_t>(i)));
+    }
+  }
+  return links;
+}
+
+// The smallest number that nobody has, or the link's. Under mutex_.
+std::uint64_t Desk::number_for(const std::string& link) {
+  const auto limit = static_cast<std::uint64_t>(options_.config.participant_limit);
+  if (options_.config.one_time_links) {
+    for (std::uint64_t number = 0; number < limit; ++number) {
+      if (equal_in_constant_time(link, link_of(number))) {
+        if (taken_.contains(number) || used_links_.contains(number)) {
+          throw Refused(403, "this link was used");
+        }
+        return number;
+      }
+    }
+    throw Refused(403, "this study needs a link");
+  }
+  std::uint64_t number = 0;
+  while (taken_.contains(number)) {
+    ++number;
+  }
+  if (limit > 0 && number >= limit) {
+    throw Refused(409, "the study is full");
+  }
+  return number;
+}
+
+std::string Desk::start(const std::string& link, const std::string& user_agent) {
+  drop_idle();
+  const std::string secret = random_hex(16);
+  auto entry = std::make_shared<Entry>();
+  Session& session = entry->session;
+  session.id = random_hex(8);
+  session.secret_sha256 = sha256(secret);
+  session.seed = seed_;
+  session.language = options_.config.language;
+  session.user_agent = printable(user_agent);
+  session.started_utc = session.last_seen_utc = options_.utc_now();
+  {
+    const std::scoped_lock lock(mutex_);
+    if (entries_.size() >= options_.most_open) {
+      throw Refused(503, "too many participants at a time");
+    }
+    session.number = number_for(link);
+    session.plan = make_plan(seed_, session.number, plan_options(options_.config));
+    for (std::size_t i = 0; i < session.plan.size(); ++i) {
+      session.media.push_back(random_hex(16));
+    }
+    // The number is taken before the disk is waited for, without holding up the others.
+    taken_.insert(session.number);
+  }
+  try {
+    write_durably(session_path(session.id), to_json(session).dump());
+    const std::scoped_lock lock(mutex_);
+    if (options_.config.one_time_links) {
+      used_links_.insert(session.number);
+      write_study_file();
+    }
+    add(entry);
+  } catch (const std::exception& error) {
+    const std::scoped_lock lock(mutex_);
+    taken_.erase(session.number);
+    used_links_.erase(session.number);
+    options_.tell(fmt::format("a participant could not start: {}", error.what()));
+    throw Refused(503, "the disk does not take it");
+  }
+  options_.tell(fmt::format("{} started (number {})", session.id, session.number));
+  return session.id + "." + secret;
+}
+
+std::shared_ptr<Desk::Entry> Desk::find(const std::string& token) {
+  const auto [id, secret] = split(token);
+  std::shared_ptr<Entry> entry;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = entries_.find(id);
+    if (found == entries_.end()) {
+      throw Refused(401, "no session");
+    }
+    entry = found->second;
+  }
+  // The secret's hash never changes, so that it can be read without the entry's lock.
+  if (!equal_in_constant_time(entry->session.secret_sha256, sha256(secret))) {
+    throw Refused(401, "no session");
+  }
+  return entry;
+}
+
+// Applies to a copy, brings that to the disk, and only then counts it as done.
+void Desk::change(const std::string& token, const std::function<void(Session&)>& apply) {
+  const std::shared_ptr<Entry> entry = find(token);
+  const std::scoped_lock lock(entry->mutex);
+  if (entry->is_gone) {
+    throw Refused(401, "no session");
+  }
+  Session next = entry->session;
+  apply(next);
+  next.last_seen_utc = options_.utc_now();
+  try {
+    write_durably(session_path(next.id), to_json(next).dump());
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("{}: not kept: {}", next.id, error.what()));
+    throw Refused(507, "the disk does not take it");
+  }
+  entry->session.answers = std::move(next.answers);
+  entry->session.shown_utc = std::move(next.shown_utc);
+  entry->session.last_seen_utc = std::move(next.last_seen_utc);
+  entry->session.resumed_count = next.resumed_count;
+}
+
+Progress Desk::progress_of(const Session& session) const {
+  Progress progress;
+  for (std::size_t i = 0; i < session.plan.size(); ++i) {
+    const PlannedTrial& trial = session.plan[i];
+    progress.trials.push_back({session.media[i],
+                               options_.clips.at(trial.demonstration).webm.has_value(),
+                               trial.kind == TrialKind::training});
+  }
+  progress.next = session.answers.size();
+  return progress;
+}
+
+Progress Desk::progress(const std::string& token) {
+  const std::shared_ptr<Entry> entry = find(token);
+  const std::scoped_lock lock(entry->mutex);
+  return progress_of(entry->session);
+}
+
+Progress Desk::resume(const std::string& token) {
+  change(token, [](Session& session) { ++session.resumed_count; });
+  options_.tell(fmt::format("{} resumed", split(token).first));
+  return progress(token);
+}
+
+void Desk::show(const std::string& token, std::size_t index) {
+  change(token, [&](Session& session) { study::show(session, index, options_.utc_now()); });
+}
+
+void Desk::answer(const std::string& token, const SentAnswer& sent) {
+  change(token, [&](Session& session) {
+    const PairFiles* files = nullptr;
+    if (sent.index < session.plan.size()) {
+      files = &options_.clips.at(session.plan[sent.index].demonstration);
+    }
+    if (files != nullptr && sent.answer.encoding == Encoding::webm && !files->webm) {
+      throw Refused(422, "request: /encoding: was not offered");
+    }
+    study::answer(session, sent.index, sent.answer);
+  });
+}
+
+void Desk::leave(const std::string& token) {
+  const std::shared_ptr<Entry> entry = find(token);
+  const std::scoped_lock entry_lock(entry->mutex);
+  if (entry->is_gone) {
+    return;
+  }
+  try {
+    remove_durably(session_path(entry->session.id));
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("{}: cannot be removed: {}", entry->session.id, error.what()));
+    throw Refused(507, "the disk does not take it");
+  }
+  entry->is_gone = true;
+  const std::scoped_lock lock(mutex_);
+  remove(*entry);
+  taken_.erase(entry->session.number);
+  ++left_;
+  options_.tell(fmt::format("{} left after {} of {} trials; nothing is kept", entry->session.id,
+                            entry->session.answers.size(), entry->session.plan.size()));
+}
+
+// The code of who has saved already; empty if that is not so.
+std::string Desk::saved_code(const std::string& id, const std::string& secret) const {
+  const fs::path path = answer_path(options_.answers, id);
+  if (!fs::exists(path)) {
+    return "";
+  }
+  const json file = analysis::read_json_file(path, largest_file);
+  const std::string code = withdrawal_code(secret);
+  const json kept = file.is_object() ? file.value("withdrawal_code_sha256", json()) : json();
+  return kept.is_string() && equal_in_constant_time(kept.get<std::string>(), withdrawal_hash(code))
+             ? code
+             : "";
+}
+
+std::string Desk::save(const std::string& token,
+                       const std::map<std::string, std::string>& free_text) {
+  const auto [id, secret] = split(token);
+  std::shared_ptr<Entry> entry;
+  try {
+    entry = find(token);
+  } catch (const Refused&) {
+    const std::string code = saved_code(id, secret);
+    if (code.empty()) {
+      throw;
+    }
+    return code;
+  }
+  const std::scoped_lock entry_lock(entry->mutex);
+  std::string code = withdrawal_code(secret);
+  if (entry->is_gone) {
+    return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
+  }
+  const auto file = answer_file(entry->session, plan_options(options_.config), options_.clips,
+                                free_text, options_.utc_now(), withdrawal_hash(code));
+  try {
+    save_answers(answer_path(options_.answers, id), file);
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("{}: ANSWERS NOT SAVED: {}", id, error.what()));
+    throw Refused(507, "the disk does not take it");
+  }
+  entry->is_gone = true;
+  const std::scoped_lock lock(mutex_);
+  remove(*entry);
+  ++finished_;
+  options_.tell(fmt::format("{} finished; the answers are saved", id));
+  try {
+    remove_durably(session_path(id));
+  } catch (const std::exception&) {
+    options_.tell(fmt::format("{}: is still there, and will go at the next start",
+                              session_path(id).string()));
+  }
+  return code;
+}
+
+const Clip* Desk::clip(const std::string& media, Encoding encoding) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = media_.find(media);
+  if (found == media_.end()) {
+    return nullptr;
+  }
+  const PairFiles& files = *found->second.files;
+  if (encoding == Encoding::mp4) {
+    return &files.mp4.at(found->second.side);
+  }
+  return files.webm ? &files.webm->at(found->second.side) : nullptr;
+}
+
+Overview Desk::overview() {
+  std::vector<std::shared_ptr<Entry>> all;
+  Overview overview;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [id, entry] : entries_) {
+      all.push_back(entry);
+    }
+    overview.finished = finished_;
+    overview.left = left_;
+  }
+  for (const auto& entry : all) {
+    const std::scoped_lock lock(entry->mutex);
+    const Session& session = entry->session;
+    overview.running.push_back({session.id, session.number, session.answers.size(),
+                                session.plan.size(), session.started_utc, session.last_seen_utc});
+  }
+  return overview;
+}
+
+fs::path Desk::session_path(const std::string& id) const {
+  return running_folder_ / (id + ".json");
+}
+
+}  // namespace pinchlab::study

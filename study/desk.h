@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The study that is running: who takes part, and what of it is on the disk. Everything that a
+// participant was told is done is on the disk, so that a restart loses nobody. Safe to use from
+// many threads.
+//
+//   ANSWERS/<participant>.json            answers, analysis/answers.schema.json
+//   ANSWERS/.running/<participant>.json   participants who have not finished
+//   ANSWERS/.running/study.json           seed and configuration
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "study/clips.h"
+#include "study/config.h"
+#include "study/session.h"
+
+namespace pinchlab::study {
+
+struct DeskOptions {
+  Config config;  ///< with its demonstrations named
+  Clips clips;
+  std::filesystem::path answers;      ///< folder, made if missing
+  std::optional<std::uint64_t> seed;  ///< none: the folder's own, or a random one
+  std::size_t most_open = 1000;       ///< participants at a time
+  std::function<std::string()> utc_now;
+  std::function<void(const std::string&)> tell;  ///< who started, finished, left
+};
+
+/// What a page is told of a running session; nothing in it names a method.
+struct Progress {
+  struct Trial {
+    std::string media;  ///< opaque name of the clip
+    bool has_webm = false, is_practice = false;
+  };
+  std::vector<Trial> trials;
+  std::size_t next = 0;  ///< trial to show; trials.size(): all are answered
+};
+
+struct Overview {
+  struct Participant {
+    std::string id;
+    std::uint64_t number = 0;
+    std::size_t answered = 0, trials = 0;
+    std::string started_utc, last_seen_utc;
+  };
+  std::vector<Participant> running;
+  std::size_t finished = 0, left = 0;  ///< left: since the server started
+};
+
+/// The present moment as "2026-11-20T12:05:01.250Z".
+std::string utc_now();
+
+class Desk {
+ public:
+  /// Takes up the participants who were running. Throws std::runtime_error if the folder cannot be
+  /// used, is in use by another server, or belongs to a study with another seed or plan.
+  explicit Desk(DeskOptions options);
+  ~Desk();
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] const Config& config() const { return options_.config; }
+
+  /// One-time links' secrets, by participant number; empty if the study has none.
+  [[nodiscard]] std::vector<std::string> links() const;
+
+  /// A new participant's token. Refused: 403 for a link that is unknown or used, 409 where the
+  /// study is full, 503 where too many are running or the disk does not take it.
+  std::string start(const std::string& link, const std::string& user_agent);
+
+  // All of these refuse (401) a token that is not one of a running session.
+  Progress progress(const std::string& token);
+  Progress resume(const std::string& token);  ///< after a reload
+  void show(const std::string& token, std::size_t index);
+  void answer(const std::string& token, const SentAnswer& sent);
+  void leave(const std::string& token);  ///< keeps nothing
+
+  /// Saves the answers and returns the withdrawal code. Sent again, it saves nothing more and
+  /// returns the same code, also after a restart. Refused (507) if the disk does not take them:
+  /// then nothing is lost and it can be tried again.
+  std::string save(const std::string& token, const std::map<std::string, std::string>& free_text);
+
+  /// The clip of a name that a running participant was given; nullptr if there is none.
+  const Clip* clip(const std::string& media, Encoding encoding);
+
+  Overview overview();
+
+ private:
+  struct Entry {
+    std::mutex mutex;
+    Session session;
+    bool is_gone = false;
+  };
+  struct Media {
+    const PairFiles* files;
+    Side side;
+  };
+
+  void lock_folder();
+  void read_study_file();
+  void write_study_file() const;
+  void read_finished();
+  void read_running();
+  void add(const std::shared_ptr<Entry>& entry);
+  void remove(const Entry& entry);
+  void drop_idle();
+  std::uint64_t number_for(const std::string& link);
+  std::string link_of(std::uint64_t number) const;
+  std::shared_ptr<Entry> find(const std::string& token);
+  void change(const std::string& token, const std::function<void(Session&)>& apply);
+  std::string saved_code(const std::string& id, const std::string& secret) const;
+  Progress progress_of(const Session& session) const;
+  [[nodiscard]] std::filesystem::path session_path(const std::string& id) const;
+
+  DeskOptions options_;
+  std::filesystem::path running_folder_;
+  int lock_ = -1;
+  std::uint64_t seed_ = 0;
+  std::string link_secret_;
+  std::mutex mutex_;  // of all below; never held while waiting for an entry's
+  std::map<std::string, std::shared_ptr<Entry>> entries_;
+  std::map<std::string, Media> media_;
+  std::set<std::uint64_t> taken_;       // numbers of running and finished participants
+  std::set<std::uint64_t> used_links_;  // their numbers
+  std::size_t finished_ = 0, left_ = 0;
+};
+
+}  // namespace pinchlab::study

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/durable_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const char* what) {
+  throw std::runtime_error(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
+}
+
+class File {
+ public:
+  File(const fs::path& path, int flags, const char* what)
+      : path_(path), file_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {
+    if (file_ < 0) {
+      fail(path, what);
+    }
+  }
+  ~File() {
+    if (file_ >= 0) {
+      ::close(file_);
+    }
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  void write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+      if (written < 0 && errno != EINTR) {
+        fail(path_, "cannot be written");
+      }
+      bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
+    }
+  }
+  [[nodiscard]] std::string read() const {
+    std::string bytes;
+    std::array<char, 1U << 16U> buffer{};
+    while (true) {
+      const ssize_t got = ::read(file_, buffer.data(), buffer.size());
+      if (got < 0 && errno != EINTR) {
+        fail(path_, "cannot be read");
+      }
+      if (got == 0) {
+        return bytes;
+      }
+      bytes.append(buffer.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
+    }
+  }
+  void sync() const {
+    if (::fsync(file_) != 0) {
+      fail(path_, "cannot be brought to the disk");
+    }
+  }
+  // Some file systems tell of a full disk only now.
+  void close() {
+    const int file = file_;
+    file_ = -1;
+    if (::close(file) != 0) {
+      fail(path_, "cannot be written");
+    }
+  }
+
+ private:
+  fs::path path_;
+  int file_;
+};
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+void sync_folder(const fs::path& path) {
+  File(folder_of(path), O_RDONLY | O_DIRECTORY, "cannot be opened").sync();
+}
+
+}  // namespace
+
+void write_durably(const fs::path& path, std::string_view bytes) {
+  const fs::path partial = path.string() + std::string(partial_ending);
+  try {
+    File file(partial, O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
+    file.write(bytes);
+    file.sync();
+    file.close();
+    if (read_whole(partial) != bytes) {
+      throw std::runtime_error(
+          fmt::format("{}: the disk holds something else than was written", path.string()));
+    }
+    if (::rename(partial.c_str(), path.c_str()) != 0) {
+      fail(path, "cannot be given its name");
+    }
+  } catch (const std::exception&) {
+    ::unlink(partial.c_str());
+    throw;
+  }
+  sync_folder(path);
+}
+
+void remove_durably(const fs::path& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT) {
+    fail(path, "cannot be removed");
+  }
+  sync_folder(path);
+}
+
+std::string read_whole(const fs::path& path) {
+  return File(path, O_RDONLY, "cannot be opened").read();
+}
+
+}  // namespace pinchlab::study

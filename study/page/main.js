@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The study from beginning to end, as a jsPsych timeline.
+
+import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, thanks } from './pages.js';
+import { PairTrial } from './pair_trial.js';
+
+const stage = document.getElementById('stage');
+const notice = document.getElementById('notice');
+const { connect } = await import(document.documentElement.dataset.backend);
+
+let texts = null;
+const backend = connect((isTrouble) => {
+  const text = isTrouble ? texts?.connection_lost ?? '…' : '';
+  if (notice.textContent !== text) notice.textContent = text;
+});
+({ texts } = await backend.study());
+stage.textContent = texts.loading;
+
+// The session to go on with: the one that was begun, if the participant says so, or a new one.
+async function begin() {
+  const running = await backend.running();
+  if (!running) return information(stage, texts, backend);
+  if (await askResume(stage, texts)) return backend.resume();
+  await backend.leave();
+  return information(stage, texts, backend);
+}
+
+function page(show) {
+  const shown = (display) => show(display);
+  shown.texts = texts;
+  return { type: PagePlugin, page: shown };
+}
+
+try {
+  const session = await begin();
+  const { encoding, urls } = await preload(stage, texts, session);
+  const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
+
+  const leave = async () => {
+    jsPsych.abortExperiment();
+    await backend.leave();
+    if (document.fullscreenElement) document.exitFullscreen();
+    goodbye(stage, texts);
+  };
+
+  const trial = (index) => ({
+    type: PairTrial,
+    url: urls[index],
+    texts,
+    remaining: session.trials.length - index,
+    practice: session.trials[index].practice,
+    exit: () => exitButton(texts, leave),
+    before: () => backend.show(index),
+    after: (data) => backend.answer({ index, encoding, ...data }),
+    failed: (error) => failed(stage, texts, error),
+    on_finish: () => URL.revokeObjectURL(urls[index]),
+  });
+
+  let freeText = {};
+  let code = '';
+  const timeline = session.trials.map((_, index) => index).filter((index) => index >= session.next).map(trial);
+  timeline.push(page(async (display) => { freeText = await questions(display, texts, leave); }));
+  timeline.push(page(async (display) => { code = await save(display, texts, backend, freeText, leave); }));
+  timeline.push(page(async (display) => {
+    if (document.fullscreenElement) document.exitFullscreen();
+    thanks(display, texts, code);
+    return new Promise(() => {});  // the end: stays
+  }));
+  await jsPsych.run(timeline);
+} catch (error) {
+  failed(stage, texts, error);
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything around the trials. A page is a function that fills an element and returns a promise of
+// what the participant did there.
+
+import { SessionGone, Refused } from './server.js';
+
+const smallest = { width: 1280, height: 720 };  // px, of the screen
+const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars besides the window
+
+/** An element: tag, attributes (or handlers: onclick), children (strings or elements). */
+export function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, '');
+    else if (value !== false) element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+const paragraphs = (text) => text.split('\n\n').map((part) => make('p', {}, part));
+
+// A sheet of paper in the middle; its heading takes the focus, so that a screen reader begins there.
+function sheet(stage, heading, ...children) {
+  const title = make('h1', { tabindex: -1 }, heading);
+  stage.replaceChildren(make('div', { class: 'sheet' }, title, ...children));
+  window.scrollTo(0, 0);
+  title.focus();
+}
+
+/** A jsPsych plugin that shows one of the pages; `page` gets the element and returns a promise. */
+export class PagePlugin {
+  static info = {
+    name: 'page',
+    version: '1.0.0',
+    parameters: { page: { type: jsPsychModule.ParameterType.FUNCTION } },
+    data: { result: { type: jsPsychModule.ParameterType.OBJECT } },
+  };
+
+  constructor(jsPsych) {
+    this.jsPsych = jsPsych;
+  }
+
+  trial(display, { page }) {
+    page(display).then((result) => this.jsPsych.finishTrial({ result }), (error) => failed(display, page.texts, error));
+  }
+}
+
+/** The end where something went wrong. */
+export function failed(stage, texts, error) {
+  console.error(error);
+  sheet(stage, texts.title, make('p', {}, error instanceof SessionGone ? texts.session_gone : texts.problem));
+}
+
+const startProblem = (texts, error) =>
+  error instanceof Refused && error.status === 403 ? (location.search ? texts.used_link : texts.no_link)
+    : error instanceof Refused && error.status === 409 ? texts.full : texts.busy;
+
+const isTouchOnly = () => matchMedia('(pointer: coarse)').matches && !matchMedia('(any-pointer: fine)').matches;
+const isSmall = () => innerWidth < smallestWindow.width || innerHeight < smallestWindow.height ||
+  screen.width < smallest.width || screen.height < smallest.height;
+
+function fullScreen() {
+  document.documentElement.requestFullscreen?.().catch(() => { /* then without */ });
+}
+
+/** Information and consent. Resolves to the new session. */
+export function information(stage, texts, backend) {
+  return new Promise((resolve) => {
+    const tick = make('input', { type: 'checkbox', id: 'consent' });
+    const problem = make('p', { class: 'wrong', role: 'alert' });
+    const window_hint = make('p', { class: 'wrong', role: 'status' });
+    const start = make('button', { type: 'button', id: 'start' }, texts.start);
+    const checkWindow = () => {
+      const hint = isTouchOnly() ? texts.touch_screen : isSmall()
+        ? texts.small_window.replace('{width}', smallest.width).replace('{height}', smallest.height) : '';
+      if (window_hint.textContent !== hint) window_hint.textContent = hint;
+      start.disabled = hint !== '';
+    };
+    start.addEventListener('click', async () => {
+      problem.textContent = tick.checked ? '' : texts.consent_missing;
+      if (!tick.checked) {
+        tick.focus();
+        return;
+      }
+      fullScreen();
+      start.disabled = true;
+      try {
+        const session = await backend.start();
+        removeEventListener('resize', checkWindow);
+        resolve(session);
+      } catch (error) {
+        problem.textContent = startProblem(texts, error);
+        start.disabled = false;
+      }
+    });
+    sheet(stage, texts.information_heading, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
+      ...paragraphs(texts.information_questions), make('label', { class: 'tick' }, tick, texts.consent), window_hint, problem,
+      make('div', { class: 'row' }, start), make('p', { class: 'hint' }, texts.keyboard_hint));
+    addEventListener('resize', checkWindow);
+    checkWindow();
+  });
+}
+
+/** After a reload. Resolves to true to go on, false to start anew. */
+export function askResume(stage, texts) {
+  return new Promise((resolve) => {
+    sheet(stage, texts.resume_heading, make('p', {}, texts.resume_body), make('div', { class: 'row' },
+      make('button', { type: 'button', id: 'continue', onclick() { fullScreen(); resolve(true); } }, texts.resume_continue),
+      make('button', { type: 'button', id: 'anew', class: 'quiet', onclick: () => resolve(false) }, texts.resume_new)));
+  });
+}
+
+async function download(url, onProgress) {
+  for (let attempt = 1; ; ++attempt) {
+    try {
+      const response = await fetch(url, { cache: 'no-store' });
+      if (response.status === 404) throw new SessionGone();
+      if (!response.ok) throw new Error(`status ${response.status}`);
+      const total = Number(response.headers.get('Content-Length'));
+      const parts = [];
+      let loaded = 0;
+      for (const reader = response.body.getReader(); ;) {
+        const { done, value } = await reader.read();
+        if (done) break;
+        parts.push(value);
+        loaded += value.length;
+        onProgress(total > 0 ? loaded / total : 0);
+      }
+      if (total > 0 && loaded !== total) throw new Error('cut short');
+      return new Blob(parts, { type: response.headers.get('Content-Type') });
+    } catch (error) {
+      if (error instanceof SessionGone || attempt === 20) throw error;
+      await new Promise((again) => setTimeout(again, Math.min(500 * attempt, 5000)));
+    }
+  }
+}
+
+// H.264 where the browser has it, VP9 elsewhere.
+function playableEncoding(trials) {
+  const video = document.createElement('video');
+  if (video.canPlayType('video/mp4; codecs="avc1.640028"')) return 'mp4';
+  return video.canPlayType('video/webm; codecs="vp9"') && trials.every(({ webm }) => webm) ? 'webm' : null;
+}
+
+/** Fetches the clips of all trials that are left. Resolves to { encoding, urls }. */
+export async function preload(stage, texts, session) {
+  const left = session.trials.slice(session.next);
+  const encoding = playableEncoding(left);
+  if (!encoding) {
+    sheet(stage, texts.preload_heading, make('p', { class: 'wrong' }, texts.no_video));
+    return new Promise(() => {});
+  }
+  const bar = make('progress', { max: 1, value: 0, 'aria-label': texts.preload_heading });
+  const words = make('p', { role: 'status' });
+  sheet(stage, texts.preload_heading, bar, words);
+  const urls = session.trials.map(() => null);
+  for (const [i, trial] of left.entries()) {
+    const blob = await download(trial[encoding], (share) => {
+      bar.value = (i + share) / left.length;
+      words.textContent = texts.preload_progress.replace('{percent}', Math.floor(100 * bar.value));
+    });
+    urls[session.next + i] = URL.createObjectURL(blob);
+  }
+  return { encoding, urls };
+}
+
+/** The exit button, which asks once. `onLeave` ends the study. */
+export function exitButton(texts, onLeave) {
+  const dialog = make('dialog', { 'aria-labelledby': 'exit-heading' },
+    make('h1', { id: 'exit-heading' }, texts.exit_heading), make('p', {}, texts.exit_body),
+    make('div', { class: 'row' },
+      make('button', { type: 'button', id: 'stay', autofocus: true, onclick: () => dialog.close() }, texts.exit_cancel),
+      make('button', { type: 'button', id: 'leave', class: 'quiet', onclick() { dialog.close(); onLeave(); } }, texts.exit_confirm)));
+  const button = make('button', { type: 'button', id: 'exit', class: 'quiet', onclick: () => dialog.showModal() }, texts.exit);
+  return make('span', {}, button, dialog);
+}
+
+/** The two optional texts. */
+export function questions(stage, texts, onLeave) {
+  return new Promise((resolve) => {
+    const fields = ['common_details', 'thoughts'].map((key) => ({
+      key, field: make('textarea', { id: key, maxlength: 5000 }),
+    }));
+    sheet(stage, texts.questions_heading,
+      ...fields.flatMap(({ key, field }) => [
+        make('label', { class: 'text', for: key }, texts[key], make('span', {}, ` (${texts.optional})`)), field]),
+      make('div', { class: 'row' },
+        make('button', {
+          type: 'button', id: 'next',
+          onclick: () => resolve(Object.fromEntries(fields.filter(({ field }) => field.value.trim())
+            .map(({ key, field }) => [key, field.value.trim()]))),
+        }, texts.next), exitButton(texts, onLeave)));
+  });
+}
+
+function offerDownload(content) {
+  const url = URL.createObjectURL(new Blob([JSON.stringify(content, null, 2)], { type: 'application/json' }));
+  make('a', { href: url, download: 'answers.json' }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+/** Saves when the participant says so, and tries until it is confirmed. Resolves to the code. */
+export function save(stage, texts, backend, freeText, onLeave) {
+  return new Promise((resolve, reject) => {
+    const status = make('div', { role: 'status' });
+    const button = make('button', { type: 'button', id: 'save' }, texts.save);
+    const exit = exitButton(texts, onLeave);
+    let wait = 1000;  // ms
+    let timer = 0;
+    const trouble = () => make('div', {}, make('p', { class: 'wrong' }, texts.not_saved), make('div', { class: 'row' },
+      make('button', { type: 'button', id: 'retry', onclick: attempt }, texts.retry),
+      make('button', { type: 'button', id: 'download', class: 'quiet', onclick: () => offerDownload(backend.download(freeText)) },
+        texts.download)));
+    async function attempt() {
+      clearTimeout(timer);
+      button.disabled = true;
+      exit.hidden = true;
+      if (!status.firstChild) status.replaceChildren(make('p', {}, texts.saving));
+      try {
+        resolve(await backend.save(freeText));
+      } catch (error) {
+        if (error instanceof SessionGone || error instanceof Refused) return reject(error);
+        if (!status.querySelector('#retry')) status.replaceChildren(trouble());
+        timer = setTimeout(attempt, wait);
+        wait = Math.min(2 * wait, 10000);
+      }
+    }
+    button.addEventListener('click', attempt);
+    sheet(stage, texts.save_heading, make('p', {}, texts.save_body), make('div', { class: 'row' }, button, exit), status);
+  });
+}
+
+/** The end. */
+export function thanks(stage, texts, code) {
+  const copy = make('button', {
+    type: 'button', class: 'quiet',
+    async onclick() {
+      await navigator.clipboard?.writeText(code);
+      copy.textContent = texts.copied;
+    },
+  }, texts.copy);
+  sheet(stage, texts.saved_heading, make('p', {}, texts.saved_body),
+    ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []));
+}
+
+export function goodbye(stage, texts) {
+  sheet(stage, texts.left_heading, make('p', {}, texts.left_body));
+}

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A jsPsych plugin: two clips in one video, so that both are on the same frame always, and a forced
+// choice that can be made once the first loop has ended.
+
+import { make } from './pages.js';
+
+const { ParameterType } = jsPsychModule;
+
+export class PairTrial {
+  static info = {
+    name: 'pair-trial',
+    version: '1.0.0',
+    parameters: {
+      url: { type: ParameterType.STRING },  // of the clip
+      texts: { type: ParameterType.COMPLEX },
+      remaining: { type: ParameterType.INT },  // trials, with this one
+      practice: { type: ParameterType.BOOL, default: false },
+      exit: { type: ParameterType.FUNCTION },  // returns the exit button
+      before: { type: ParameterType.FUNCTION },  // awaited before the clip plays
+      after: { type: ParameterType.FUNCTION },  // gets the data; awaited before the trial ends
+      failed: { type: ParameterType.FUNCTION },
+    },
+    data: {
+      choice: { type: ParameterType.STRING },
+      reaction_time_s: { type: ParameterType.FLOAT },
+      loops_watched: { type: ParameterType.INT },
+    },
+  };
+
+  constructor(jsPsych) {
+    this.jsPsych = jsPsych;
+  }
+
+  trial(display, trial) {
+    this.run(display, trial).then((data) => this.jsPsych.finishTrial(data), trial.failed);
+  }
+
+  async run(display, trial) {
+    const view = build(display, trial);
+    await trial.before();
+    const watch = new Watch(view.video);
+    const unfit = keepFitting(view);
+    view.video.src = trial.url;
+    play(view, trial.texts, watch);
+    await watch.firstLoop;
+    const { choice, input, seconds } = await choose(view, trial.texts);
+    const data = { choice, reaction_time_s: seconds, ...watch.stop(), input, ...sizes(view.video) };
+    unfit();
+    await trial.after(data);
+    view.video.removeAttribute('src');
+    return data;
+  }
+}
+
+function build(display, { texts, practice, remaining, exit }) {
+  const heading = make('h1', { tabindex: -1 }, texts.question);
+  const video = make('video', {
+    loop: true, muted: true, playsinline: true, preload: 'auto', disablepictureinpicture: true, disableremoteplayback: true,
+    'aria-label': texts.clips_label,
+  });
+  video.muted = true;  // the attribute alone does not count for elements that a script makes
+  const choices = make('div', { class: 'choices' }, make('p', { class: 'wait' }, texts.watch_first));
+  const spoken = make('p', { class: 'spoken', role: 'status' });
+  const left = remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining);
+  const footer = make('footer', {}, make('p', { id: 'remaining' }, left), exit());
+  display.replaceChildren(make('section', { class: 'trial' }, heading,
+    ...(practice ? [make('p', { class: 'practice hint' }, texts.practice)] : []), video, choices, spoken, footer));
+  heading.focus();
+  return { video, choices, spoken, heading };
+}
+
+// One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
+function keepFitting({ video, choices }) {
+  const fit = () => {
+    if (!video.videoWidth) return;
+    const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
+    const others = [...video.parentElement.children].filter((element) => element !== video && getComputedStyle(element).position !== 'absolute')
+      .reduce((sum, element) => sum + element.getBoundingClientRect().height, 40);
+    const scale = Math.min(1, (innerWidth - 16) / width, (innerHeight - others) / height);
+    video.style.width = `${width * scale}px`;
+    video.style.height = `${height * scale}px`;
+    choices.style.maxWidth = `${Math.max(width * scale, 560)}px`;
+  };
+  video.addEventListener('loadedmetadata', fit);
+  addEventListener('resize', fit);
+  return () => removeEventListener('resize', fit);
+}
+
+// Autoplay without sound is allowed nearly everywhere; where it is not, a button starts the clip.
+function play({ video, choices }, texts, watch) {
+  const begin = () => video.play().catch((error) => {
+    if (watch.isStopped) return;
+    watch.note(`play: ${error.name}`);
+    if (choices.querySelector('#play')) return;
+    const wait = choices.firstChild;
+    const button = make('button', { type: 'button', id: 'play', onclick() { button.replaceWith(wait); begin(); } }, texts.play);
+    wait.replaceWith(button);
+  });
+  // Media keys and the like must not stop it.
+  video.addEventListener('pause', () => {
+    if (!watch.isStopped && !video.ended && video.currentSrc) begin();
+  });
+  begin();
+}
+
+// What happens while a clip plays. `loop` fires no event: the end of a loop shows in time going back.
+class Watch {
+  constructor(video) {
+    this.video = video;
+    this.loops = 0;
+    this.focusLost = 0;
+    this.errors = [];
+    this.isStopped = false;
+    this.last = 0;  // s
+    this.isAway = false;
+    this.firstLoop = new Promise((resolve) => { this.loopEnded = resolve; });
+    video.addEventListener('error', () => this.note(`error: ${video.error?.code} ${video.error?.message ?? ''}`));
+    video.addEventListener('stalled', () => this.note('stalled'));
+    this.onAway = () => {
+      const isAway = document.hidden || !document.hasFocus();
+      if (isAway && !this.isAway) ++this.focusLost;
+      this.isAway = isAway;
+    };
+    this.isAway = document.hidden || !document.hasFocus();
+    addEventListener('blur', this.onAway);
+    addEventListener('focus', this.onAway);
+    document.addEventListener('visibilitychange', this.onAway);
+    if (video.requestVideoFrameCallback) {
+      const onFrame = (now, { mediaTime }) => {
+        this.saw(mediaTime);
+        if (!this.isStopped) video.requestVideoFrameCallback(onFrame);
+      };
+      video.requestVideoFrameCallback(onFrame);
+    } else {
+      video.addEventListener('timeupdate', () => this.saw(video.currentTime));
+    }
+  }
+
+  saw(time) {
+    if (this.isStopped) return;
+    if (time < this.last) {
+      ++this.loops;
+      this.loopEnded();
+    }
+    this.last = time;
+  }
+
+  note(message) {
+    if (this.errors.length < 50) this.errors.push(message.slice(0, 200));
+  }
+
+  stop() {
+    this.isStopped = true;
+    removeEventListener('blur', this.onAway);
+    removeEventListener('focus', this.onAway);
+    document.removeEventListener('visibilitychange', this.onAway);
+    return {
+      loops_watched: this.loops,
+      focus_lost_count: this.focusLost,
+      dropped_frames: this.video.getVideoPlaybackQuality?.().droppedVideoFrames ?? 0,
+      playback_errors: this.errors,
+    };
+  }
+}
+
+function choose({ choices, spoken }, texts) {
+  return new Promise((resolve) => {
+    const since = performance.now();  // ms
+    const decide = (choice, input) => {
+      removeEventListener('keydown', onKey);
+      buttons.forEach((button) => { button.disabled = true; });
+      resolve({ choice, input, seconds: (performance.now() - since) / 1000 });
+    };
+    const onKey = (event) => {
+      const choice = { ArrowLeft: 'left', ArrowRight: 'right' }[event.key];
+      const isOurs = choice && !event.repeat && !event.altKey && !event.ctrlKey && !event.metaKey && !event.shiftKey;
+      if (!isOurs || document.querySelector('dialog[open]')) return;
+      event.preventDefault();
+      decide(choice, 'keyboard');
+    };
+    // A click without a pointer came from Enter or the space bar.
+    const inputOf = (event) => (event.pointerType === 'touch' ? 'touch' : event.detail === 0 ? 'keyboard' : 'mouse');
+    const buttons = ['left', 'right'].map((side) => make('button', {
+      type: 'button', id: side, 'aria-label': texts[`${side}_label`], onclick: (event) => decide(side, inputOf(event)),
+    }, texts[side]));
+    choices.replaceChildren(...buttons, make('p', { class: 'arrows hint' }, texts.arrow_hint));
+    spoken.textContent = texts.choose_now;
+    addEventListener('keydown', onKey);
+  });
+}
+
+function sizes(video) {
+  const shown = video.getBoundingClientRect();
+  return {
+    window_width_px: innerWidth, window_height_px: innerHeight,
+    clip_width_px: Math.round(shown.width), clip_height_px: Math.round(shown.height),
+    screen_width_px: screen.width, screen_height_px: screen.height,
+    device_pixel_ratio: devicePixelRatio,
+  };
+}

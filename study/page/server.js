@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The study's own server. What it has confirmed is on its disk; what it has not is sent again.
+
+const storageKey = 'study';
+const longestWait = 15000;  // ms, for one reply
+
+/** The session ended, here or in another window. */
+export class SessionGone extends Error {}
+
+/** The server will not do that, and would not the next time; `status` is HTTP's. */
+export class Refused extends Error {
+  constructor(status) {
+    super(`refused (${status})`);
+    this.status = status;
+  }
+}
+
+const pause = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+
+// Where storage is forbidden, the session lasts as long as the page.
+const stored = {
+  value: null,
+  read() {
+    try {
+      return JSON.parse(localStorage.getItem(storageKey)) ?? this.value;
+    } catch {
+      return this.value;
+    }
+  },
+  write(value) {
+    this.value = value;
+    try {
+      if (value === null) localStorage.removeItem(storageKey);
+      else localStorage.setItem(storageKey, JSON.stringify(value));
+    } catch { /* kept in this.value */ }
+  },
+};
+
+async function request(method, path, body) {
+  const headers = {};
+  const token = stored.read()?.token;
+  if (token) headers.Authorization = `Bearer ${token}`;
+  if (body) headers['Content-Type'] = 'application/json';
+  const response = await fetch(path, {
+    method, headers, body: body && JSON.stringify(body), cache: 'no-store', signal: AbortSignal.timeout(longestWait),
+  });
+  if (response.status === 401) throw new SessionGone();
+  if (response.status >= 400 && response.status < 500 && response.status !== 429) throw new Refused(response.status);
+  if (!response.ok) throw new Error(`status ${response.status}`);
+  return response.json();
+}
+
+// Again and again until the server has confirmed it; `onTrouble(true)` while it has not.
+async function insist(method, path, body, onTrouble) {
+  for (let wait = 500; ; wait = Math.min(2 * wait, 5000)) {
+    try {
+      const result = await request(method, path, body);
+      onTrouble(false);
+      return result;
+    } catch (error) {
+      if (error instanceof SessionGone || error instanceof Refused) {
+        onTrouble(false);
+        throw error;
+      }
+      onTrouble(true);
+      await pause(wait);
+    }
+  }
+}
+
+export function connect(onTrouble) {
+  return {
+    study: () => insist('GET', 'api/study', null, onTrouble),
+
+    /** The session that was begun before, or null. */
+    async running() {
+      if (!stored.read()) return null;
+      try {
+        return await insist('GET', 'api/session', null, onTrouble);
+      } catch (error) {
+        if (!(error instanceof SessionGone)) throw error;
+        stored.write(null);
+        return null;
+      }
+    },
+
+    async start() {
+      const link = new URLSearchParams(location.search).get('link') ?? '';
+      const { token, ...session } = await request('POST', 'api/start', { consent: true, link });
+      stored.write({ token, answers: [] });
+      return session;
+    },
+
+    resume: () => insist('POST', 'api/resume', {}, onTrouble),
+    show: (index) => insist('POST', 'api/show', { index }, onTrouble),
+
+    async answer(sent) {
+      const { token, answers } = stored.read();
+      stored.write({ token, answers: [...answers.filter(({ index }) => index !== sent.index), sent] });
+      await insist('POST', 'api/answer', sent, onTrouble);
+    },
+
+    /** One attempt; what can be tried again is for the page to say. */
+    async save(freeText) {
+      const { code } = await request('POST', 'api/save', { free_text: freeText });
+      stored.write(null);
+      return code;
+    },
+
+    /** What this browser knows, for a participant whose answers the server does not take. */
+    download: (freeText) => ({ ...stored.read(), free_text: freeText }),
+
+    async leave() {
+      try {
+        await request('POST', 'api/leave', {});
+      } catch { /* What is not saved is no answer, and is dropped when it is not seen for a day. */ }
+      stored.write(null);
+    },
+  };
+}

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/plan.h"
+
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include <algorithm>
+#include <cassert>
+#include <memory>
+#include <new>
+#include <numeric>
+
+namespace pinchlab::study {
+namespace {
+
+// What random numbers are drawn for; each draw has a generator of its own, so that no option
+// changes what another draws.
+enum class Purpose : std::uint64_t { sides = 1, labels, rows, training, check_sides, check_places };
+
+// Steele, Lea and Flood's SplitMix64 (OOPSLA 2014): neighbouring seeds give unrelated generators.
+std::uint64_t mix(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+class Random {
+ public:
+  Random(std::uint64_t seed, Purpose purpose, std::uint64_t block, std::uint64_t round = 0)
+      : rng_(gsl_rng_alloc(gsl_rng_mt19937), &gsl_rng_free) {
+    if (!rng_) {
+      throw std::bad_alloc();
+    }
+    const std::uint64_t mixed =
+        mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ block) ^ round);
+    gsl_rng_set(rng_.get(), mixed & 0xFFFFFFFFU);  // mt19937 takes 32 bits
+  }
+  std::size_t below(std::size_t n) { return gsl_rng_uniform_int(rng_.get(), n); }
+  bool coin() { return below(2) == 1; }
+  std::vector<std::size_t> permutation(std::size_t n) {
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    gsl_ran_shuffle(rng_.get(), order.data(), n, sizeof(std::size_t));
+    return order;
+  }
+
+ private:
+  std::unique_ptr<gsl_rng, void (*)(gsl_rng*)> rng_;
+};
+
+// Row of a Williams square: 0, n-1, 1, n-2, ... shifted by `row`. Every symbol stands once in every
+// column; for even n every symbol also follows every other in one row.
+std::size_t williams(std::size_t row, std::size_t column, std::size_t n) {
+  const std::size_t zigzag = column % 2 == 0 ? column / 2 : n - (column + 1) / 2;
+  return (row + zigzag) % n;
+}
+
+// One round of n participants: orders[participant in block][position] is a demonstration.
+using Square = std::vector<std::vector<std::size_t>>;
+
+Square shuffled_square(Random& labels, Random& rows, std::size_t n) {
+  const std::vector<std::size_t> label = labels.permutation(n);
+  const std::vector<std::size_t> row = rows.permutation(n);
+  Square square(n, std::vector<std::size_t>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      square[i][j] = label[williams(row[i], j, n)];
+    }
+  }
+  return square;
+}
+
+bool repeats_at_once(const Square& before, const Square& after) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (before[i].back() == after[i].front()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// The squares of all rounds of a block. A square that would show somebody the same demonstration
+// twice running is drawn again; about one in three passes, and the square of the round before
+// always would.
+std::vector<Square> squares(std::uint64_t seed, std::uint64_t block, int rounds, std::size_t n) {
+  Random labels(seed, Purpose::labels, block);
+  Random rows(seed, Purpose::rows, block);
+  std::vector<Square> result;
+  for (int round = 0; round < rounds; ++round) {
+    Square square = shuffled_square(labels, rows, n);
+    while (round > 0 && n > 1 && repeats_at_once(result.back(), square)) {
+      square = shuffled_square(labels, rows, n);
+    }
+    result.push_back(std::move(square));
+  }
+  return result;
+}
+
+Side side_of(bool is_right) {
+  return is_right ? Side::right : Side::left;
+}
+
+std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
+                                      const PlanOptions& options) {
+  const std::size_t n = options.demonstrations.size();
+  const int rounds = answers_per_demonstration(options);
+  const std::vector<Square> orders = squares(seed, number / n, rounds, n);
+  const bool is_second_of_pair = number % 2 == 1;
+  std::vector<PlannedTrial> trials;
+  for (int round = 0; round < rounds; ++round) {
+    // With both orders, every second round repeats the coins of the one before, swapped.
+    const int coins_of = options.both_orders ? round - round % 2 : round;
+    const bool is_swapped = options.both_orders && round % 2 == 1;
+    Random coins(seed, Purpose::sides, number / 2, static_cast<std::uint64_t>(coins_of));
+    std::vector<bool> is_right(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      is_right[i] = coins.coin() != (is_second_of_pair != is_swapped);
+    }
+    for (const std::size_t i : orders[static_cast<std::size_t>(round)][number % n]) {
+      trials.push_back({TrialKind::main, options.demonstrations[i], side_of(is_right[i]), round});
+    }
+  }
+  return trials;
+}
+
+// Check i of m goes somewhere into the i-th of m equal parts of the main trials, never first.
+void insert_checks(std::vector<PlannedTrial>& trials, std::uint64_t seed, std::uint64_t number,
+                   const std::vector<std::string>& checks) {
+  Random sides(seed, Purpose::check_sides, number / 2);
+  Random places(seed, Purpose::check_places, number);
+  const std::size_t main_count = trials.size();
+  for (std::size_t i = 0; i < checks.size(); ++i) {
+    const std::size_t begin = std::max<std::size_t>(1, main_count * i / checks.size());
+    const std::size_t end = std::max(begin + 1, main_count * (i + 1) / checks.size());
+    const std::size_t place = std::min(begin + places.below(end - begin), main_count) + i;
+    const bool is_right = sides.coin() != (number % 2 == 1);
+    trials.insert(trials.begin() + static_cast<std::ptrdiff_t>(place),
+                  {TrialKind::attention, checks[i], side_of(is_right), 0});
+  }
+}
+
+}  // namespace
+
+const char* to_string(TrialKind kind) {
+  return kind == TrialKind::main ? "main" : kind == TrialKind::training ? "training" : "attention";
+}
+
+const char* to_string(Side side) {
+  return side == Side::left ? "left" : "right";
+}
+
+Side opposite(Side side) {
+  return side == Side::left ? Side::right : Side::left;
+}
+
+int answers_per_demonstration(const PlanOptions& options) {
+  return options.repetitions * (options.both_orders ? 2 : 1);
+}
+
+std::vector<PlannedTrial> make_plan(std::uint64_t seed, std::uint64_t number,
+                                    const PlanOptions& options) {
+  assert(!options.demonstrations.empty());
+  std::vector<PlannedTrial> trials = main_trials(seed, number, options);
+  insert_checks(trials, seed, number, options.attention_checks);
+  std::vector<PlannedTrial> plan;
+  Random training(seed, Purpose::training, number);
+  for (const std::string& name : options.training) {
+    plan.push_back({TrialKind::training, name, side_of(training.coin()), 0});
+  }
+  plan.insert(plan.end(), trials.begin(), trials.end());
+  return plan;
+}
+
+}  // namespace pinchlab::study

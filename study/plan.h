@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Who sees what, in which order, on which side: a pure function of seed, participant number and
+// configuration. Trials are counterbalanced over participants by their numbers.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pinchlab::study {
+
+enum class TrialKind { main, training, attention };
+enum class Side { left, right };
+
+const char* to_string(TrialKind kind);
+const char* to_string(Side side);
+Side opposite(Side side);
+
+/// What a plan depends on besides seed and participant.
+struct PlanOptions {
+  std::vector<std::string> demonstrations;    ///< names, none twice, at least one
+  std::vector<std::string> training;          ///< shown first, in this order; not analysed
+  std::vector<std::string> attention_checks;  ///< names of pairs with an obvious answer
+  int repetitions = 1;                        ///< times each demonstration is shown, 1 to 50
+  bool both_orders = false;                   ///< each showing once more with the sides swapped
+};
+
+struct PlannedTrial {
+  TrialKind kind = TrialKind::main;
+  std::string demonstration;  ///< or the name of the attention check
+  Side pinch = Side::left;    ///< side of the method under test; in a check, of the right answer
+  int round = 0;              ///< of main trials: how often the demonstration came before
+
+  friend bool operator==(const PlannedTrial&, const PlannedTrial&) = default;
+};
+
+/// Largest seed: what JSON numbers carry exactly everywhere, 2^53 - 1.
+inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 53U) - 1;
+
+/// Main trials of each demonstration.
+int answers_per_demonstration(const PlanOptions& options);
+
+/// The trials of participant `number` (from 0), in the order they are shown.
+///
+/// With n demonstrations and in every round:
+/// - participants 2k and 2k + 1 see each demonstration once with pinch left and once right;
+/// - participants nk to nk + n - 1 see each demonstration once in every position (a Williams
+///   square, Australian Journal of Scientific Research A 2 (1949) 149; for even n each also
+///   follows every other once), its labels and rows shuffled anew for every k;
+/// - a participant's order is uniform over all n! orders, and each side is a fair coin;
+/// - no demonstration is shown twice running (unless there is only one).
+/// Attention checks are spread over the main trials, never first; each pair of participants sees
+/// their right answer on both sides. Training trials come first, with fair sides.
+std::vector<PlannedTrial> make_plan(std::uint64_t seed, std::uint64_t number,
+                                    const PlanOptions& options);
+
+}  // namespace pinchlab::study

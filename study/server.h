@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// HTTP only: the page, its media, and a small JSON interface to the desk (README.md lists it).
+
+#include <memory>
+#include <string>
+
+#include "study/desk.h"
+
+namespace pinchlab::study {
+
+struct ServerOptions {
+  std::string host = "127.0.0.1";
+  int port = 0;  ///< 0: any that is free
+};
+
+/// A server that is bound, so that its address can be told before it runs.
+class Server {
+ public:
+  /// Throws std::runtime_error if the port cannot be had. `desk` must outlive the server.
+  Server(Desk& desk, const ServerOptions& options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] const std::string& address() const;  ///< "http://127.0.0.1:8080"
+  /// What the researcher's view asks for; random, new for every server.
+  [[nodiscard]] const std::string& researcher_token() const;
+
+  /// Serves until stop() is called, from any thread.
+  void run();
+  void stop();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace pinchlab::study

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/session.h"
+
+#include <fmt/format.h>
+
+#include "analysis/input_error.h"
+#include "analysis/json_object.h"
+
+namespace pinchlab::study {
+namespace {
+
+using analysis::InputError;
+using analysis::JsonObject;
+using nlohmann::json;
+
+constexpr std::size_t longest_free_text = 20000;  // bytes
+constexpr std::size_t longest_error = 500;        // bytes
+constexpr long most_counted = 1000000;
+constexpr long most_pixels = 100000;
+
+Side side_from(const std::string& word) {
+  return word == "left" ? Side::left : Side::right;
+}
+
+TrialKind kind_from(const std::string& word) {
+  return word == "main"       ? TrialKind::main
+         : word == "training" ? TrialKind::training
+                              : TrialKind::attention;
+}
+
+int whole(JsonObject& object, const char* key, long high) {
+  return static_cast<int>(object.whole(key, 0, high));
+}
+
+// The answer proper, without what goes around it; used for requests and for session files.
+TrialAnswer read_answer(JsonObject& object) {
+  TrialAnswer answer;
+  answer.choice = side_from(object.choice("choice", {"left", "right"}));
+  answer.reaction_time_s = object.number("reaction_time_s", 0, 86400);
+  answer.loops_watched = whole(object, "loops_watched", most_counted);
+  answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
+  answer.dropped_frames = whole(object, "dropped_frames", most_counted);
+  for (const json& entry : object.array("playback_errors", 100)) {
+    if (!entry.is_string() || entry.get_ref<const std::string&>().size() > longest_error) {
+      object.fail("playback_errors", "must hold short strings");
+    }
+    answer.playback_errors.push_back(entry.get<std::string>());
+  }
+  answer.input = object.choice("input", {"mouse", "keyboard", "touch"});
+  answer.encoding =
+      object.choice("encoding", {"mp4", "webm"}) == "mp4" ? Encoding::mp4 : Encoding::webm;
+  answer.window_width_px = whole(object, "window_width_px", most_pixels);
+  answer.window_height_px = whole(object, "window_height_px", most_pixels);
+  answer.clip_width_px = whole(object, "clip_width_px", most_pixels);
+  answer.clip_height_px = whole(object, "clip_height_px", most_pixels);
+  answer.screen_width_px = whole(object, "screen_width_px", most_pixels);
+  answer.screen_height_px = whole(object, "screen_height_px", most_pixels);
+  answer.device_pixel_ratio = object.number("device_pixel_ratio", 0.01, 100);
+  return answer;
+}
+
+json answer_to_json(const TrialAnswer& answer) {
+  return {{"choice", to_string(answer.choice)},
+          {"reaction_time_s", answer.reaction_time_s},
+          {"loops_watched", answer.loops_watched},
+          {"focus_lost_count", answer.focus_lost_count},
+          {"dropped_frames", answer.dropped_frames},
+          {"playback_errors", answer.playback_errors},
+          {"input", answer.input},
+          {"encoding", to_string(answer.encoding)},
+          {"window_width_px", answer.window_width_px},
+          {"window_height_px", answer.window_height_px},
+          {"clip_width_px", answer.clip_width_px},
+          {"clip_height_px", answer.clip_height_px},
+          {"screen_width_px", answer.screen_width_px},
+          {"screen_height_px", answer.screen_height_px},
+          {"device_pixel_ratio", answer.device_pixel_ratio}};
+}
+
+template <class Read>
+auto refusing(const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw Refused(422, error.what());
+  }
+}
+
+void read_plan(const json& plan, const std::string& file, Session& session) {
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    JsonObject object(plan[i], file, fmt::format("/plan/{}", i));
+    session.plan.push_back({kind_from(object.choice("kind", {"main", "training", "attention"})),
+                            object.name("demonstration"),
+                            side_from(object.choice("pinch", {"left", "right"})),
+                            static_cast<int>(object.whole("round", 0, 1000))});
+    session.media.push_back(object.name("media"));
+    object.finish();
+  }
+}
+
+}  // namespace
+
+bool is_finished(const Session& session) {
+  return session.answers.size() == session.plan.size();
+}
+
+void show(Session& session, std::size_t index, const std::string& utc) {
+  if (is_finished(session) || index != session.answers.size()) {
+    throw Refused(409, fmt::format("trial {} is not the next one", index));
+  }
+  session.shown_utc = utc;
+}
+
+void answer(Session& session, std::size_t index, const TrialAnswer& given) {
+  if (index + 1 == session.answers.size() && session.answers[index].answer == given) {
+    return;  // sent again, because the confirmation was lost
+  }
+  if (is_finished(session) || index != session.answers.size() || session.shown_utc.empty()) {
+    throw Refused(409, fmt::format("trial {} is not being shown", index));
+  }
+  session.answers.push_back({session.shown_utc, given});
+  session.shown_utc.clear();
+}
+
+SentAnswer parse_answer(const json& body) {
+  return refusing([&] {
+    JsonObject object(body, "request", "");
+    SentAnswer sent;
+    sent.index = static_cast<std::size_t>(object.whole("index", 0, 100000));
+    sent.answer = read_answer(object);
+    object.finish();
+    return sent;
+  });
+}
+
+std::map<std::string, std::string> parse_free_text(const json& body) {
+  return refusing([&] {
+    JsonObject object(body, "request", "");
+    JsonObject texts = object.object("free_text");
+    std::map<std::string, std::string> result;
+    for (const char* question : {"common_details", "thoughts"}) {
+      if (texts.has(question)) {
+        result[question] = texts.text(question, longest_free_text);
+      }
+    }
+    texts.finish();
+    object.finish();
+    return result;
+  });
+}
+
+json to_json(const Session& session) {
+  json plan = json::array();
+  for (std::size_t i = 0; i < session.plan.size(); ++i) {
+    const PlannedTrial& trial = session.plan[i];
+    plan.push_back({{"kind", to_string(trial.kind)},
+                    {"demonstration", trial.demonstration},
+                    {"pinch", to_string(trial.pinch)},
+                    {"round", trial.round},
+                    {"media", session.media[i]}});
+  }
+  json answers = json::array();
+  for (const AnsweredTrial& trial : session.answers) {
+    answers.push_back(answer_to_json(trial.answer));
+    answers.back()["shown_utc"] = trial.shown_utc;
+  }
+  return {{"format", "pinchlab-session 1"},
+          {"id", session.id},
+          {"secret_sha256", session.secret_sha256},
+          {"number", session.number},
+          {"seed", session.seed},
+          {"language", session.language},
+          {"user_agent", session.user_agent},
+          {"started_utc", session.started_utc},
+          {"last_seen_utc", session.last_seen_utc},
+          {"resumed_count", session.resumed_count},
+          {"shown_utc", session.shown_utc},
+          {"plan", plan},
+          {"answers", answers}};
+}
+
+Session session_from_json(const json& document) {
+  const std::string file = "session";
+  JsonObject object(document, file, "");
+  object.choice("format", {"pinchlab-session 1"});
+  Session session;
+  session.id = object.name("id");
+  session.secret_sha256 = object.sha256("secret_sha256");
+  session.number = static_cast<std::uint64_t>(object.whole("number", 0, 1000000000));
+  session.seed =
+      static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
+  session.language = object.text("language", 64);
+  session.user_agent = object.text("user_agent", 4096);
+  session.started_utc = object.utc("started_utc");
+  session.last_seen_utc = object.utc("last_seen_utc");
+  session.resumed_count = whole(object, "resumed_count", most_counted);
+  session.shown_utc = object.text("shown_utc", 64);
+  read_plan(object.array("plan", 100000), file, session);
+  const json& answers = object.array("answers", session.plan.size());
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    JsonObject trial(answers[i], file, fmt::format("/answers/{}", i));
+    session.answers.push_back({trial.utc("shown_utc"), read_answer(trial)});
+    trial.finish();
+  }
+  object.finish();
+  return session;
+}
+
+}  // namespace pinchlab::study

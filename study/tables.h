@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Plans and answers as tables for other programs.
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "study/plan.h"
+
+namespace pinchlab::study {
+
+/// The plans of participants 0 to `participants` - 1.
+nlohmann::ordered_json plan_json(std::uint64_t seed, std::uint64_t participants,
+                                 const PlanOptions& options);
+/// The same as CSV, one row a trial.
+std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanOptions& options);
+
+/// All answers of a folder as tidy CSV, one row a trial. Throws analysis::InputError for a file
+/// that is no answer file.
+std::string answers_csv(const std::filesystem::path& folder);
+
+/// Makes a Psych-DS dataset (dataset_description.json, data/study-cables_data.csv) of a folder's
+/// answers. `out` must not exist, or be empty.
+void write_psych_ds(const std::filesystem::path& folder, const std::filesystem::path& out);
+
+}  // namespace pinchlab::study
