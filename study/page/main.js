@@ -34,11 +34,12 @@ function page(show) {
 try {
   const session = await begin();
   const { encoding, urls } = await preload(stage, texts, session);
+  stage.replaceChildren();
   const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
 
   const leave = async () => {
-    jsPsych.abortExperiment();
     await backend.leave();
+    jsPsych.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
     goodbye(stage, texts);
   };

@@ -171,7 +171,7 @@ export function exitButton(texts, onLeave) {
   const dialog = make('dialog', { 'aria-labelledby': 'exit-heading' },
     make('h1', { id: 'exit-heading' }, texts.exit_heading), make('p', {}, texts.exit_body),
     make('div', { class: 'row' },
-      make('button', { type: 'button', id: 'stay', autofocus: true, onclick: () => dialog.close() }, texts.exit_cancel),
+      make('button', { type: 'button', id: 'stay', onclick: () => dialog.close() }, texts.exit_cancel),
       make('button', { type: 'button', id: 'leave', class: 'quiet', onclick() { dialog.close(); onLeave(); } }, texts.exit_confirm)));
   const button = make('button', { type: 'button', id: 'exit', class: 'quiet', onclick: () => dialog.showModal() }, texts.exit);
   return make('span', {}, button, dialog);

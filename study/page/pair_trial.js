@@ -183,7 +183,7 @@ function choose({ choices, spoken }, texts) {
     const buttons = ['left', 'right'].map((side) => make('button', {
       type: 'button', id: side, 'aria-label': texts[`${side}_label`], onclick: (event) => decide(side, inputOf(event)),
     }, texts[side]));
-    choices.replaceChildren(...buttons, make('p', { class: 'arrows hint' }, texts.arrow_hint));
+    choices.replaceChildren(buttons[0], make('p', { class: 'arrows hint' }, texts.arrow_hint), buttons[1]);
     spoken.textContent = texts.choose_now;
     addEventListener('keydown', onKey);
   });

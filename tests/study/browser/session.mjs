@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole sessions as participants have them.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { test } from 'node:test';
+import { answer, answersIn, browse, consent, demonstrations, open, openSessions, picture, scratch, serve } from './support.mjs';
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+async function assertAccessible(page, where) {
+  // By the debugger, which the content security policy does not bind.
+  await page.evaluate(axe);
+  const violations = await page.evaluate(async () => (await window.axe.run()).violations.map(
+    ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(' ')}`));
+  assert.deepEqual(violations, [], where);
+}
+
+async function withStudy(options, body) {
+  const server = await serve(scratch(), options);
+  const { browser, context } = await browse(options.context);
+  try {
+    await body(server, context);
+  } finally {
+    await browser.close();
+    await server.kill();
+  }
+}
+
+test('with the mouse, from beginning to end, every page accessible', () => withStudy({}, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await assertAccessible(page, 'information');
+  await picture(page, '1-information');
+  await page.click('#start');
+  assert.match(await page.textContent('#stage'), /tick the box/, 'no consent, no start');
+  assert.deepEqual(openSessions(server), []);
+  await consent(page);
+  await picture(page, '2-first-loop');
+  const choices = [];
+  for (let i = 0; i < demonstrations.length; ++i) {
+    const side = i % 2 === 0 ? 'left' : 'right';
+    await page.waitForSelector('#left');
+    if (i === 0) {
+      await assertAccessible(page, 'trial');
+      await picture(page, '3-choice');
+    }
+    assert.equal(await page.locator('video').count(), 1, 'one video element holds both clips');
+    choices.push(side);
+    await answer(page, side);
+  }
+  await page.waitForSelector('#next');
+  await assertAccessible(page, 'questions');
+  await page.fill('#common_details', 'Tjocklek: "åäö"\n<b>&amp;</b>');
+  await picture(page, '4-questions');
+  await page.click('#next');
+  await page.waitForSelector('#save');
+  await assertAccessible(page, 'save');
+  await picture(page, '5-save');
+  assert.deepEqual(answersIn(server), [], 'nothing is saved before the button is pressed');
+  await page.click('#save');
+  await page.waitForSelector('#code');
+  await assertAccessible(page, 'thanks');
+  await picture(page, '6-thanks');
+  assert.match(await page.textContent('#code'), /^[0-9A-HJKMNP-TV-Z]{4}(-[0-9A-HJKMNP-TV-Z]{4}){2}$/);
+
+  const [file, ...others] = answersIn(server);
+  assert.deepEqual(others, []);
+  assert.deepEqual(file.trials.map(({ choice }) => choice), choices);
+  assert.deepEqual(file.trials.map(({ demonstration }) => demonstration).sort(), demonstrations);
+  assert.deepEqual(file.trials.map(({ position }) => position), [1, 2, 3]);
+  assert.equal(file.free_text.common_details, 'Tjocklek: "åäö"\n<b>&amp;</b>');
+  for (const trial of file.trials) {
+    assert.equal(trial.input, 'mouse');
+    assert.ok(trial.loops_watched >= 1);
+    assert.deepEqual(trial.playback_errors, []);
+    assert.equal(trial.clip, `${trial.demonstration}.left-${trial.left}.mp4`);
+    assert.deepEqual([trial.window_width_px, trial.window_height_px, trial.clip_width_px, trial.clip_height_px], [1280, 720, 640, 320]);
+  }
+  assert.deepEqual(openSessions(server), []);
+  assert.deepEqual(page.problems, []);
+}));
+
+test('with the keyboard only', () => withStudy({ config: { language: 'sv' } }, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  assert.equal(await page.getAttribute('html', 'lang'), 'sv');
+  // Tab to the element of an id, and say that it shows that it has the focus.
+  const tabTo = async (id) => {
+    for (let i = 0; i < 30; ++i) {
+      await page.keyboard.press('Tab');
+      if (await page.evaluate(() => document.activeElement.id) === id) {
+        assert.notEqual(await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle), 'none', `${id}: visible focus`);
+        return;
+      }
+    }
+    assert.fail(`${id} cannot be reached with the Tab key`);
+  };
+  await tabTo('consent');
+  await page.keyboard.press('Space');
+  await picture(page, '7-swedish');
+  await tabTo('start');
+  await page.keyboard.press('Enter');
+  await page.waitForSelector('video');
+  const expected = ['left', 'right', 'left'];
+  for (const [i, key] of ['ArrowLeft', 'ArrowRight', 'Tab'].entries()) {
+    await page.waitForSelector('#left');
+    const remaining = await page.textContent('#remaining');
+    if (key === 'Tab') {
+      await tabTo('left');
+      await page.keyboard.press('Enter');
+    } else {
+      await page.keyboard.press(key);
+    }
+    await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining, `trial ${i}`);
+  }
+  await page.waitForSelector('#next');
+  await tabTo('next');
+  await page.keyboard.press('Enter');
+  await page.waitForSelector('#save');
+  await tabTo('save');
+  await page.keyboard.press('Space');
+  await page.waitForSelector('#code');
+  const [file] = answersIn(server);
+  assert.deepEqual(file.trials.map(({ choice }) => choice), expected);
+  assert.deepEqual(new Set(file.trials.map(({ input }) => input)), new Set(['keyboard']));
+  assert.equal(file.language, 'sv');
+  assert.deepEqual(page.problems, []);
+}));
+
+test('no buttons and no keys before the first loop has ended', () => withStudy({}, async (server, context) => {
+  // What the page shows is written down at every frame of the video, before anything else sees it.
+  await context.addInitScript(() => {
+    window.seen = [];
+    const callback = HTMLVideoElement.prototype.requestVideoFrameCallback;
+    const watched = new WeakSet();
+    HTMLVideoElement.prototype.requestVideoFrameCallback = function request(handler) {
+      if (!watched.has(this)) {
+        watched.add(this);
+        const note = (now, { mediaTime }) => {
+          window.seen.push({ mediaTime, buttons: document.querySelectorAll('#left, #right').length });
+          callback.call(this, note);
+        };
+        callback.call(this, note);
+      }
+      return callback.call(this, handler);
+    };
+  });
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await page.waitForFunction(() => window.seen.length > 2);
+  for (const key of ['ArrowLeft', 'ArrowRight', 'Enter', 'Space']) await page.keyboard.press(key);
+  await page.waitForSelector('#left');
+  const seen = await page.evaluate(() => window.seen);
+  const loopEnd = seen.findIndex(({ mediaTime }, i) => i > 0 && mediaTime < seen[i - 1].mediaTime);
+  const until = loopEnd < 0 ? seen : seen.slice(0, loopEnd + 1);
+  assert.ok(until.length > 10, 'frames were seen');
+  assert.ok(until.every(({ buttons }) => buttons === 0), 'no button while the first loop plays');
+  assert.equal(await page.textContent('#remaining'), '3 left to answer', 'keys did nothing');
+  await page.keyboard.press('ArrowLeft');
+  await page.waitForFunction(() => document.querySelector('#remaining').textContent === '2 left to answer');
+  assert.deepEqual(page.problems, []);
+}));
+
+test('leaving asks once and keeps nothing', () => withStudy({}, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await page.waitForSelector('#left');
+  await answer(page);
+  await page.click('#exit');
+  await picture(page, '8-exit');
+  await page.keyboard.press('ArrowRight');
+  await page.click('#stay');
+  assert.equal(await page.textContent('#remaining'), '2 left to answer', 'keys do nothing while it asks');
+  assert.equal(openSessions(server).length, 1);
+  await page.click('#exit');
+  await page.click('#leave');
+  await page.waitForFunction(() => /left the study/.test(document.querySelector('h1').textContent));
+  await picture(page, '9-left');
+  assert.deepEqual(openSessions(server), []);
+  assert.deepEqual(answersIn(server), []);
+  await page.reload();
+  await page.waitForSelector('#start');
+  assert.deepEqual(page.problems, []);
+}));
+
+test('a small screen is told kindly', () => withStudy({ context: { viewport: { width: 800, height: 500 } } }, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  assert.match(await page.textContent('#stage'), /too small/);
+  assert.equal(await page.isDisabled('#start'), true);
+  await picture(page, '10-small');
+}));

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A study with short clips, its server, and a browser in front of it.
+
+import { spawn, execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const root = new URL('../../..', import.meta.url).pathname;
+const program = process.env.PINCHLAB_PROGRAM;
+const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const skipped = 77;  // what CTest takes for "skipped"
+export const patience = 120000;  // ms; a busy machine is slow, not wrong
+
+function skip(reason) {
+  console.log(`SKIPPED: ${reason}`);
+  process.exit(skipped);
+}
+
+if (!existsSync(chromiumPath)) skip(`${chromiumPath} is not installed (apt-get install chromium)`);
+let playwright;
+try {
+  playwright = await import('playwright-core');
+} catch {
+  skip('playwright-core is not installed (npm ci --prefix tests/study/browser)');
+}
+if (!existsSync(join(root, 'study/page/node_modules/jspsych'))) skip('jsPsych is not installed (npm ci --prefix study/page)');
+
+export const demonstrations = ['01-roll-over', '03-drop', '07-driven-roller'];
+
+/** A folder of this test's own, removed at the end. */
+export function scratch() {
+  const folder = mkdtempSync(join(tmpdir(), 'study-'));
+  process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+/** Renders pairs of clips of `seconds` each, once for all tests of a build, and returns their folder. */
+export function clips(seconds = 2) {
+  const cache = join(process.env.PINCHLAB_CLIPS ?? tmpdir(), `study-clips-${seconds}s`);
+  const made = mkdtempSync(join(tmpdir(), 'study-clips-'));
+  try {
+    for (const name of demonstrations) {
+      const scene = JSON.parse(readFileSync(join(root, 'demos', `${name}.json`), 'utf8'));
+      delete scene.$schema;
+      delete scene.poster_time_s;
+      scene.duration_s = seconds;
+      writeFileSync(join(made, `${name}.json`), JSON.stringify(scene));
+    }
+    const scenes = demonstrations.map((name) => join(made, `${name}.json`));
+    for (const codec of ['h264', 'vp9']) {
+      execFileSync(program, ['render', ...scenes, '--out', cache, '--size', '320x320', '--fps', '30', '--side-by-side', '--codec', codec],
+        { stdio: ['ignore', 'inherit', 'pipe'] });
+    }
+  } finally {
+    rmSync(made, { recursive: true, force: true });
+  }
+  return cache;
+}
+
+/** Starts the server, on a port that is free or on `port`. Resolves when it listens. */
+export async function serve(folder, { port = 0, config = {} } = {}) {
+  const configFile = join(folder, 'study.json');
+  writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations, ...config }));
+  const answers = join(folder, 'answers');
+  const child = spawn(program, ['study', 'serve', '--clips', clips(), '--answers', answers, '--port', String(port), '--seed', '7',
+    '--config', configFile, '--no-webm'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
+  process.on('exit', () => child.kill('SIGKILL'));
+  const server = { child, answers, output: '' };
+  server.ended = new Promise((resolve) => { child.on('exit', resolve); });
+  await new Promise((resolve, reject) => {
+    child.stdout.on('data', (bytes) => {
+      server.output += bytes;
+      if (server.output.includes('Ctrl-C ends')) resolve();
+    });
+    server.ended.then(() => reject(new Error(`the server ended: ${server.output}`)));
+  });
+  server.address = server.output.match(/Participants open +(\S+)/)[1];
+  server.researcher = server.output.match(/You can watch at +(\S+)/)[1];
+  server.port = Number(new URL(server.address).port);
+  server.kill = async () => {
+    child.kill('SIGKILL');
+    await server.ended;
+  };
+  return server;
+}
+
+/** The answer files that are there, parsed. */
+export function answersIn(server) {
+  return readdirSync(server.answers).filter((name) => name.endsWith('.json'))
+    .map((name) => JSON.parse(readFileSync(join(server.answers, name), 'utf8')));
+}
+
+export function openSessions(server) {
+  return readdirSync(join(server.answers, '.running')).filter((name) => name.endsWith('.json') && name !== 'study.json');
+}
+
+/** A browser with a profile of its own. */
+export async function browse(options = {}) {
+  const browser = await playwright.chromium.launch({
+    executablePath: chromiumPath,
+    args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
+      '--disable-component-update', '--disable-sync'],
+  });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
+  context.setDefaultTimeout(patience);
+  return { browser, context };
+}
+
+/** A page whose every problem is kept in `page.problems`. */
+export async function open(context, address) {
+  const page = await context.newPage();
+  page.problems = [];
+  page.on('pageerror', (error) => page.problems.push(String(error)));
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') page.problems.push(message.text());
+  });
+  await page.goto(address);
+  return page;
+}
+
+/** From the information page to the first trial. */
+export async function consent(page) {
+  await page.check('#consent');
+  await page.click('#start');
+  await page.waitForSelector('video');
+}
+
+/** Answers the trial that is shown and waits for what comes after it. */
+export async function answer(page, side = 'left') {
+  const remaining = await page.textContent('#remaining');
+  await page.click(`#${side}`);
+  await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
+}
+
+/** Keeps a screenshot where PINCHLAB_SCREENSHOTS says. */
+export async function picture(page, name) {
+  const folder = process.env.PINCHLAB_SCREENSHOTS;
+  if (!folder) return;
+  mkdirSync(folder, { recursive: true });
+  await page.screenshot({ path: join(folder, `${name}.png`) });
+}
+
