@@ -70,12 +70,12 @@ export function information(stage, texts, backend) {
   return new Promise((resolve) => {
     const tick = make('input', { type: 'checkbox', id: 'consent' });
     const problem = make('p', { class: 'wrong', role: 'alert' });
-    const window_hint = make('p', { class: 'wrong', role: 'status' });
+    const windowHint = make('p', { class: 'wrong', role: 'status' });
     const start = make('button', { type: 'button', id: 'start' }, texts.start);
     const checkWindow = () => {
       const hint = isTouchOnly() ? texts.touch_screen : isSmall()
         ? texts.small_window.replace('{width}', smallest.width).replace('{height}', smallest.height) : '';
-      if (window_hint.textContent !== hint) window_hint.textContent = hint;
+      if (windowHint.textContent !== hint) windowHint.textContent = hint;
       start.disabled = hint !== '';
     };
     start.addEventListener('click', async () => {
@@ -95,8 +95,8 @@ export function information(stage, texts, backend) {
         start.disabled = false;
       }
     });
-    sheet(stage, texts.information_heading, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
-      ...paragraphs(texts.information_questions), make('label', { class: 'tick' }, tick, texts.consent), window_hint, problem,
+    sheet(stage, texts.information_heading, windowHint, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
+      ...paragraphs(texts.information_questions), make('label', { class: 'tick' }, tick, texts.consent), problem,
       make('div', { class: 'row' }, start), make('p', { class: 'hint' }, texts.keyboard_hint));
     addEventListener('resize', checkWindow);
     checkWindow();

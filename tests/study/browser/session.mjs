@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, demonstrations, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
 
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -24,7 +24,7 @@ async function withStudy(options, body) {
     await body(server, context);
   } finally {
     await browser.close();
-    await server.kill();
+    killServers();
   }
 }
 

@@ -9,6 +9,7 @@ import { join } from 'node:path';
 const root = new URL('../../..', import.meta.url).pathname;
 const program = process.env.PINCHLAB_PROGRAM;
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+process.setMaxListeners(50);
 const skipped = 77;  // what CTest takes for "skipped"
 export const patience = 120000;  // ms; a busy machine is slow, not wrong
 
@@ -58,6 +59,15 @@ export function clips(seconds = 2) {
   return cache;
 }
 
+const running = new Set();
+
+/** Ends every server that is left, so that a failed test does not wait for it. */
+export function killServers() {
+  for (const child of running) child.kill('SIGKILL');
+  running.clear();
+}
+process.on('exit', killServers);
+
 /** Starts the server, on a port that is free or on `port`. Resolves when it listens. */
 export async function serve(folder, { port = 0, config = {} } = {}) {
   const configFile = join(folder, 'study.json');
@@ -65,7 +75,7 @@ export async function serve(folder, { port = 0, config = {} } = {}) {
   const answers = join(folder, 'answers');
   const child = spawn(program, ['study', 'serve', '--clips', clips(), '--answers', answers, '--port', String(port), '--seed', '7',
     '--config', configFile, '--no-webm'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
-  process.on('exit', () => child.kill('SIGKILL'));
+  running.add(child);
   const server = { child, answers, output: '' };
   server.ended = new Promise((resolve) => { child.on('exit', resolve); });
   await new Promise((resolve, reject) => {

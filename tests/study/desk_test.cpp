@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sessions, answers and what survives a restart.
+#include "study/desk.h"
+
+#include <sys/stat.h>
+
+#include "analysis/answers_table.h"
+#include "study/answers.h"
+#include "study/durable_file.h"
+#include "study/tables.h"
+#include "tests/study/support.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+template <class Action>
+int refused(const Action& action) {
+  try {
+    action();
+  } catch (const Refused& error) {
+    return error.status;
+  }
+  return 0;
+}
+
+void answer_all(Desk& desk, const std::string& token) {
+  const Progress progress = desk.progress(token);
+  for (std::size_t i = progress.next; i < progress.trials.size(); ++i) {
+    desk.show(token, i);
+    desk.answer(token, parse_answer(answer_body(i, i % 2 == 0 ? "left" : "right")));
+  }
+}
+
+TEST(Session, AnswersComeOneByOneAndCountOnce) {
+  Desk desk(desk_options(scratch_folder()));
+  const std::string token = desk.start("", "browser");
+  EXPECT_EQ(refused([&] { desk.answer(token, parse_answer(answer_body(0))); }), 409) << "not shown";
+  EXPECT_EQ(refused([&] { desk.show(token, 1); }), 409) << "not the next";
+  desk.show(token, 0);
+  desk.show(token, 0);  // a reload
+  EXPECT_EQ(refused([&] { desk.answer(token, parse_answer(answer_body(1))); }), 409);
+  desk.answer(token, parse_answer(answer_body(0)));
+  desk.answer(token, parse_answer(answer_body(0)));  // sent again
+  EXPECT_EQ(desk.progress(token).next, 1U);
+  EXPECT_EQ(refused([&] { desk.answer(token, parse_answer(answer_body(0, "right"))); }), 409)
+      << "nobody changes an answer";
+  EXPECT_EQ(refused([&] { desk.save(token, {}); }), 409) << "trials are left";
+  answer_all(desk, token);
+  EXPECT_EQ(refused([&] { desk.show(token, 3); }), 409) << "there is no such trial";
+}
+
+TEST(Session, BodiesAreCheckedWholly) {
+  const auto status = [](const char* key, const json& value) {
+    json body = answer_body(0);
+    body[key] = value;
+    return refused([&] { parse_answer(body); });
+  };
+  EXPECT_EQ(refused([] { parse_answer(answer_body(0)); }), 0);
+  const json good = answer_body(0);
+  for (const auto& item : good.items()) {
+    json body = good;
+    body.erase(item.key());
+    EXPECT_EQ(refused([&] { parse_answer(body); }), 422) << item.key() << " missing";
+    EXPECT_EQ(status(item.key().c_str(), json::object()), 422) << item.key();
+    EXPECT_EQ(status(item.key().c_str(), -1), 422) << item.key();
+  }
+  EXPECT_EQ(status("choice", "both"), 422);
+  EXPECT_EQ(status("reaction_time_s", 1e9), 422);
+  EXPECT_EQ(status("unknown", 1), 422);
+  EXPECT_EQ(status("playback_errors", json::array({std::string(501, 'x')})), 422);
+  EXPECT_EQ(refused([] {
+              parse_free_text({{"free_text", {{"thoughts", std::string(20001, 'x')}}}});
+            }),
+            422);
+  EXPECT_EQ(refused([] { parse_free_text({{"free_text", {{"other", "x"}}}}); }), 422);
+}
+
+TEST(Session, FileGivesTheSameBack) {
+  Session session;
+  session.id = "0123456789abcdef";
+  session.secret_sha256 = sha256("x");
+  session.seed = largest_seed;
+  session.started_utc = session.last_seen_utc = "2026-11-20T12:05:01.250Z";
+  session.plan = make_plan(1, 2, plan_options(small_config()));
+  session.media = {"a", "b", "c"};
+  show(session, 0, session.started_utc);
+  answer(session, 0, parse_answer(answer_body(0)).answer);
+  EXPECT_EQ(to_json(session_from_json(to_json(session))), to_json(session));
+}
+
+TEST(Desk, AnswersFeedTheStatistics) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  for (int i = 0; i < 4; ++i) {
+    const std::string token = desk.start("", "browser\xFF\n");
+    answer_all(desk, token);
+    desk.save(token, {{"thoughts", "\"åäö\", with a comma"}});
+  }
+  const auto table = analysis::read_answers({folder / "answers"}, {});
+  EXPECT_EQ(table.participants.size(), 4U);
+  // In every block of two both sides are seen, and left is always chosen at the same positions.
+  const json file = json::parse(read_whole(answer_files(folder / "answers").front()));
+  EXPECT_EQ(file["trials"].size(), 3U);
+  EXPECT_EQ(file["user_agent"], "browser??");
+  write_text(folder / "answers.csv", answers_csv(folder / "answers"));
+  analysis::ReadOptions options;
+  options.ignore_other_columns = true;
+  EXPECT_EQ(analysis::read_answers({folder / "answers.csv"}, options).participants.size(), 4U);
+}
+
+TEST(Desk, RestartLosesNobody) {
+  const fs::path folder = scratch_folder();
+  std::string token, saved, code;
+  {
+    Desk desk(desk_options(folder));
+    token = desk.start("", "");
+    desk.show(token, 0);
+    desk.answer(token, parse_answer(answer_body(0)));
+    saved = desk.start("", "");
+    answer_all(desk, saved);
+    code = desk.save(saved, {});
+  }
+  Desk desk(desk_options(folder));
+  EXPECT_EQ(desk.progress(token).next, 1U);
+  EXPECT_EQ(desk.save(saved, {}), code) << "saved once, same code";
+  EXPECT_EQ(answer_files(folder / "answers").size(), 1U);
+  answer_all(desk, token);
+  desk.save(token, {});
+  EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
+  EXPECT_TRUE(desk.overview().running.empty());
+}
+
+TEST(Desk, WhoLeavesIsReplaced) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const std::string first = desk.start("", "");
+  const std::string second = desk.start("", "");
+  desk.leave(first);
+  EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+  EXPECT_EQ(refused([&] { desk.save(first, {}); }), 401);
+  desk.start("", "");
+  std::set<std::uint64_t> numbers;
+  for (const auto& participant : desk.overview().running) {
+    numbers.insert(participant.number);
+  }
+  EXPECT_EQ(numbers, (std::set<std::uint64_t>{0, 1}));
+  EXPECT_TRUE(answer_files(folder / "answers").empty());
+}
+
+TEST(Desk, IdleSessionsEndAfterADay) {
+  DeskOptions options = desk_options(scratch_folder());
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  Desk desk(std::move(options));
+  const std::string token = desk.start("", "");
+  *now = "2026-11-21T11:59:59.000Z";
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.size(), 2U);
+  *now = "2026-11-21T12:00:00.000Z";
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.size(), 2U);
+  EXPECT_EQ(refused([&] { desk.progress(token); }), 401);
+}
+
+TEST(Desk, LimitsAndLinks) {
+  DeskOptions options = desk_options(scratch_folder());
+  options.config.participant_limit = 2;
+  options.config.one_time_links = true;
+  Desk desk(std::move(options));
+  const auto links = desk.links();
+  ASSERT_EQ(links.size(), 2U);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 403);
+  EXPECT_EQ(refused([&] { desk.start("guess", ""); }), 403);
+  const std::string token = desk.start(links[1], "");
+  EXPECT_EQ(desk.overview().running.front().number, 1U);
+  EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403);
+  desk.leave(token);
+  EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403) << "used is used";
+  desk.start(links[0], "");
+}
+
+TEST(Desk, TokensOfOthersOpenNothing) {
+  Desk desk(desk_options(scratch_folder()));
+  const std::string a = desk.start("", ""), b = desk.start("", "");
+  const std::string mixed = a.substr(0, 17) + b.substr(17);
+  for (const std::string& token : {mixed, std::string(), std::string("."), a + "0", a.substr(0, 48),
+                                   std::string("../../etc.") + b.substr(17)}) {
+    EXPECT_EQ(refused([&] { desk.progress(token); }), 401) << token;
+    EXPECT_EQ(refused([&] { desk.save(token, {}); }), 401) << token;
+  }
+}
+
+TEST(Desk, AnotherStudyInTheFolderIsRefused) {
+  const fs::path folder = scratch_folder();
+  { Desk desk(desk_options(folder)); }
+  DeskOptions seed = desk_options(folder);
+  seed.seed = 8;
+  EXPECT_THROW(Desk{std::move(seed)}, std::runtime_error);
+  DeskOptions plan = desk_options(folder);
+  plan.config.both_orders = true;
+  EXPECT_THROW(Desk{std::move(plan)}, std::runtime_error);
+  DeskOptions same = desk_options(folder);
+  same.seed.reset();
+  Desk desk(std::move(same));
+  EXPECT_EQ(desk.seed(), 7U);
+  EXPECT_THROW(Desk{desk_options(folder)}, std::runtime_error) << "two servers at a time";
+}
+
+TEST(Desk, UnwritableFolderIsToldAndNothingIsLost) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const std::string token = desk.start("", "");
+  answer_all(desk, token);
+  fs::rename(folder / "answers", folder / "away");
+  EXPECT_EQ(refused([&] { desk.save(token, {}); }), 507);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 503);
+  fs::rename(folder / "away", folder / "answers");
+  EXPECT_TRUE(answer_files(folder / "answers").empty());
+  desk.save(token, {});
+  EXPECT_EQ(answer_files(folder / "answers").size(), 1U);
+}
+
+TEST(Withdraw, RemovesOneParticipant) {
+  const fs::path folder = scratch_folder();
+  std::vector<std::string> codes;
+  Desk desk(desk_options(folder));
+  for (int i = 0; i < 3; ++i) {
+    const std::string token = desk.start("", "");
+    answer_all(desk, token);
+    codes.push_back(desk.save(token, {}));
+  }
+  std::string typed = codes[1];
+  std::ranges::replace(typed, '-', ' ');
+  std::ranges::transform(typed, typed.begin(), [](unsigned char c) { return std::tolower(c); });
+  EXPECT_NE(withdraw(folder / "answers", typed), "");
+  EXPECT_EQ(withdraw(folder / "answers", codes[1]), "") << "gone already";
+  EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
+  EXPECT_THROW(withdraw(folder / "answers", "nonsense"), std::invalid_argument);
+}
+
+TEST(DurableFile, FailureLeavesNothing) {
+  const fs::path folder = scratch_folder();
+  EXPECT_THROW(write_durably(folder / "missing" / "a.json", "x"), std::runtime_error);
+  fs::create_directory(folder / "a.json");
+  EXPECT_THROW(write_durably(folder / "a.json", "x"), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder / "a.json.partial"));
+}
+
+TEST(Export, PsychDs) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const std::string token = desk.start("", "");
+  answer_all(desk, token);
+  desk.save(token, {});
+  write_psych_ds(folder / "answers", folder / "dataset");
+  const json description = json::parse(read_whole(folder / "dataset" / "dataset_description.json"));
+  const std::string csv = read_whole(folder / "dataset" / "data" / "study-cables_data.csv");
+  std::string header;
+  for (const json& variable : description["variableMeasured"]) {
+    header += (header.empty() ? "" : ",") + variable["name"].get<std::string>();
+  }
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), header);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  EXPECT_THROW(write_psych_ds(folder / "answers", folder / "dataset"), std::runtime_error);
+}
+
+TEST(Clips, PairsAreServedInOneSize) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder);
+  const Clips clips = open_clips(folder, small_config());
+  for (const auto& [name, files] : clips) {
+    EXPECT_NE(files.mp4.left->file_size(), files.mp4.right->file_size());
+    EXPECT_EQ(files.mp4.left->served_size(), files.mp4.right->served_size());
+    const Clip& clip = *files.mp4.left;
+    const std::string whole = clip.read(0, clip.served_size() + 10);
+    ASSERT_EQ(whole.size(), clip.served_size());
+    EXPECT_EQ(whole.substr(0, clip.file_size()), read_whole(folder / clip.name()));
+    EXPECT_EQ(whole.substr(clip.file_size() + 4, 4), "free");
+    for (const std::uint64_t offset :
+         {std::uint64_t{0}, clip.file_size() - 3, clip.file_size() + 5, clip.served_size() - 1}) {
+      EXPECT_EQ(clip.read(offset, 20), whole.substr(offset, 20));
+    }
+  }
+}
+
+TEST(Clips, AChangedFileIsRefused) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder);
+  write_text(folder / "02-second.left-pinch.mp4", "other");
+  EXPECT_THROW(open_clips(folder, small_config()), std::runtime_error);
+  Config config = small_config();
+  config.demonstrations = {"02-secnd"};
+  EXPECT_THROW(open_clips(folder, config), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pinchlab::study
