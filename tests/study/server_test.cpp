@@ -147,10 +147,11 @@ int raw_status(const std::string& address, const std::string& bytes) {
   std::string reply;
   if (::connect(connection, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
     ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    ::shutdown(connection, SHUT_WR);
+    const timeval patience = {10, 0};
+    ::setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     char buffer[4096];
     ssize_t got = 0;
-    while ((got = ::recv(connection, buffer, sizeof buffer, 0)) > 0) {
+    while (reply.size() <= 12 && (got = ::recv(connection, buffer, sizeof buffer, 0)) > 0) {
       reply.append(buffer, static_cast<std::size_t>(got));
     }
   }
