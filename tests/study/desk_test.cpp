@@ -111,6 +111,38 @@ TEST(Desk, AnswersFeedTheStatistics) {
   EXPECT_EQ(analysis::read_answers({folder / "answers.csv"}, options).participants.size(), 4U);
 }
 
+TEST(Desk, AttentionChecksAndTrainingAreKeptApart) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  for (const char* side : {"left", "right"}) {
+    write_text(folder / "clips" / (std::string("check-") + side + ".mp4"),
+               std::string("clip ") + side);
+  }
+  options.config.training = {"03-third"};
+  options.config.attention_checks = {{"upside-down", "check-left.mp4", "check-right.mp4"}};
+  options.clips = open_clips(folder / "clips", options.config);
+  Desk desk(std::move(options));
+  const std::string token = desk.start("", "");
+  EXPECT_EQ(desk.progress(token).trials.size(), 5U);
+  EXPECT_TRUE(desk.progress(token).trials.front().is_practice);
+  answer_all(desk, token);
+  desk.save(token, {});
+  const json file = json::parse(read_whole(answer_files(folder / "answers").front()));
+  int checks = 0;
+  for (const json& trial : file["trials"]) {
+    if (trial["kind"] == "attention") {
+      ++checks;
+      const std::string expected = trial["expected"];
+      EXPECT_EQ(trial["clip"], "check-" + expected + ".mp4");
+      EXPECT_EQ(trial["left"], "check");
+      EXPECT_EQ(file["clips_sha256"]["upside-down"]["check_" + expected],
+                sha256("clip " + expected));
+    }
+  }
+  EXPECT_EQ(checks, 1);
+  EXPECT_EQ(analysis::read_answers({folder / "answers"}, {}).participants.size(), 1U);
+}
+
 TEST(Desk, RestartLosesNobody) {
   const fs::path folder = scratch_folder();
   std::string token, saved, code;

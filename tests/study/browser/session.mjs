@@ -194,3 +194,29 @@ test('a small screen is told kindly', () => withStudy({ context: { viewport: { w
   assert.equal(await page.isDisabled('#start'), true);
   await picture(page, '10-small');
 }));
+
+test('a browser without H.264 plays the other encoding; practice comes first', () => withStudy({ config: { training: ['03-drop'] } }, async (server, context) => {
+  await context.addInitScript(() => {
+    const canPlayType = HTMLMediaElement.prototype.canPlayType;
+    HTMLMediaElement.prototype.canPlayType = function canPlay(type) {
+      return type.startsWith('video/mp4') ? '' : canPlayType.call(this, type);
+    };
+  });
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  assert.match(await page.textContent('.practice'), /practice/);
+  for (let i = 0; i <= demonstrations.length; ++i) {
+    await page.waitForSelector('#left');
+    assert.deepEqual(await page.$eval('video', (video) => [video.videoWidth, video.videoHeight]), [640, 320]);
+    assert.equal(await page.locator('.practice').count(), i === 0 ? 1 : 0);
+    await answer(page);
+  }
+  await page.click('#next');
+  await page.click('#save');
+  await page.waitForSelector('#code');
+  const [file] = answersIn(server);
+  assert.deepEqual(file.trials.map(({ kind }) => kind), ['training', 'main', 'main', 'main']);
+  for (const { clip } of file.trials) assert.match(clip, /\.webm$/);
+  assert.deepEqual(page.problems, []);
+}));
