@@ -64,7 +64,7 @@ function build(display, { texts, practice, remaining, exit }) {
   const left = remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining);
   const footer = make('footer', {}, make('p', { id: 'remaining' }, left), exit());
   display.replaceChildren(make('section', { class: 'trial' }, heading,
-    ...(practice ? [make('p', { class: 'practice hint' }, texts.practice)] : []), video, choices, spoken, footer));
+    ...(practice ? [make('p', { class: 'practice hint' }, texts.practice)] : []), make('div', { class: 'clips' }, video), choices, spoken, footer));
   heading.focus();
   return { video, choices, spoken, heading };
 }
@@ -74,8 +74,10 @@ function keepFitting({ video, choices }) {
   const fit = () => {
     if (!video.videoWidth) return;
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
-    const others = [...video.parentElement.children].filter((element) => element !== video && getComputedStyle(element).position !== 'absolute')
-      .reduce((sum, element) => sum + element.getBoundingClientRect().height, 40);
+    const clips = video.parentElement;
+    const others = [...clips.parentElement.children]
+      .filter((element) => element !== clips && getComputedStyle(element).position !== 'absolute')
+      .reduce((sum, element) => sum + element.getBoundingClientRect().height, 24);  // CSS px, with margins
     const scale = Math.min(1, (innerWidth - 16) / width, (innerHeight - others) / height);
     video.style.width = `${width * scale}px`;
     video.style.height = `${height * scale}px`;
