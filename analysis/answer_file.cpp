@@ -40,9 +40,8 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   if (object.has("clip")) object.text("clip", 1024);
   if (object.has("shown_utc")) object.utc("shown_utc");
   if (object.has("input")) object.choice("input", {"mouse", "keyboard", "touch"});
-  for (const char* key :
-       {"window_width_px", "window_height_px", "clip_width_px", "clip_height_px", "screen_width_px",
-        "screen_height_px"}) {
+  for (const char* key : {"window_width_px", "window_height_px", "clip_width_px", "clip_height_px",
+                          "screen_width_px", "screen_height_px"}) {
     if (object.has(key)) object.whole(key, 0, 100000);
   }
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);

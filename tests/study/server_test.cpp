@@ -15,6 +15,7 @@
 #include "analysis/answer_file.h"
 #include "study/answers.h"
 #include "study/durable_file.h"
+#include "study/page_assets.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -322,6 +323,9 @@ void save_all(const std::string& address, std::vector<Participant>& people) {
 }
 
 TEST(Server, KilledAtAHundredRandomMomentsWhileSaving) {
+  if (!has_page()) {
+    GTEST_SKIP() << "the program was built without jsPsych; run npm ci --prefix study/page";
+  }
   const fs::path folder = scratch_folder();
   write_clips(folder / "clips");
   write_text(folder / "study.json",
