@@ -126,6 +126,8 @@ inline nlohmann::json answer_document(const std::string& participant = "p-1") {
                                   {"window_height_px", 1080},
                                   {"clip_width_px", 1800},
                                   {"clip_height_px", 506},
+                                  {"screen_width_px", 1920},
+                                  {"screen_height_px", 1080},
                                   {"device_pixel_ratio", 1.0}});
   };
   trial(1, "training", "00-warm-up", "pinch", "baseline", "left");

@@ -422,6 +422,7 @@ TEST(Malformed, AnswerFileValues) {
       {"/trials/1/window_height_px", 100001, "whole number"},
       {"/trials/1/clip_width_px", 1.5, "whole number"},
       {"/trials/1/clip_height_px", "x", "whole number"},
+      {"/trials/1/screen_width_px", "x", "whole number"},
       {"/trials/1/device_pixel_ratio", 0, "number from"},
       {"/trials/1/reaction_time", 1.0, "did you mean `reaction_time_s`"},
       {"/trial", 1, "did you mean `trials`"},
