@@ -207,13 +207,23 @@ class Composer {
     picture_.add(shaft);
   }
 
-  /// The mass of a body that hangs on a cable's end, under it.
+  /// The mass of a body that hangs on a cable's end, under it. One that a cable runs round beneath, such
+  /// as a hook block, is no weight but part of the tackle, and its text would lie behind the cable.
   void add_weight(std::size_t i) {
     const Body& body = scene_.bodies[i];
-    if (body.kind == BodyKind::fixed || body.kind == BodyKind::fixed_axle || !holds_cable_end(i))
+    if (body.kind == BodyKind::fixed || body.kind == BodyKind::fixed_axle || !holds_cable_end(i) ||
+        carries_cable(i)) {
       return;
+    }
     const Vec2 centre = world_.position[i] - Vec2(0.0, body.radius + 0.8 * page_.text());
     picture_.add(Label{centre, page_.text(), fmt::format("{:.4g} kg", body.mass), palette::ink});
+  }
+
+  bool carries_cable(std::size_t i) const {
+    return std::any_of(scene_.cables.begin(), scene_.cables.end(), [i](const Cable& cable) {
+      return std::any_of(cable.wraps.begin(), cable.wraps.end(),
+                         [i](const Wrap& wrap) { return wrap.body == static_cast<int>(i); });
+    });
   }
 
   bool holds_cable_end(std::size_t i) const {

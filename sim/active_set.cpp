@@ -34,7 +34,7 @@ void bound_friction(World& world) {
       const bool slack = !rows[index(run.row_in)].on && !rows[index(run.row_out)].on;
       if (slack) row.bound = std::min(row.friction, row.wrapped_friction);
     }
-    if (row.bound == 0.0) row.on = false;
+    if (row.bound == 0.0 || row.dropped) row.on = false;
     if (row.bound == infinity) row.slip = Slip::stick;
   }
 }
@@ -128,6 +128,15 @@ const Flip& choose_flip(const ActiveSet& set, int solve) {
   return set.flips[(hop >> 8) % set.flips.size()];
 }
 
+/// Friction of bare surfaces that has changed in this step is left out of it: sticking may
+/// contradict what cables and contacts ask of the same bodies, but frictionless they can always be
+/// met.
+void drop_friction(World& world) {
+  for (Row& row : world.scratch.rows) {
+    if (row.kind == RowKind::tangent && row.frozen) row.dropped = true;
+  }
+}
+
 /// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
 /// makes energy nor moves material; only the bound on its force is exceeded, for one step.
 void freeze_friction(World& world) {
@@ -161,7 +170,7 @@ void sweep(World& world) {
       double least = 0.0, most = infinity;
       if (is_friction(row)) {
         const double force = row.normal >= 0 ? s.rows[index(row.normal)].impulse : infinity;
-        most = row.bound == 0.0 || force == 0.0 ? 0.0 : row.bound * force;
+        most = row.bound == 0.0 || row.dropped || force == 0.0 ? 0.0 : row.bound * force;
         least = -most;
       }
       const double before = row.impulse;
@@ -235,7 +244,7 @@ void solve(const Scene& scene, World& world, double kick) {
   order_rows(world);
   find_runs(scene, world);
   // All contradicted states flip while that makes progress, then one at a time.
-  constexpr int patience = 3, before_freezing = 40, most_solves = 150;
+  constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
   int left = patience;
   bool settled = false;
@@ -244,6 +253,7 @@ void solve(const Scene& scene, World& world, double kick) {
       freeze_friction(world);
       ++world.diagnostics.fallbacks;
     }
+    if (solves == before_dropping) drop_friction(world);
     bound_friction(world);
     solve_for_states(world);
     world.diagnostics.active_set_solves = solves;
