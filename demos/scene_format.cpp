@@ -31,7 +31,8 @@ const ObjectFormat body_format = {
 const ObjectFormat attachment_format = {"attachment",
                                         {{"world_m", vector, optional, -1e6, 1e6},
                                          {"body", name, optional, 1, 64},
-                                         {"point_m", vector, optional, -1e4, 1e4}}};
+                                         {"point_m", vector, optional, -1e4, 1e4},
+                                         {"rim_angle_rad", number, optional, -1e6, 1e6}}};
 
 const ObjectFormat wrap_format = {
     "wrap",

@@ -81,7 +81,8 @@ class Reader {
   Body read_body(const json& from, const std::string& place);
   void check_kind(const json& from, const std::string& place);
   void read_rail(const json& from, Body& body, const std::string& place);
-  Attachment read_attachment(const json& from, const std::string& place, const Scene& scene);
+  Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
+                             double half_width);
   std::vector<Wrap> read_wraps(const json& from, const std::string& place, bool closed);
   Cable read_cable(const json& from, const std::string& place, const Scene& scene);
   Wall read_wall(const json& from, const std::string& place);
@@ -203,7 +204,8 @@ Body Reader::read_body(const json& from, const std::string& place) {
   return body;
 }
 
-Attachment Reader::read_attachment(const json& from, const std::string& place, const Scene& scene) {
+Attachment Reader::read_attachment(const json& from, const std::string& place, const Scene& scene,
+                                   double half_width) {
   Attachment attachment;
   if (from.contains("world_m") == from.contains("body")) {
     problem(place, "give either world_m (a point that does not move) or body (and point_m on it)");
@@ -211,14 +213,24 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
   }
   if (from.contains("world_m")) {
     attachment.point = vector_of(from["world_m"]);
-    if (from.contains("point_m")) {
-      problem(place + "/point_m", "belongs to body, not to world_m; leave one out");
+    for (const char* key : {"point_m", "rim_angle_rad"}) {
+      if (from.contains(key)) {
+        problem(place + "/" + key, "belongs to body, not to world_m; leave one out");
+      }
     }
     return attachment;
   }
   attachment.body = body_index(from["body"], place + "/body");
   take(from, "point_m", attachment.point);
   const double radius = scene.bodies[static_cast<std::size_t>(attachment.body)].radius;
+  if (from.contains("rim_angle_rad")) {
+    if (from.contains("point_m")) {
+      problem(place + "/rim_angle_rad", "and point_m both say where the end is fixed; leave one out");
+    }
+    const double angle = from["rim_angle_rad"].get<double>();
+    attachment.point = (radius + half_width) * Vec2(std::cos(angle), std::sin(angle));
+    return attachment;
+  }
   if (attachment.point.norm() > radius * (1.0 + 1e-9)) {
     problem(place + "/point_m",
             fmt::format("lies {} m from the body's centre, outside of its radius of {} m",
@@ -268,7 +280,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
       problem(place, fmt::format("{} is missing (or say \"closed\": true for a loop)", end));
     } else if (!cable.closed) {
       (end == std::string("start") ? cable.start : cable.end) =
-          read_attachment(from[end], place + "/" + end, scene);
+          read_attachment(from[end], place + "/" + end, scene, cable.half_width);
     }
   }
   cable.wraps = read_wraps(from.value("wraps", json::array()), place + "/wraps", cable.closed);

@@ -48,7 +48,8 @@ double median_ms(std::vector<double>& seconds) {
 std::vector<std::uint8_t> luma_of(const std::uint8_t* rgba, int width, int height) {
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   std::vector<std::uint8_t> y(count), u(count / 4), v(count / 4);
-  rgba_to_yuv420(rgba, width, height, {y.data(), u.data(), v.data(), width, width / 2, width / 2});
+  rgba_to_yuv420(rgba, width, {0, 0, width, height},
+                 {y.data(), u.data(), v.data(), width, width / 2, width / 2});
   return y;
 }
 
@@ -63,23 +64,67 @@ double psnr_db(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_
                    : infinity;
 }
 
-/// Compares a clip with its frames, drawn again: the least luma PSNR of any.
-double least_psnr_db(const std::string& clip, const Scene& scene, Method method, Canvas& canvas,
-                     int frames) {
-  VideoReader reader(clip);
+void advance_frame(const Scene& scene, World& world) {
+  for (int s = 0; s < scene.steps_per_frame; ++s) {
+    if (step(scene, world) != StepStatus::ok)
+      throw std::runtime_error(scene.name + ": " + world.failure);
+  }
+}
+
+/// The stages as in making a clip, with the yardstick's encoder.
+void time_stages(const Scene& scene, Method method, Canvas& canvas, VideoWriter& writer,
+                 RenderCost& cost) {
+  std::vector<double> simulate, draw, convert, encode;
   World world = make_world(scene, method);
   Picture picture;
-  double least = infinity;
-  for (int frame = 0; frame < frames; ++frame) {
-    const std::optional<DecodedFrame> decoded = reader.next();
-    if (!decoded) throw std::runtime_error(clip + ": ends too early");
+  for (int frame = 0; frame < cost.frames; ++frame) {
+    const double start = processor_seconds();
     compose(scene, world, picture);
-    const std::vector<std::uint8_t> drawn =
-        luma_of(canvas.draw(picture), canvas.width(), canvas.height());
-    least = std::min(least, psnr_db(drawn, decoded->luma));
-    for (int s = 0; s < scene.steps_per_frame; ++s) step(scene, world);
+    const std::uint8_t* pixels = canvas.draw(picture);
+    draw.push_back(processor_seconds() - start);
+    writer.add(pixels, canvas.changed());
+    convert.push_back(writer.convert_seconds());
+    encode.push_back(writer.encode_seconds());
+    const double encoded = processor_seconds();
+    advance_frame(scene, world);
+    simulate.push_back(processor_seconds() - encoded);
   }
-  return least;
+  writer.finish();
+  cost.simulate_ms = median_ms(simulate);
+  cost.draw_ms = median_ms(draw);
+  cost.convert_ms = median_ms(convert);
+  cost.encode_ms = median_ms(encode);
+}
+
+/// The clip as it is written, and how near its frames come to the drawn ones.
+void measure_clip(const Scene& scene, Method method, Canvas& canvas, const std::string& path,
+                  const VideoSettings& settings, RenderCost& cost) {
+  VideoWriter writer(path, settings);
+  std::vector<double> encode;
+  World world = make_world(scene, method);
+  Picture picture;
+  for (int frame = 0; frame < cost.frames; ++frame) {
+    compose(scene, world, picture);
+    const std::uint8_t* pixels = canvas.draw(picture);
+    writer.add(pixels, canvas.changed());
+    encode.push_back(writer.encode_seconds());
+    advance_frame(scene, world);
+  }
+  writer.finish();
+  cost.encode_stimuli_ms = median_ms(encode);
+
+  VideoReader reader(path);
+  world = make_world(scene, method);
+  cost.least_luma_psnr_db = infinity;
+  for (int frame = 0; frame < cost.frames; ++frame) {
+    const std::optional<DecodedFrame> decoded = reader.next();
+    if (!decoded) throw std::runtime_error(path + ": ends too early");
+    compose(scene, world, picture);
+    const std::vector<std::uint8_t> luma =
+        luma_of(canvas.draw(picture), canvas.width(), canvas.height());
+    cost.least_luma_psnr_db = std::min(cost.least_luma_psnr_db, psnr_db(luma, decoded->luma));
+    advance_frame(scene, world);
+  }
 }
 
 }  // namespace
@@ -89,45 +134,14 @@ RenderCost measure_render(const Scene& scene, Method method, int width, int heig
   cost.width = width;
   cost.height = height;
   cost.frames = frames > 0 ? frames : scene.frame_count;
-
   const ScratchFolder scratch;
-  const std::string yardstick_clip = (scratch.path / "yardstick.mp4").string();
-  const std::string stimulus_clip = (scratch.path / "stimulus.mp4").string();
   const VideoSettings stimulus{Codec::h264, width, height, scene.frames_per_second, ""};
   VideoSettings yardstick = stimulus;
   yardstick.encoder_options = "preset=veryfast:crf=14";
-  VideoWriter yardstick_writer(yardstick_clip, yardstick), stimulus_writer(stimulus_clip, stimulus);
-
+  VideoWriter writer((scratch.path / "yardstick.mp4").string(), yardstick);
   Canvas canvas(width, height);
-  World world = make_world(scene, method);
-  Picture picture;
-  std::vector<double> simulate, draw, convert, encode, encode_stimulus;
-  for (int frame = 0; frame < cost.frames; ++frame) {
-    const double start = processor_seconds();
-    compose(scene, world, picture);
-    const std::uint8_t* pixels = canvas.draw(picture);
-    draw.push_back(processor_seconds() - start);
-    yardstick_writer.add(pixels);
-    convert.push_back(yardstick_writer.convert_seconds());
-    encode.push_back(yardstick_writer.encode_seconds());
-    stimulus_writer.add(pixels);
-    encode_stimulus.push_back(stimulus_writer.encode_seconds());
-    const double drawn = processor_seconds();
-    for (int s = 0; s < scene.steps_per_frame; ++s) {
-      if (step(scene, world) != StepStatus::ok)
-        throw std::runtime_error(scene.name + ": " + world.failure);
-    }
-    simulate.push_back(processor_seconds() - drawn);
-  }
-  yardstick_writer.finish();
-  stimulus_writer.finish();
-
-  cost.simulate_ms = median_ms(simulate);
-  cost.draw_ms = median_ms(draw);
-  cost.convert_ms = median_ms(convert);
-  cost.encode_ms = median_ms(encode);
-  cost.encode_stimuli_ms = median_ms(encode_stimulus);
-  cost.least_luma_psnr_db = least_psnr_db(stimulus_clip, scene, method, canvas, cost.frames);
+  time_stages(scene, method, canvas, writer, cost);
+  measure_clip(scene, method, canvas, (scratch.path / "stimulus.mp4").string(), stimulus, cost);
   return cost;
 }
 

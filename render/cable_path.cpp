@@ -35,11 +35,11 @@ Fade fade(double s, double reach) {
 /// The centre line of one cable, built link by link.
 class PathBuilder {
  public:
-  PathBuilder(const Scene& scene, const World& world, const CableState& cable, double tolerance,
+  PathBuilder(const Scene& scene, const World& world, const CableState& cable, double smallest_sag,
               std::vector<StripPoint>& points)
       : world_(world),
         cable_(cable),
-        tolerance_(tolerance),
+        smallest_sag_(smallest_sag),
         points_(points),
         first_(points.size()) {
     const double g = scene.gravity.norm();
@@ -95,10 +95,10 @@ class PathBuilder {
       const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
       span.drawn = !from.pinch_middle && !to.pinch_middle;
-      // A sag of less than the tolerance is not worth its points: slack below (8/3) sag^2 / length.
+      // A chord of length l and slack d sags by sqrt(3 l d / 8); where l vanishes, by d / 2.
       const double slack = segment.rest_length - segment.length;
       span.hanging = span.drawn && slack > 0.0 &&
-                     slack * std::max(segment.length, slack) > 0.01 * tolerance_ * tolerance_;
+                     slack * std::max(segment.length, slack) > 2.0 * smallest_sag_ * smallest_sag_;
       if (!span.hanging) continue;
       const HangingSpan shape =
           hang(span_end(from), span_end(to), segment.alpha, segment.rest_length, up_);
@@ -116,12 +116,9 @@ class PathBuilder {
     if (points_.size() > first_) {
       // A kink is a fan of points at one place: a round joint.
       const StripPoint last = points_.back();
-      const double bend =
-          std::atan2(last.tangent.x() * tangent.y() - last.tangent.y() * tangent.x(),
-                     last.tangent.dot(tangent));
-      constexpr double smooth = 0.25;  // rad; arcs are much finer
-      if (std::abs(bend) > smooth) {
-        const int pieces = static_cast<int>(std::ceil(std::abs(bend) / smooth));
+      const double bend = std::atan2(cross(last.tangent, tangent), last.tangent.dot(tangent));
+      if (std::abs(bend) > 1.01 * most_turn) {
+        const int pieces = static_cast<int>(std::ceil(std::abs(bend) / most_turn));
         for (int k = 1; k < pieces; ++k) {
           const double a = bend * k / pieces;
           const Vec2 t = std::cos(a) * last.tangent + std::sin(a) * left(last.tangent);
@@ -135,8 +132,10 @@ class PathBuilder {
   /// From the end of the arc before pinched segment i to the beginning of the one after it: zero
   /// unless the two bodies clip.
   Vec2 clipped(std::size_t i) const {
-    const bool pinched = spans_[i].drawn && !spans_[i].hanging && cable_.segments[i].length <= 0.0;
-    return pinched ? Vec2(cable_.segments[i].head - cable_.segments[i].tail) : Vec2::Zero();
+    if (!spans_[i].drawn || spans_[i].hanging || cable_.segments[i].length > 0.0)
+      return Vec2::Zero();
+    const Vec2 overlap = cable_.segments[i].head - cable_.segments[i].tail;
+    return overlap.norm() > 0.2 * smallest_sag_ ? overlap : Vec2(Vec2::Zero());
   }
 
   /// Where two bodies clip, the arcs round them do not meet. Each gives way by half, smoothly,
@@ -146,15 +145,16 @@ class PathBuilder {
     if (link.orientation == 0 || link.pinch_middle) return;
     const Bounds& b = bounds_[i];
     const Vec2& centre = world_.position[static_cast<std::size_t>(link.body)];
-    const double step = std::sqrt(8.0 * tolerance_ / (link.radius + cable_.half_width));
     const double sweep = b.head_angle - b.tail_angle;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / step)));
     const double length = link.radius * std::abs(sweep);
     const double bend = std::min(8.0 * cable_.half_width, 0.5 * length);
     const bool at_end = !cable_.closed && i + 1 == cable_.links.size();
     const Vec2 at_tail = -0.5 * clipped(i);
     const Vec2 at_head =
         at_end ? Vec2(Vec2::Zero()) : Vec2(0.5 * clipped((i + 1) % cable_.links.size()));
+    // Where an arc gives way it is no circle: finer pieces come close enough.
+    const double most = at_tail.isZero() && at_head.isZero() ? most_turn : 0.25 * most_turn;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / most)));
     for (int k = 0; k <= pieces; ++k) {
       const double share = static_cast<double>(k) / pieces;
       const Vec2 e = unit_vector(b.tail_angle + share * sweep);
@@ -181,19 +181,18 @@ class PathBuilder {
       add_point(segment.head, e, to);
       return;
     }
-    // Denser near a sharp bend is not needed: equal arcs of a chain turn least where it is long.
     const double length = span.curve.length();
-    constexpr int pieces = 64;
+    constexpr double most = 0.15;  // rad: a catenary is no circle
+    const int pieces = std::max(1, static_cast<int>(std::ceil(span.curve.turn() / most)));
     for (int k = 0; k <= pieces; ++k) {
-      const double share = static_cast<double>(k) / pieces;
-      add_point(span.curve.point(share * length), span.curve.tangent(share * length),
-                from + share * (to - from));
+      const double s = span.curve.arc_at_turn(static_cast<double>(k) / pieces);
+      add_point(span.curve.point(s), span.curve.tangent(s), from + s / length * (to - from));
     }
   }
 
   const World& world_;
   const CableState& cable_;
-  double tolerance_;
+  double smallest_sag_;
   std::vector<StripPoint>& points_;
   std::size_t first_;
   Vec2 up_;
@@ -210,8 +209,8 @@ double mark_spacing(const CableState& cable) {
 }
 
 void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
-                       double tolerance, std::vector<StripPoint>& points) {
-  PathBuilder(scene, world, cable, tolerance, points).build();
+                       double smallest_sag, std::vector<StripPoint>& points) {
+  PathBuilder(scene, world, cable, smallest_sag, points).build();
 }
 
 }  // namespace pinchlab

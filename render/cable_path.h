@@ -14,9 +14,10 @@ namespace pinchlab {
 double mark_spacing(const CableState& cable);
 
 /// Appends the centre line from the first link to the last (a closed cable: round to the first
-/// again), arcs as chords that stray at most `tolerance` m. Slack spans hang with their rest
-/// length. A middle link of a non-transitional pinch has no wrap: its two segments are left out.
+/// again), as the points of a Strip. Slack spans hang with their rest length, unless they sag less
+/// than about `smallest_sag` m. A middle link of a non-transitional pinch has no wrap: its two
+/// segments are left out.
 void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
-                       double tolerance, std::vector<StripPoint>& points);
+                       double smallest_sag, std::vector<StripPoint>& points);
 
 }  // namespace pinchlab

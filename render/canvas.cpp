@@ -9,50 +9,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "render/frame_changes.h"
 #include "render/gl.h"
 #include "render/gl_context.h"
+#include "render/mesh.h"
 #include "render/text.h"
 
 namespace pinchlab {
 
 namespace {
-
-/// The one vertex layout; gl.cpp says what `place` and `shape` mean to each program.
-struct Vertex {
-  std::array<float, 2> position, place;
-  std::array<float, 4> shape;
-  Colour fill, edge, mark;
-};
-
-/// Consecutive triangles of one program, and of one texture if they are text.
-struct Batch {
-  Picture::Kind kind;
-  GLuint texture;
-  std::size_t first, count;  // indices
-};
-
-struct LabelTexture {
-  GLuint name = 0;
-  int width = 0, height = 0;              // px
-  double centre_x = 0.0, centre_y = 0.0;  // px
-};
-
-/// World metres to px of a viewport, from its top left.
-struct Fit {
-  double scale;  // px/m
-  Vec2 origin;   // px, of the world's origin
-  Fit(const View& view, int width, int height) {
-    const Vec2 size = view.high - view.low, middle = 0.5 * (view.low + view.high);
-    scale = std::min(width / size.x(), height / size.y());
-    origin = Vec2(0.5 * width - scale * middle.x(), 0.5 * height + scale * middle.y());
-  }
-  Vec2 point(const Vec2& p) const {
-    return {origin.x() + scale * p.x(), origin.y() - scale * p.y()};
-  }
-  Vec2 vector(const Vec2& v) const { return {v.x(), -v.y()}; }
-};
-
-constexpr double fringe = 0.5;  // px outside a shape's edge that still see some of it
 
 float narrow(double value) {
   return static_cast<float>(value);
@@ -64,12 +29,11 @@ struct Canvas::State {
   int width, height;
   GlContext context;
   Gl gl = load_gl();
-  Programs programs = build_programs(gl);
+  Programs programs{gl};
   Font font;
-  std::map<std::pair<std::string, int>, LabelTexture> labels;  // by text and size in 1/64 px
-  std::vector<Vertex> vertices;
-  std::vector<GLuint> indices;
-  std::vector<Batch> batches;
+  std::map<std::pair<std::string, int>, LabelImage> labels;  // by text and size in 1/64 px
+  Mesh mesh, last_mesh;
+  std::vector<PixelRect> changed;
   std::vector<std::uint8_t> pixels;
 
   State(int width_, int height_) : width(width_), height(height_) {
@@ -79,7 +43,14 @@ struct Canvas::State {
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     gl.Enable(GL_SCISSOR_TEST);
+    gl.Viewport(0, 0, width, height);
+    for (const Program program : {Program::stroke, Program::strip, Program::label}) {
+      gl.UseProgram(programs[program]);
+      gl.Uniform2f(gl.GetUniformLocation(programs[program], "frame_size"), narrow(width),
+                   narrow(height));
+    }
     gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl.PixelStorei(GL_PACK_ROW_LENGTH, width);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     check("set-up");
   }
@@ -115,9 +86,10 @@ struct Canvas::State {
     attribute(0, 2, GL_FLOAT, GL_FALSE, offsetof(Vertex, position));
     attribute(1, 2, GL_FLOAT, GL_FALSE, offsetof(Vertex, place));
     attribute(2, 4, GL_FLOAT, GL_FALSE, offsetof(Vertex, shape));
-    attribute(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, fill));
-    attribute(4, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, edge));
-    attribute(5, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, mark));
+    attribute(3, 3, GL_FLOAT, GL_FALSE, offsetof(Vertex, curve));
+    attribute(4, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, fill));
+    attribute(5, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, edge));
+    attribute(6, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, mark));
   }
 
   void check(const char* stage) const {
@@ -126,75 +98,14 @@ struct Canvas::State {
     }
   }
 
-  void vertex(const Vec2& position, double place_x, double place_y, const Vertex& common) {
-    Vertex& v = vertices.emplace_back(common);
-    v.position = {narrow(position.x()), narrow(position.y())};
-    v.place = {narrow(place_x), narrow(place_y)};
-  }
-
-  /// Two triangles over the last two pairs of a band's vertices, `first` being the earlier pair's.
-  void quad(std::size_t first) {
-    for (const std::size_t i : {0, 1, 2, 2, 1, 3})
-      indices.push_back(static_cast<GLuint>(first + i));
-  }
-
-  /// Opens a batch for what follows, unless the last one will take it.
-  void batch(Picture::Kind kind, GLuint texture, std::size_t first_batch) {
-    if (batches.size() == first_batch || batches.back().kind != kind ||
-        batches.back().texture != texture) {
-      batches.push_back({kind, texture, indices.size(), 0});
-    }
-  }
-
-  void add(const Stroke& stroke, const Fit& fit) {
-    const Vec2 a = fit.point(stroke.a), b = fit.point(stroke.b);
-    const double length = (b - a).norm(), half = fit.scale * stroke.half_width,
-                 reach = half + fringe;
-    const Vec2 along = length > 0.0 ? Vec2((b - a) / length) : Vec2(1.0, 0.0);
-    const Vec2 across(-along.y(), along.x());
-    const Vertex common{
-        {},
-        {},
-        {narrow(length), narrow(half), narrow(half - fit.scale * stroke.edge_width), 0.0f},
-        stroke.fill,
-        stroke.edge,
-        {}};
-    const std::size_t first = vertices.size();
-    for (const double x : {-reach, length + reach}) {
-      for (const double y : {-reach, reach}) vertex(a + x * along + y * across, x, y, common);
-    }
-    quad(first);
-  }
-
-  void add(const Strip& strip, const Picture& picture, const Fit& fit) {
-    const double half = fit.scale * strip.half_width, reach = half + fringe;
-    const Vertex common{
-        {},
-        {},
-        {narrow(half), narrow(half - fit.scale * strip.edge_width),
-         narrow(fit.scale * strip.mark_spacing), narrow(0.5 * fit.scale * strip.mark_length)},
-        strip.fill,
-        strip.edge,
-        strip.mark};
-    for (std::size_t i = 0; i < strip.count; ++i) {
-      const StripPoint& point = picture.points[strip.first + i];
-      const Vec2 middle = fit.point(point.position), along = fit.vector(point.tangent);
-      const Vec2 across(-along.y(), along.x());
-      const double material = point.material / strip.mark_spacing;
-      vertex(middle - reach * across, -reach, material, common);
-      vertex(middle + reach * across, reach, material, common);
-      if (i > 0) quad(vertices.size() - 4);
-    }
-  }
-
-  const LabelTexture& texture(const std::string& text, double height_px) {
+  const LabelImage& image_of(const std::string& text, double height_px) {
     const int size = static_cast<int>(std::lround(64.0 * height_px));
-    LabelTexture& label = labels[{text, size}];
-    if (label.name != 0) return label;
+    LabelImage& label = labels[{text, size}];
+    if (label.texture != 0) return label;
     const TextBitmap bitmap = font.draw(text, size / 64.0);
     label = {0, bitmap.width, bitmap.height, bitmap.centre_x, bitmap.centre_y};
-    gl.GenTextures(1, &label.name);
-    gl.BindTexture(GL_TEXTURE_2D, label.name);
+    gl.GenTextures(1, &label.texture);
+    gl.BindTexture(GL_TEXTURE_2D, label.texture);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -204,89 +115,108 @@ struct Canvas::State {
     return label;
   }
 
-  void add(const Label& label, const LabelTexture& image, const Fit& fit) {
-    const Vec2 corner = fit.point(label.centre) - Vec2(image.centre_x, image.centre_y);
-    const Vertex common{{}, {}, {}, label.colour, {}, {}};
-    const std::size_t first = vertices.size();
-    for (const double x : {0.0, 1.0}) {
-      for (const double y : {0.0, 1.0}) {
-        vertex(corner + Vec2(x * image.width, y * image.height), x, y, common);
-      }
-    }
-    quad(first);
-  }
-
-  void build(const Picture& picture, const Fit& fit) {
-    const std::size_t first_batch = batches.size();
+  void build(const Picture& picture, int left, int columns) {
+    const Fit fit(picture.view, left, columns, height);
     for (const Picture::Item& item : picture.order) {
-      if (item.kind == Picture::Kind::label) {
-        const Label& label = picture.labels[item.index];
-        const LabelTexture& image = texture(label.text, fit.scale * label.height);
-        batch(item.kind, image.name, first_batch);
-        add(label, image, fit);
-      } else {
-        batch(item.kind, 0, first_batch);
-        if (item.kind == Picture::Kind::stroke) add(picture.strokes[item.index], fit);
-        if (item.kind == Picture::Kind::strip) add(picture.strips[item.index], picture, fit);
+      switch (item.kind) {
+        case Picture::Kind::stroke:
+          mesh.add(picture.strokes[item.index], fit);
+          break;
+        case Picture::Kind::strip:
+          mesh.add(picture.strips[item.index], picture.points, fit);
+          break;
+        case Picture::Kind::label: {
+          const Label& label = picture.labels[item.index];
+          mesh.add(label, image_of(label.text, fit.scale * label.height), fit);
+          break;
+        }
       }
-      batches.back().count = indices.size() - batches.back().first;
     }
+    mesh.end_sheet(left, columns, picture.background);
   }
 
-  void draw_batch(const Batch& one, int viewport_width) {
-    const GLuint program = one.kind == Picture::Kind::stroke  ? programs.stroke
-                           : one.kind == Picture::Kind::strip ? programs.strip
-                                                              : programs.label;
-    gl.UseProgram(program);
-    gl.Uniform2f(gl.GetUniformLocation(program, "frame_size"), narrow(viewport_width),
-                 narrow(height));
-    if (one.texture != 0) gl.BindTexture(GL_TEXTURE_2D, one.texture);
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(one.count), GL_UNSIGNED_INT,
-                    reinterpret_cast<const void*>(one.first * sizeof(GLuint)));
+  void draw_batch(const Batch& batch) const {
+    gl.UseProgram(programs[batch.program]);
+    if (batch.texture != 0) gl.BindTexture(GL_TEXTURE_2D, batch.texture);
+    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.count), GL_UNSIGNED_INT,
+                    reinterpret_cast<const void*>(batch.first * sizeof(GLuint)));
+  }
+
+  template <typename Element>
+  void upload(GLenum buffer, const std::vector<Element>& data) const {
+    gl.BufferData(buffer, static_cast<GLsizeiptr>(data.size() * sizeof(Element)), data.data(),
+                  GL_STREAM_DRAW);
   }
 
   void forget_labels() {
-    for (const auto& [key, label] : labels) gl.DeleteTextures(1, &label.name);
+    for (const auto& [key, label] : labels) gl.DeleteTextures(1, &label.texture);
     labels.clear();
+  }
+
+  /// What must be drawn again: the rectangle round all changes. A clear that is limited to a part
+  /// costs more a pixel than a full one, so a large part is the whole.
+  PixelRect part_to_draw() const {
+    int left = width, top = height, right = 0, bottom = 0;
+    for (const PixelRect& r : changed) {
+      left = std::min(left, r.left);
+      top = std::min(top, r.top);
+      right = std::max(right, r.left + r.width);
+      bottom = std::max(bottom, r.top + r.height);
+    }
+    constexpr double large = 0.4;  // of the frame
+    const double share =
+        static_cast<double>(right - left) * (bottom - top) / (static_cast<double>(width) * height);
+    if (share > large) return {0, 0, width, height};
+    return {left, top, right - left, bottom - top};
+  }
+
+  /// All vertices go up in one piece, then each picture is drawn into its share of the frame.
+  void draw_mesh() const {
+    upload(GL_ARRAY_BUFFER, mesh.vertices());
+    upload(GL_ELEMENT_ARRAY_BUFFER, mesh.indices());
+    const PixelRect part = part_to_draw();
+    std::size_t next = 0;
+    for (const Sheet& sheet : mesh.sheets()) {
+      const int left = std::max(part.left, sheet.left);
+      const int right = std::min(part.left + part.width, sheet.left + sheet.width);
+      gl.Scissor(left, part.top, std::max(0, right - left), part.height);
+      const Colour& paper = sheet.background;
+      gl.ClearColor(narrow(paper.red / 255.0), narrow(paper.green / 255.0),
+                    narrow(paper.blue / 255.0), 1.0f);
+      gl.Clear(GL_COLOR_BUFFER_BIT);
+      for (; next < sheet.end; ++next) draw_batch(mesh.batches()[next]);
+    }
+  }
+
+  /// Only what changed is read back. The first row in OpenGL's memory is its bottom one; the
+  /// shaders put the frame's top there.
+  void read_changes() {
+    const auto row = static_cast<std::size_t>(width);
+    for (const PixelRect& r : changed) {
+      const std::size_t first =
+          static_cast<std::size_t>(r.top) * row + static_cast<std::size_t>(r.left);
+      gl.ReadPixels(r.left, r.top, r.width, r.height, GL_RGBA, GL_UNSIGNED_BYTE,
+                    pixels.data() + 4 * first);
+    }
   }
 
   void draw(std::span<const Picture* const> pictures) {
     context.make_current();
     constexpr std::size_t enough_labels = 500;
     if (labels.size() > enough_labels) forget_labels();
-    vertices.clear();
-    indices.clear();
-    batches.clear();
-
-    // All vertices go up in one piece, then each picture is drawn into its share of the frame.
+    mesh.clear();
     const int count = static_cast<int>(pictures.size());
-    std::vector<std::size_t> batches_until;
-    const auto left_of = [&](int i) { return width * i / count; };
     for (int i = 0; i < count; ++i) {
-      const Picture& picture = *pictures[static_cast<std::size_t>(i)];
-      build(picture, Fit(picture.view, left_of(i + 1) - left_of(i), height));
-      batches_until.push_back(batches.size());
+      const int left = width * i / count;
+      build(*pictures[static_cast<std::size_t>(i)], left, width * (i + 1) / count - left);
     }
-    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
-                  vertices.data(), GL_STREAM_DRAW);
-    gl.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLuint)),
-                  indices.data(), GL_STREAM_DRAW);
-
-    // The first row in OpenGL's memory is its bottom one; the shaders put the frame's top there.
-    std::size_t next = 0;
-    for (int i = 0; i < count; ++i) {
-      const int viewport_width = left_of(i + 1) - left_of(i);
-      gl.Viewport(left_of(i), 0, viewport_width, height);
-      gl.Scissor(left_of(i), 0, viewport_width, height);
-      const Colour& paper = pictures[static_cast<std::size_t>(i)]->background;
-      gl.ClearColor(narrow(paper.red / 255.0), narrow(paper.green / 255.0),
-                    narrow(paper.blue / 255.0), 1.0f);
-      gl.Clear(GL_COLOR_BUFFER_BIT);
-      for (; next < batches_until[static_cast<std::size_t>(i)]; ++next)
-        draw_batch(batches[next], viewport_width);
+    changed = frame_changes(last_mesh, mesh, width, height);
+    if (!changed.empty()) {
+      draw_mesh();
+      read_changes();
+      check("drawing");
     }
-    gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-    check("drawing");
+    std::swap(mesh, last_mesh);
   }
 };
 
@@ -307,6 +237,10 @@ int Canvas::width() const {
 }
 int Canvas::height() const {
   return state_->height;
+}
+
+const std::vector<PixelRect>& Canvas::changed() const {
+  return state_->changed;
 }
 
 const std::uint8_t* Canvas::draw(const Picture& picture) {

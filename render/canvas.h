@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "render/picture.h"
+#include "render/pixel_rect.h"
 
 namespace pinchlab {
 
@@ -37,6 +39,11 @@ class Canvas {
   /// The same for several pictures side by side, left to right, each in an equal share of the
   /// width.
   const std::uint8_t* draw(std::span<const Picture* const> pictures);
+
+  /// Where the last draw's frame may differ from the one before (the whole of it at first):
+  /// rectangles that overlap nowhere, with even sides and places if the frame's sides are even. See
+  /// VideoWriter::add.
+  const std::vector<PixelRect>& changed() const;
 
  private:
   struct State;

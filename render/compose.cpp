@@ -64,37 +64,56 @@ class Composer {
     picture_.clear();
     picture_.view = scene_.view;
     picture_.background = palette::paper;
+    // Each change between strokes, strips and labels costs a canvas some time: like goes by like.
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
+    for (const CableState& cable : world_.cables) add_cable(cable);
     for (const Wall& wall : scene_.walls) {
       picture_.add(line(wall.a, wall.b, 0.25 * page_.unit, palette::fixed_edge));
     }
-    // Bodies hide what is behind the page, but not the cables.
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      picture_.add(disc(world_.position[i], scene_.bodies[i].radius, palette::paper));
-    }
-    for (const CableState& cable : world_.cables) add_cable(cable);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
     for (const CableState& cable : world_.cables) add_fastenings(cable);
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_drive(i);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_head(i);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_shaft(i);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_weight(i);
   }
 
  private:
-  /// A faint line where the body's centre can go.
+  /// Whether an earlier body runs on the same line.
+  bool shares_rail(std::size_t i) const {
+    const Body& body = scene_.bodies[i];
+    return std::any_of(scene_.bodies.begin(),
+                       scene_.bodies.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const Body& other) {
+                         constexpr double same = 1e-6;
+                         return other.kind == BodyKind::rail &&
+                                std::abs(cross(body.rail_axis, other.rail_axis)) < same &&
+                                std::abs(cross(body.rail_axis, other.position - body.position)) <
+                                    same * page_.unit;
+                       });
+  }
+
+  /// A faint line where the body's centre can go, right across the page.
   void add_rail(std::size_t i) {
     const Body& body = scene_.bodies[i];
-    if (body.kind != BodyKind::rail) return;
-    const double reach = 400.0 * page_.unit;
-    const Vec2 centre = body.position;
-    picture_.add(line(centre - reach * body.rail_axis, centre + reach * body.rail_axis,
-                      1.5 * page_.hairline(), palette::faint));
+    if (body.kind != BodyKind::rail || shares_rail(i)) return;
+    const double reach =
+        (body.position - 0.5 * (scene_.view.low + scene_.view.high)).norm() + 300.0 * page_.unit;
+    Strip rail;
+    rail.first = picture_.points.size();
+    rail.count = 2;
+    rail.half_width = 1.5 * page_.hairline();
+    rail.fill = palette::faint;
+    for (const double end : {-reach, reach}) {
+      picture_.points.push_back({body.position + end * body.rail_axis, body.rail_axis, 0.0});
+    }
+    picture_.add(rail);
   }
 
   void add_cable(const CableState& cable) {
     Strip strip;
     strip.first = picture_.points.size();
-    const double bend = 5e-3 * page_.unit;  // 1/20 px in 960
-    append_cable_path(scene_, world_, cable, bend, picture_.points);
+    const double smallest_sag = 5e-3 * page_.unit;  // 1/20 px in 960
+    append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
     strip.count = picture_.points.size() - strip.first;
     strip.half_width = cable.half_width;
     strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * page_.hairline());
@@ -146,33 +165,46 @@ class Composer {
     }
   }
 
-  /// An arrow in the sense in which the body is driven; it does not turn with the body.
-  void add_drive(std::size_t i) {
+  /// The arrow on a driven body shows the sense in which it is driven and does not turn with it.
+  struct Arrow {
+    double sense = 0.0;         // +1 counter-clockwise, -1 clockwise, 0 none
+    double radius, half_width;  // m
+    double from, to;            // rad
+  };
+  Arrow arrow(std::size_t i) const {
     const Body& body = scene_.bodies[i];
-    if (!is_driven(body)) return;
+    if (!is_driven(body)) return {};
     const double sense = body.driven_angular_velocity.value_or(body.torque) > 0.0 ? 1.0 : -1.0;
+    return {sense, 0.42 * body.radius, std::min(0.055 * body.radius, 0.35 * page_.unit),
+            0.25 * turn - sense * 0.36 * turn, 0.25 * turn + sense * 0.36 * turn};
+  }
+
+  void add_arrow_head(std::size_t i) {
+    const Arrow a = arrow(i);
+    if (a.sense == 0.0) return;
     const Vec2& centre = world_.position[i];
-    const double r = 0.42 * body.radius, half = std::min(0.055 * body.radius, 0.35 * page_.unit);
-    const double from = 0.25 * turn + sense * -0.36 * turn, sweep = sense * 0.72 * turn;
+    const Vec2 radial = unit_vector(a.to), tip = centre + a.radius * radial;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec2 barb = tip + 0.38 * a.radius * (side * radial - a.sense * left(radial));
+      picture_.add(line(tip, barb, a.half_width, palette::ink));
+    }
+    picture_.add(disc(centre + a.radius * unit_vector(a.from), a.half_width, palette::ink));
+  }
+
+  void add_arrow_shaft(std::size_t i) {
+    const Arrow a = arrow(i);
+    if (a.sense == 0.0) return;
     Strip shaft;
     shaft.first = picture_.points.size();
-    constexpr int pieces = 48;
+    constexpr int pieces = 10;
     for (int k = 0; k <= pieces; ++k) {
-      const double a = from + sweep * k / pieces;
-      const Vec2 e = unit_vector(a);
-      picture_.points.push_back({centre + r * e, sense * left(e), 0.0});
+      const Vec2 e = unit_vector(a.from + (a.to - a.from) * k / pieces);
+      picture_.points.push_back({world_.position[i] + a.radius * e, a.sense * left(e), 0.0});
     }
     shaft.count = picture_.points.size() - shaft.first;
-    shaft.half_width = half;
+    shaft.half_width = a.half_width;
     shaft.fill = palette::ink;
     picture_.add(shaft);
-    picture_.add(disc(centre + r * unit_vector(from), half, palette::ink));
-    const Vec2 radial = unit_vector(from + sweep), tip = centre + r * radial;
-    const Vec2 ahead = sense * left(radial);
-    for (const double side : {-1.0, 1.0}) {
-      const Vec2 barb = tip + 0.2 * body.radius * (-0.8 * ahead + side * 0.8 * radial);
-      picture_.add(line(tip, barb, half, palette::ink));
-    }
   }
 
   /// The mass of a body that hangs on a cable's end, under it.

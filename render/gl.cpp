@@ -3,6 +3,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <string>
 
 #include "render/gl_context.h"
 
@@ -21,16 +22,19 @@ uniform vec2 frame_size;
 layout(location = 0) in vec2 position;  // px, from the top left
 layout(location = 1) in vec2 place;     // where in the shape, see each fragment shader
 layout(location = 2) in vec4 shape;
-layout(location = 3) in vec4 fill;
-layout(location = 4) in vec4 edge;
-layout(location = 5) in vec4 mark;
+layout(location = 3) in vec3 curve;
+layout(location = 4) in vec4 fill;
+layout(location = 5) in vec4 edge;
+layout(location = 6) in vec4 mark;
 noperspective out vec2 at;
 flat out vec4 form;
+flat out vec3 bend;
 flat out vec4 fill_colour, edge_colour, mark_colour;  // premultiplied
 void main() {
   gl_Position = vec4(2.0 * position / frame_size - 1.0, 0.0, 1.0);
   at = place;
   form = shape;
+  bend = curve;
   fill_colour = vec4(fill.rgb * fill.a, fill.a);
   edge_colour = vec4(edge.rgb * edge.a, edge.a);
   mark_colour = vec4(mark.rgb * mark.a, mark.a);
@@ -42,6 +46,7 @@ void main() {
 constexpr const char* coverage_source = R"(#version 330 core
 noperspective in vec2 at;
 flat in vec4 form;
+flat in vec3 bend;
 flat in vec4 fill_colour, edge_colour, mark_colour;
 out vec4 colour;
 float coverage(float t, float h) { return max(0.0, min(t + 0.5, h) - max(t - 0.5, -h)); }
@@ -56,13 +61,20 @@ void main() {
 }
 )";
 
-// at: px across, material in mark spacings; form: outer and inner half width, mark spacing, half a
-// mark, px.
+// A piece of a circular arc of radius bend.x, or straight if that is 0.
+// at: px outwards from the arc's centre and along it, or to the right and along;
+// form: outer and inner half width, mark spacing, half a mark's length, px;
+// bend: radius, px; material at the middle, in mark spacings; material a px.
+// Pieces turn little, so a few terms of the arc tangent's series do.
 constexpr const char* strip_source = R"(
 void main() {
-  float t = abs(at.x);
+  bool curved = bend.x > 0.0;
+  float t = curved ? abs(length(at) - bend.x) : abs(at.x);
+  float u = clamp(at.y / max(abs(at.x), 1e-3), -1.0, 1.0), q = u * u;
+  float s = curved ? bend.x * u * (1.0 + q * (-1.0 / 3.0 + q * 0.2)) : at.y;
+  float m = bend.y + bend.z * s;
   float inner = coverage(t, form.y);
-  float marked = coverage(form.z * abs(fract(at.y + 0.5) - 0.5), form.w);
+  float marked = coverage(form.z * abs(fract(m + 0.5) - 0.5), form.w);
   vec4 core = mix(fill_colour, mark_colour, marked);
   colour = edge_colour * (coverage(t, form.x) - inner) + core * inner;
 }
@@ -158,8 +170,7 @@ Gl load_gl() {
   return gl;
 }
 
-Programs build_programs(const Gl& gl) {
-  return {link(gl, stroke_source), link(gl, strip_source), link(gl, label_source)};
-}
+Programs::Programs(const Gl& gl)
+    : names_{link(gl, stroke_source), link(gl, strip_source), link(gl, label_source)} {}
 
 }  // namespace pinchlab

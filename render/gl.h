@@ -4,7 +4,9 @@
 
 #include <GL/glcorearb.h>
 
-#include <string>
+#include <array>
+
+#include "render/mesh.h"
 
 namespace pinchlab {
 
@@ -58,13 +60,15 @@ struct Gl {
 /// Throws std::runtime_error that names the first missing function.
 Gl load_gl();
 
-/// The three programs. Each takes the canvas' one vertex layout (canvas.cpp) and the frame's size
-/// in px.
-struct Programs {
-  GLuint stroke = 0, strip = 0, label = 0;
-};
+/// The shader programs. All take the one vertex layout of mesh.h and the uniform `frame_size`, px.
+class Programs {
+ public:
+  /// Compiles and links them; throws std::runtime_error with the driver's log.
+  explicit Programs(const Gl& gl);
+  GLuint operator[](Program program) const { return names_[static_cast<std::size_t>(program)]; }
 
-/// Compiles and links them; throws std::runtime_error with the driver's log.
-Programs build_programs(const Gl& gl);
+ private:
+  std::array<GLuint, 3> names_{};
+};
 
 }  // namespace pinchlab

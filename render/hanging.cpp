@@ -82,6 +82,19 @@ Vec2 Catenary::tangent(double s) const {
   return (parameter_ * across_ + (start_ + s) * up_) / std::hypot(parameter_, start_ + s);
 }
 
+double Catenary::turn() const {
+  if (straight_) return 0.0;
+  return std::atan((start_ + length_) / parameter_) - std::atan(start_ / parameter_);
+}
+
+double Catenary::arc_at_turn(double share) const {
+  if (straight_) return share * length_;
+  const double from = std::atan(start_ / parameter_), angle = from + share * turn();
+  const double s = parameter_ * std::tan(angle) - start_;
+  // Exact at the ends, where the difference would lose digits of a nearly straight chain.
+  return share <= 0.0 ? 0.0 : share >= 1.0 ? length_ : std::clamp(s, 0.0, length_);
+}
+
 HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double rest_length,
                  const Vec2& up) {
   // The angles at which the cable leaves and arrives must be those of the curve between the points

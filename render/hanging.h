@@ -16,8 +16,10 @@ class Catenary {
 
   double length() const { return length_; }  // m, at least the distance
   bool straight() const { return straight_; }
-  Vec2 point(double s) const;    // s in 0..length(), m
-  Vec2 tangent(double s) const;  // unit, towards `to`
+  Vec2 point(double s) const;              // s in 0..length(), m
+  double turn() const;                     // rad >= 0, by which the tangent turns on the way
+  double arc_at_turn(double share) const;  // m, where it has turned by a share (0..1) of that
+  Vec2 tangent(double s) const;            // unit, towards `to`
 
  private:
   Vec2 from_ = Vec2::Zero(), across_ = Vec2(1.0, 0.0), up_ = Vec2(0.0, 1.0);

@@ -143,14 +143,16 @@ void check_settings(const std::string& path, const VideoSettings& settings) {
 }
 
 /// RGBA to the byte order that FFV1 stores, without loss.
-void rgba_to_bgr0(const std::uint8_t* rgba, int width, int height, std::uint8_t* to,
+void rgba_to_bgr0(const std::uint8_t* rgba, int width, const PixelRect& part, std::uint8_t* to,
                   std::ptrdiff_t stride) {
-  for (int y = 0; y < height; ++y, to += stride) {
-    for (int x = 0; x < width; ++x, rgba += 4) {
-      to[4 * x] = rgba[2];
-      to[4 * x + 1] = rgba[1];
-      to[4 * x + 2] = rgba[0];
-      to[4 * x + 3] = 0;
+  for (int y = part.top; y < part.top + part.height; ++y) {
+    const std::uint8_t* from = rgba + (std::ptrdiff_t{y} * width + part.left) * 4;
+    std::uint8_t* out = to + y * stride + std::ptrdiff_t{part.left} * 4;
+    for (int x = 0; x < part.width; ++x, from += 4, out += 4) {
+      out[0] = from[2];
+      out[1] = from[1];
+      out[2] = from[0];
+      out[3] = 0;
     }
   }
 }
@@ -194,7 +196,7 @@ struct VideoWriter::State {
 
   State(const std::string& path, const VideoSettings& settings_)
       : settings(settings_), partial(path) {
-    av_log_set_level(AV_LOG_ERROR);
+    av_log_set_level(AV_LOG_FATAL);  // errors are thrown instead
     try {
       open_encoder();
       open_file();
@@ -267,15 +269,17 @@ struct VideoWriter::State {
     check(avformat_write_header(format, options.get()), partial.path(), "cannot be written");
   }
 
-  void convert(const std::uint8_t* rgba) {
+  void convert(const std::uint8_t* rgba, std::span<const PixelRect> changed) {
     check(av_frame_make_writable(frame.get()), partial.path(), "no memory for a frame");
     AVFrame& f = *frame;
-    if (settings.codec == Codec::ffv1) {
-      rgba_to_bgr0(rgba, settings.width, settings.height, f.data[0], f.linesize[0]);
-    } else {
-      rgba_to_yuv420(
-          rgba, settings.width, settings.height,
-          {f.data[0], f.data[1], f.data[2], f.linesize[0], f.linesize[1], f.linesize[2]});
+    const YuvPlanes planes{f.data[0],     f.data[1],     f.data[2],
+                           f.linesize[0], f.linesize[1], f.linesize[2]};
+    for (const PixelRect& part : changed) {
+      if (settings.codec == Codec::ffv1) {
+        rgba_to_bgr0(rgba, settings.width, part, f.data[0], f.linesize[0]);
+      } else {
+        rgba_to_yuv420(rgba, settings.width, part, planes);
+      }
     }
   }
 
@@ -311,8 +315,13 @@ VideoWriter::VideoWriter(const std::string& path, const VideoSettings& settings)
 VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const std::uint8_t* rgba) {
+  const PixelRect whole{0, 0, state_->settings.width, state_->settings.height};
+  add(rgba, std::span(&whole, 1));
+}
+
+void VideoWriter::add(const std::uint8_t* rgba, std::span<const PixelRect> changed) {
   const double start = processor_seconds();
-  state_->convert(rgba);
+  state_->convert(rgba, changed);
   const double converted = processor_seconds();
   state_->frame->pts = state_->frames++;
   state_->encode(state_->frame.get());
@@ -342,7 +351,7 @@ struct VideoReader::State {
   VideoInfo info;
 
   explicit State(const std::string& path_) : path(path_) {
-    av_log_set_level(AV_LOG_ERROR);
+    av_log_set_level(AV_LOG_FATAL);  // errors are thrown instead
     try {
       open();
     } catch (...) {

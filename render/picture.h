@@ -28,14 +28,18 @@ struct Stroke {
   Colour fill, edge;
 };
 
-/// A point of a cable's centre line.
+/// A point of a band's centre line.
 struct StripPoint {
   Vec2 position = Vec2::Zero();   // m
-  Vec2 tangent = Vec2(1.0, 0.0);  // unit; a kink is two points at one position
+  Vec2 tangent = Vec2(1.0, 0.0);  // unit
   double material = 0.0;          // m along the material
 };
 
-/// A band of constant width along points[first .. first + count), with flat ends. Its material
+constexpr double most_turn = 0.5;  ///< rad, between neighbouring points of a strip
+
+/// A band of constant width along points[first .. first + count), with flat ends. Two points are
+/// joined by the circular arc that turns by the angle between their tangents (most_turn at most:
+/// longer arcs take more points), or by a line; where they coincide, by a round joint. The material
 /// coordinates carry marks: bands of `mark_length` m of the material, centred on the multiples of
 /// `mark_spacing`.
 struct Strip {

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "render/pixel_rect.h"
 
 namespace pinchlab {
 
@@ -50,6 +53,11 @@ class VideoWriter {
 
   /// One frame: RGBA, 8 bits each, top row first, width * 4 bytes a row; alpha is ignored.
   void add(const std::uint8_t* rgba);
+
+  /// The same, where all pixels outside the rectangles are those of the last frame added: they are
+  /// not converted again. Left, top, width and height are even unless ffv1. Canvas::changed() gives
+  /// them.
+  void add(const std::uint8_t* rgba, std::span<const PixelRect> changed);
 
   /// Completes the file and gives it its name.
   void finish();

@@ -32,20 +32,19 @@ std::uint8_t y_of(const std::uint8_t* p) {
 
 }  // namespace
 
-__attribute__((target_clones("avx2", "default"))) void rgba_to_yuv420(const std::uint8_t* rgba,
-                                                                      int width, int height,
-                                                                      const YuvPlanes& to) {
+void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
+                    const YuvPlanes& to) {
   const std::ptrdiff_t row = std::ptrdiff_t{width} * 4;
-  for (int y = 0; y < height; y += 2) {
-    const std::uint8_t* const upper = rgba + y * row;
+  for (int y = part.top; y < part.top + part.height; y += 2) {
+    const std::uint8_t* const upper = rgba + y * row + std::ptrdiff_t{part.left} * 4;
     const std::uint8_t* const lower = upper + row;
-    std::uint8_t* const y_upper = to.y + y * to.y_stride;
+    std::uint8_t* const y_upper = to.y + y * to.y_stride + part.left;
     std::uint8_t* const y_lower = y_upper + to.y_stride;
-    std::uint8_t* const u = to.u + y / 2 * to.u_stride;
-    std::uint8_t* const v = to.v + y / 2 * to.v_stride;
-    for (int x = 0; x < width; ++x) y_upper[x] = y_of(upper + 4 * x);
-    for (int x = 0; x < width; ++x) y_lower[x] = y_of(lower + 4 * x);
-    for (int x = 0; x < width / 2; ++x) {
+    std::uint8_t* const u = to.u + y / 2 * to.u_stride + part.left / 2;
+    std::uint8_t* const v = to.v + y / 2 * to.v_stride + part.left / 2;
+    for (int x = 0; x < part.width; ++x) y_upper[x] = y_of(upper + 4 * x);
+    for (int x = 0; x < part.width; ++x) y_lower[x] = y_of(lower + 4 * x);
+    for (int x = 0; x < part.width / 2; ++x) {
       const std::uint8_t *a = upper + 8 * x, *b = lower + 8 * x;
       const std::int32_t red = a[0] + a[4] + b[0] + b[4];
       const std::int32_t green = a[1] + a[5] + b[1] + b[5];

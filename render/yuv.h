@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "render/pixel_rect.h"
+
 namespace pinchlab {
 
 /// The planes of a 4:2:0 frame and the bytes from one row to the next.
@@ -13,9 +15,11 @@ struct YuvPlanes {
   std::ptrdiff_t y_stride, u_stride, v_stride;
 };
 
-/// RGBA (8 bits each, top row first, width * 4 bytes a row) to Y'CbCr of ITU-R BT.709, limited
-/// range, each chroma sample the mean of its 2 x 2 pixels (sited at their centre). Width and height
-/// are even. Every sample is within 0.51 of the exact value before rounding.
-void rgba_to_yuv420(const std::uint8_t* rgba, int width, int height, const YuvPlanes& to);
+/// RGBA (8 bits each, top row first, `width` * 4 bytes a row) to Y'CbCr of ITU-R BT.709, limited
+/// range, each chroma sample the mean of its 2 x 2 pixels (sited at their centre); only within
+/// `part`, whose sides and place are even. Every sample is within 0.51 of the exact value before
+/// rounding.
+void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
+                    const YuvPlanes& to);
 
 }  // namespace pinchlab

@@ -31,7 +31,7 @@ void write_scene(const fs::path& path, double duration_s) {
 
 // Two short scenes as demos/ of the folder.
 fs::path folder_with_demos() {
-  const fs::path folder = scratch_folder();
+  fs::path folder = scratch_folder();
   fs::create_directory(folder / "demos");
   write_scene(folder / "demos/01-long.json", 2.0);
   write_scene(folder / "demos/02-short.json", 0.5);
@@ -247,7 +247,7 @@ bool wait_for_file(const fs::path& folder, const std::string& ending) {
 }
 
 fs::path folder_with_long_demo() {
-  const fs::path folder = folder_with_demos();
+  fs::path folder = folder_with_demos();
   write_scene(folder / "demos/01-long.json", 600.0);
   return folder;
 }
@@ -334,7 +334,7 @@ SceneFile small_file() {
 
 TEST(PlanClips, OptionsThatCannotBe) {
   const SceneFile file = small_file();
-  const auto error = [&](BatchOptions options) -> std::string {
+  const auto error = [&](const BatchOptions& options) -> std::string {
     try {
       plan_clips(file, options);
     } catch (const std::invalid_argument& e) {

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path folder_with_scene() {
-  const fs::path folder = scratch_folder();
+  fs::path folder = scratch_folder();
   std::ofstream(folder / "01-small.json") << small_scene();
   return folder;
 }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which part of a frame differs from the frame before: much of a clip stands still.
+
+#include <vector>
+
+#include "render/mesh.h"
+#include "render/pixel_rect.h"
+
+namespace pinchlab {
+
+/// Rectangles (px, of a frame of this size, sides even where the frame's are) that hold every pixel
+/// in which drawings of the two meshes differ. None if nothing does; the whole frame if the meshes
+/// have not the same structure.
+std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int width, int height);
+
+}  // namespace pinchlab

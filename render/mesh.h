@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A picture's shapes as triangles for the canvas' programs, in px.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "render/picture.h"
+
+namespace pinchlab {
+
+/// World metres to px of the frame, from its top left. The view is shown as large as it goes in the
+/// columns left .. left + width - 1, centred.
+struct Fit {
+  double scale;  // px/m
+  Vec2 origin;   // px, of the world's origin
+  Fit(const View& view, int left, int width, int height);
+  Vec2 point(const Vec2& p) const {
+    return {origin.x() + scale * p.x(), origin.y() - scale * p.y()};
+  }
+  static Vec2 vector(const Vec2& v) { return {v.x(), -v.y()}; }
+};
+
+/// The canvas' shader programs (gl.cpp).
+enum class Program : std::uint8_t { stroke, strip, label };
+
+/// The one vertex layout; gl.cpp says what `place`, `shape` and `curve` mean to each program.
+struct Vertex {
+  std::array<float, 2> position, place;
+  std::array<float, 4> shape;
+  std::array<float, 3> curve;
+  Colour fill, edge, mark;
+  bool operator==(const Vertex&) const = default;
+};
+
+/// The columns of the frame that one picture takes, and its background.
+struct Sheet {
+  int left, width;  // px
+  Colour background;
+  std::size_t end;  // the first batch of the next sheet
+  bool operator==(const Sheet&) const = default;
+};
+
+/// Consecutive triangles of one program, and of one texture if they are text.
+struct Batch {
+  Program program;
+  std::uint32_t texture;
+  std::size_t first, count;  // indices
+  bool operator==(const Batch&) const = default;
+};
+
+/// A piece of a strip between two points, px: the circular arc that joins them and turns by the
+/// angle between their tangents.
+struct Piece {
+  Vec2 middle;    // of the chord
+  Vec2 along;     // unit, of the chord; where the points coincide, halfway between the tangents
+  double length;  // of the chord
+  double turn;    // rad, positive to the left of `along` as seen in the picture
+  double radius = 0.0;  // 0: straight
+  Piece(const Vec2& from, const Vec2& to, const Vec2& from_tangent, const Vec2& to_tangent);
+};
+
+/// A text's image on the graphics side.
+struct LabelImage {
+  std::uint32_t texture = 0;
+  int width = 0, height = 0;              // px
+  double centre_x = 0.0, centre_y = 0.0;  // px, see TextBitmap
+};
+
+/// Quads of four vertices and two triangles each, in painter's order. Storage is kept by clear().
+class Mesh {
+ public:
+  void add(const Stroke& stroke, const Fit& fit);
+  void add(const Strip& strip, const std::vector<StripPoint>& points, const Fit& fit);
+  void add(const Label& label, const LabelImage& image, const Fit& fit);
+  /// Ends a picture that was drawn into the given columns, px.
+  void end_sheet(int left, int width, Colour background);
+  void clear();
+
+  const std::vector<Vertex>& vertices() const { return vertices_; }
+  const std::vector<std::uint32_t>& indices() const { return indices_; }
+  const std::vector<Batch>& batches() const { return batches_; }
+  const std::vector<Sheet>& sheets() const { return sheets_; }
+
+ private:
+  void find_sides(double reach);
+  void begin(Program program, std::uint32_t texture = 0);
+  void quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
+            const Vertex& common);
+
+  struct Side {  // of a strip's point: how far its triangles reach across, px
+    double left, right;
+  };
+
+  std::vector<Vertex> vertices_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<Batch> batches_;
+  std::vector<Sheet> sheets_;
+  std::vector<Piece> pieces_;  // of the strip being added
+  std::vector<Side> sides_;    // of its points
+  bool open_ = false;
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "render/canvas.h"
+#include "render/compose.h"
+#include "tests/render/scenes.h"
+
+namespace pinchlab {
+namespace {
+
+constexpr int size = 96;  // px, and m: one metre is one pixel here
+constexpr Colour white{255, 255, 255}, ink{0, 90, 140}, orange{236, 165, 46}, brown{110, 62, 8};
+
+/// What covers a point (px from the top left): index into a list of colours, -1 for the background.
+using Shape = std::function<int(double x, double y)>;
+
+/// RMS difference, in levels, between a canvas' pixels and the means of 16 x 16 samples each.
+double rms_error(const std::uint8_t* drawn, const Shape& shape,
+                 const std::vector<Colour>& colours) {
+  constexpr int samples = 16;
+  double sum = 0.0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      std::array<double, 3> mean{};
+      for (int i = 0; i < samples * samples; ++i) {
+        const int hit = shape(x + (i % samples + 0.5) / samples, y + (i / samples + 0.5) / samples);
+        const Colour c = hit < 0 ? white : colours[static_cast<std::size_t>(hit)];
+        mean[0] += c.red;
+        mean[1] += c.green;
+        mean[2] += c.blue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double d =
+            mean[k] / (samples * samples) - drawn[(y * size + x) * 4 + static_cast<int>(k)];
+        sum += d * d;
+      }
+    }
+  }
+  return std::sqrt(sum / (3.0 * size * size));
+}
+
+Picture page() {
+  Picture picture;
+  picture.view = {{0.0, 0.0}, {size, size}};
+  picture.background = white;
+  return picture;
+}
+
+double distance_to_line(Vec2 p, Vec2 a, Vec2 b) {
+  const Vec2 d = b - a;
+  const double t =
+      d.squaredNorm() > 0.0 ? std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+  return (p - a - t * d).norm();
+}
+
+// Bound: along a slanted edge the box filter across it (1 px wide) differs from the pixel's square
+// by at most 0.06 of the contrast (at 45 degrees), over about 1 px either side of each edge. For
+// edges of total length e px and contrast c the RMS is then at most 0.06 c sqrt(2 e / 96^2).
+double bound(double edge_length, double contrast) {
+  return 0.06 * contrast * std::sqrt(2.0 * edge_length / (size * size));
+}
+
+TEST(Canvas, DiscWithRimMatchesSupersampling) {
+  Picture picture = page();
+  const Vec2 centre(47.3, 50.8);
+  picture.add(Stroke{centre, centre, 30.4, 4.0, orange, ink});
+  Canvas canvas(size, size);
+  const Shape shape = [&](double x, double y) {
+    const double d = (Vec2(x, size - y) - centre).norm();
+    return d > 30.4 ? -1 : d > 26.4 ? 1 : 0;
+  };
+  const double edges = 2.0 * std::numbers::pi * (30.4 + 26.4);
+  EXPECT_LT(rms_error(canvas.draw(picture), shape, {orange, ink}), bound(edges, 255.0));
+}
+
+TEST(Canvas, CapsulesMatchSupersamplingEvenBelowAPixel) {
+  for (const double half : {6.3, 1.0, 0.3}) {
+    Picture picture = page();
+    const Vec2 a(20.2, 30.7), b(70.9, 61.4);
+    picture.add(Stroke{a, b, half, 0.0, ink, ink});
+    Canvas canvas(size, size);
+    const Shape shape = [&](double x, double y) {
+      return distance_to_line(Vec2(x, size - y), a, b) > half ? -1 : 0;
+    };
+    const double edges = 2.0 * (b - a).norm() + 2.0 * std::numbers::pi * half;
+    EXPECT_LT(rms_error(canvas.draw(picture), shape, {ink}), bound(edges, 255.0)) << half;
+  }
+}
+
+TEST(Canvas, ArcsOfAStripAreRoundAndCarryTheirMarks) {
+  // Half a turn of radius 30 in pieces of the largest allowed turn.
+  const Vec2 centre(48.2, 40.6);
+  const double radius = 30.0, half = 5.5, spacing = 12.0, mark = 4.0;
+  Picture picture = page();
+  const int pieces = static_cast<int>(std::ceil(std::numbers::pi / most_turn));
+  for (int k = 0; k <= pieces; ++k) {
+    const double a = std::numbers::pi * k / pieces;
+    picture.points.push_back({centre + radius * Vec2(std::cos(a), std::sin(a)),
+                              {-std::sin(a), std::cos(a)},
+                              3.0 + radius * a});
+  }
+  picture.add(Strip{0, picture.points.size(), half, 1.5, spacing, mark, orange, ink, brown});
+  Canvas canvas(size, size);
+  const Shape shape = [&](double x, double y) {
+    const Vec2 p = Vec2(x, size - y) - centre;
+    const double t = std::abs(p.norm() - radius), a = std::atan2(p.y(), p.x());
+    if (t > half || a < 0.0) return -1;
+    if (t > half - 1.5) return 1;
+    const double m = 3.0 + radius * a, from_mark = m - spacing * std::round(m / spacing);
+    return std::abs(from_mark) < 0.5 * mark ? 2 : 0;
+  };
+  // Besides the long edges: ten marks with two edges each, slightly slanted within a piece because
+  // the mark is measured along the centre line, and two flat ends that are not smoothed, wrong by
+  // half the contrast at most.
+  const double edges = 4.0 * std::numbers::pi * radius + 20.0 * 2.0 * half;
+  const double ends = 0.5 * 255.0 * std::sqrt(4.0 * half / (size * size));
+  EXPECT_LT(rms_error(canvas.draw(picture), shape, {orange, ink, brown}),
+            bound(edges, 255.0) + 0.6 * ends);
+}
+
+TEST(Canvas, PiecesOfAStripLeaveNeitherGapsNorSeams) {
+  // A wave of many short pieces over its own colour: any pixel missed or drawn twice would stand
+  // out.
+  Picture picture = page();
+  const double half = 8.0;
+  for (int k = 0; k <= 200; ++k) {
+    const double x = 8.0 + 0.4 * k;
+    picture.points.push_back({{x, 48.0 + 6.0 * std::sin(0.15 * x)},
+                              Vec2(1.0, 0.9 * std::cos(0.15 * x)).normalized(),
+                              x});
+  }
+  picture.add(Strip{0, picture.points.size(), half, 0.0, 1.0, 0.0, {0, 0, 0, 128}, {}, {}});
+  Canvas canvas(size, size);
+  const std::uint8_t* pixels = canvas.draw(picture);
+  for (int x = 12; x < 84; ++x) {
+    const int y = static_cast<int>(size - (48.0 + 6.0 * std::sin(0.15 * x)));
+    for (int dy = -4; dy <= 4; ++dy)
+      EXPECT_NEAR(pixels[((y + dy) * size + x) * 4], 127, 1) << x << " " << dy;
+  }
+}
+
+TEST(Canvas, LaterShapesLieOnTopAndAlphaMixes) {
+  Picture picture = page();
+  picture.add(Stroke{{48.0, 48.0}, {48.0, 48.0}, 20.0, 0.0, {200, 0, 0}, {}});
+  picture.add(Stroke{{48.0, 48.0}, {48.0, 48.0}, 20.0, 0.0, {0, 0, 100, 128}, {}});
+  Canvas canvas(size, size);
+  const std::uint8_t* middle = canvas.draw(picture) + (48 * size + 48) * 4;
+  EXPECT_NEAR(middle[0], 100, 1);
+  EXPECT_NEAR(middle[2], 50, 1);
+  EXPECT_EQ(middle[3], 255);
+}
+
+TEST(Canvas, FirstRowIsTheTop) {
+  Picture picture = page();
+  picture.add(Stroke{{20.0, 80.0}, {20.0, 80.0}, 5.0, 0.0, ink, ink});  // left, near the top
+  Canvas canvas(size, size);
+  const std::uint8_t* pixels = canvas.draw(picture);
+  EXPECT_EQ(pixels[(16 * size + 20) * 4], ink.red);
+  EXPECT_EQ(pixels[(80 * size + 20) * 4], white.red);
+}
+
+TEST(Canvas, FitsTheViewWithoutStretchingIt) {
+  Picture picture = page();
+  picture.view = {{-1.0, -1.0}, {1.0, 1.0}};
+  picture.add(Stroke{{0.0, 0.0}, {0.0, 0.0}, 1.0, 0.0, ink, ink});
+  Canvas canvas(200, 100);
+  const std::uint8_t* pixels = canvas.draw(picture);
+  const auto red = [&](int x, int y) { return pixels[(y * 200 + x) * 4]; };
+  EXPECT_EQ(red(52, 50), ink.red);  // 48 px left of the middle, inside the disc of 50 px
+  EXPECT_EQ(red(47, 50), white.red);
+  EXPECT_EQ(red(100, 2), ink.red);
+}
+
+std::vector<std::uint8_t> copy(const std::uint8_t* pixels, int width, int height) {
+  return {pixels, pixels + static_cast<std::ptrdiff_t>(width) * height * 4};
+}
+
+TEST(Canvas, SamePictureSameBytesInAnyCanvas) {
+  const Scene scene = testing::atwood();
+  Picture picture;
+  compose(scene, make_world(scene, Method::pinch), picture);
+  Canvas first(240, 200), second(240, 200);
+  const auto a = copy(first.draw(picture), 240, 200);
+  second.draw(page());
+  EXPECT_EQ(a, copy(second.draw(picture), 240, 200));
+  EXPECT_EQ(a, copy(first.draw(picture), 240, 200));
+}
+
+TEST(Canvas, ReadsBackEverythingThatChanges) {
+  // A canvas that has drawn the frames before must agree with a fresh one, and say where they
+  // differ.
+  const Scene scene = testing::atwood();
+  World world = make_world(scene, Method::pinch);
+  Canvas canvas(160, 160);
+  Picture picture;
+  std::vector<std::uint8_t> last;
+  for (int frame = 0; frame < 12; ++frame) {
+    compose(scene, world, picture);
+    if (frame == 5) picture.labels[0].text = "other";
+    const auto pixels = copy(canvas.draw(picture), 160, 160);
+    Canvas fresh(160, 160);
+    ASSERT_EQ(pixels, copy(fresh.draw(picture), 160, 160)) << frame;
+    if (frame > 0) {
+      std::vector<std::uint8_t> patched = last;
+      for (const PixelRect& r : canvas.changed()) {
+        EXPECT_EQ((r.left | r.top | r.width | r.height) % 2, 0);
+        for (int y = r.top; y < r.top + r.height; ++y) {
+          const auto at = static_cast<std::ptrdiff_t>(y * 160 + r.left) * 4;
+          std::copy_n(pixels.begin() + at, r.width * 4, patched.begin() + at);
+        }
+      }
+      EXPECT_EQ(patched, pixels) << frame;
+    }
+    last = pixels;
+    world.angle[0] += 0.3;
+    world.position[1].y() -= 0.05;
+  }
+  canvas.draw(picture);
+  EXPECT_TRUE(canvas.changed().empty());
+}
+
+TEST(Canvas, PicturesSideBySideLookAsAlone) {
+  const Scene scene = testing::atwood();
+  Picture left, right = page();
+  compose(scene, make_world(scene, Method::pinch), left);
+  right.add(
+      Stroke{{-20.0, 48.0}, {60.0, 48.0}, 10.0, 0.0, ink, ink});  // would reach into the left one
+  Canvas both(200, 100), one(100, 100);
+  const std::array<const Picture*, 2> pictures = {&left, &right};
+  const auto pair = copy(both.draw(pictures), 200, 100);
+  for (int side = 0; side < 2; ++side) {
+    const auto alone = copy(one.draw(*pictures[static_cast<std::size_t>(side)]), 100, 100);
+    int worst = 0;
+    for (int y = 0; y < 100; ++y) {
+      for (int k = 0; k < 400; ++k) {
+        const int d = pair[static_cast<std::size_t>(y * 800 + side * 400 + k)] -
+                      alone[static_cast<std::size_t>(y * 400 + k)];
+        worst = std::max(worst, std::abs(d));
+      }
+    }
+    EXPECT_LE(worst, 1) << side;  // single precision places may differ in their last digit
+  }
+}
+
+TEST(Canvas, RefusesAbsurdSizes) {
+  for (const auto& [width, height] : {std::pair{0, 100}, {100, -1}, {15, 100}, {100, 1000000}}) {
+    const std::string message =
+        testing::message_of<std::runtime_error>([w = width, h = height] { Canvas(w, h); });
+    EXPECT_NE(message.find("each side must be 16 to 8192 px"), std::string::npos) << message;
+  }
+}
+
+TEST(Canvas, OddSizesWork) {
+  Picture picture = page();
+  picture.add(Stroke{{48.0, 48.0}, {48.0, 48.0}, 30.0, 0.0, ink, ink});
+  Canvas canvas(97, 51);
+  EXPECT_EQ(canvas.draw(picture)[(25 * 97 + 48) * 4], ink.red);
+}
+
+TEST(Canvas, LabelsAreCentredAndInTheirColour) {
+  Picture picture = page();
+  picture.add(Label{{48.0, 48.0}, 20.0, "HOH", {0, 0, 0}});
+  Canvas canvas(size, size);
+  const std::uint8_t* pixels = canvas.draw(picture);
+  double sum = 0.0, sum_x = 0.0;
+  int left = size, right = 0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const double dark = 255 - pixels[(y * size + x) * 4];
+      sum += dark;
+      sum_x += dark * (x + 0.5);
+      if (dark > 128) {
+        left = std::min(left, x);
+        right = std::max(right, x);
+      }
+    }
+  }
+  EXPECT_GT(sum / 255.0, 60.0);  // px of ink
+  EXPECT_NEAR(sum_x / sum, 48.0, 0.5);
+  EXPECT_NEAR(0.5 * (left + right + 1), 48.0, 1.0);
+}
+
+TEST(Canvas, SaysWhichPackageBringsTheFont) {
+  setenv("PINCHLAB_FONT", "/no/such/font.ttf", 1);
+  const std::string message = testing::message_of<std::runtime_error>([] { Canvas(32, 32); });
+  unsetenv("PINCHLAB_FONT");
+  EXPECT_NE(message.find("/no/such/font.ttf"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace pinchlab
