@@ -37,8 +37,8 @@ Row segment_row(const World& world, const Link& from, const Link& to, const Segm
   const Vec2& e = segment.direction;
   row.ja = {e.x(), e.y(), lever(world, from, e)};
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
-  // Where plain cable joints have crossed bodies, rolling has moved material that no row has held; what is
-  // left of a segment is then at least nothing.
+  // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
+  // what is left of a segment is then at least nothing.
   const double rest =
       world.method == Method::cable ? std::max(segment.rest_length, 0.0) : segment.rest_length;
   row.bias = -(segment.length - rest) / world.step_length;
