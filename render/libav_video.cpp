@@ -176,11 +176,13 @@ const char* file_ending(Codec codec) {
 
 std::string describe(const VideoSettings& settings) {
   const CodecTraits& t = traits(settings.codec);
-  const bool rgb = settings.codec == Codec::ffv1;
-  return fmt::format("{} in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
-                     t.container, av_get_pix_fmt_name(t.pixel_format),
-                     rgb ? "sRGB, lossless" : "BT.709 limited range", settings.width,
-                     settings.height, settings.frames_per_second, encoder_options(settings));
+  const unsigned version = avcodec_version();
+  return fmt::format(
+      "{} (libavcodec {}.{}.{}) in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
+      version >> 16, version >> 8 & 0xff, version & 0xff, t.container,
+      av_get_pix_fmt_name(t.pixel_format),
+      settings.codec == Codec::ffv1 ? "sRGB, lossless" : "BT.709 limited range", settings.width,
+      settings.height, settings.frames_per_second, encoder_options(settings));
 }
 
 struct VideoWriter::State {

@@ -42,9 +42,9 @@ void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
     std::uint8_t* const y_lower = y_upper + to.y_stride;
     std::uint8_t* const u = to.u + y / 2 * to.u_stride + part.left / 2;
     std::uint8_t* const v = to.v + y / 2 * to.v_stride + part.left / 2;
-    for (int x = 0; x < part.width; ++x) y_upper[x] = y_of(upper + 4 * x);
-    for (int x = 0; x < part.width; ++x) y_lower[x] = y_of(lower + 4 * x);
-    for (int x = 0; x < part.width / 2; ++x) {
+    for (std::ptrdiff_t x = 0; x < part.width; ++x) y_upper[x] = y_of(upper + 4 * x);
+    for (std::ptrdiff_t x = 0; x < part.width; ++x) y_lower[x] = y_of(lower + 4 * x);
+    for (std::ptrdiff_t x = 0; x < part.width / 2; ++x) {
       const std::uint8_t *a = upper + 8 * x, *b = lower + 8 * x;
       const std::int32_t red = a[0] + a[4] + b[0] + b[4];
       const std::int32_t green = a[1] + a[5] + b[1] + b[5];
