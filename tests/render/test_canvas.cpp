@@ -142,6 +142,45 @@ TEST(Canvas, PiecesOfAStripLeaveNeitherGapsNorSeams) {
   }
 }
 
+TEST(Canvas, KinksHaveRoundJoints) {
+  // Right, then up, then back down at a slant: turns of 90 and 153 degrees in steps of most_turn.
+  const std::array<Vec2, 4> corners = {Vec2(20.0, 30.0), Vec2(60.0, 30.0), Vec2(60.0, 70.0),
+                                       Vec2(40.0, 30.0)};
+  const double half = 6.3;
+  Picture picture = page();
+  const auto direction = [&](std::size_t i) {
+    return Vec2((corners[i + 1] - corners[i]).normalized());
+  };
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    if (i > 0) {
+      const Vec2 before = direction(i - 1);
+      const double turn = std::acos(before.dot(direction(i)));
+      const int pieces = static_cast<int>(std::ceil(turn / most_turn));
+      for (int k = 1; k < pieces; ++k) {
+        const double a = turn * k / pieces;
+        picture.points.push_back(
+            {corners[i], std::cos(a) * before + std::sin(a) * Vec2(-before.y(), before.x()), 0.0});
+      }
+    }
+    picture.points.push_back({corners[i], direction(i), 0.0});
+    picture.points.push_back({corners[i + 1], direction(i), 0.0});
+  }
+  picture.add(Strip{0, picture.points.size(), half, 0.0, 1.0, 0.0, ink, {}, {}});
+  Canvas canvas(size, size);
+  const Shape shape = [&](double x, double y) {
+    const Vec2 p(x, size - y);
+    double nearest = infinity;
+    for (std::size_t i = 0; i < 3; ++i)
+      nearest = std::min(nearest, distance_to_line(p, corners[i], corners[i + 1]));
+    // The two ends are flat.
+    const bool before =
+        p.x()<20.0, after = (p - corners[3]).dot(direction(2))> 0.0 && p.y() < 30.0 - half;
+    return nearest > half || before || after ? -1 : 0;
+  };
+  EXPECT_LT(rms_error(canvas.draw(picture), shape, {ink}),
+            bound(2.0 * 125.0 + 2.0 * std::numbers::pi * half, 255.0));
+}
+
 TEST(Canvas, LaterShapesLieOnTopAndAlphaMixes) {
   Picture picture = page();
   picture.add(Stroke{{48.0, 48.0}, {48.0, 48.0}, 20.0, 0.0, {200, 0, 0}, {}});
