@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "sim/cable.h"
 #include "sim/ordering.h"
@@ -20,12 +21,21 @@ bool is_friction(const Row& row) {
   return row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle;
 }
 
-/// Friction rows bear force only where their contact does.
-void couple_friction_to_contacts(std::vector<Row>& rows) {
+/// Friction rows bear force only where their contact does. A pinch on a cable that is slack on both
+/// sides passes friction from body to body, as much as the smoother of the two allows.
+void bound_friction(World& world) {
+  std::vector<Row>& rows = world.scratch.rows;
   for (Row& row : rows) {
     if (!is_friction(row)) continue;
     if (row.normal >= 0) row.on = rows[index(row.normal)].on;
-    if (row.friction == 0.0) row.on = false;
+    row.bound = row.friction;
+    if (row.run >= 0) {
+      const Run& run = world.scratch.active_set.capstan.runs[index(row.run)];
+      const bool slack = !rows[index(run.row_in)].on && !rows[index(run.row_out)].on;
+      if (slack) row.bound = std::min(row.friction, row.wrapped_friction);
+    }
+    if (row.bound == 0.0) row.on = false;
+    if (row.bound == infinity) row.slip = Slip::stick;
   }
 }
 
@@ -48,13 +58,13 @@ Tolerances tolerances(const World& world) {
     if (row.on) speed = std::max(speed, std::abs(row.bias));
   }
   const double tolerance = 1e-12 * speed + 1e-15;
-  return {tolerance, 1e-12 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
+  return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
 void check_friction(const Row& row, int number, double sliding, const World& world,
                     const Tolerances& tolerance, std::vector<Flip>& flips) {
-  if (!row.on || row.friction == infinity) return;
-  const double bound = row.friction * world.scratch.rows[index(row.normal)].impulse;
+  if (!row.on || row.frozen || row.bound == infinity) return;
+  const double bound = row.bound * world.scratch.rows[index(row.normal)].impulse;
   if (row.slip == Slip::stick) {
     if (std::abs(row.impulse) <= bound + tolerance.impulse) return;
     flips.push_back({number, false, true, row.impulse > 0.0 ? Slip::backward : Slip::forward});
@@ -96,14 +106,40 @@ void check(World& world) {
 
 void apply(World& world, const Flip& flip) {
   if (flip.is_run) {
-    world.scratch.active_set.capstan.runs[index(flip.row)].slip = flip.slip;
+    Run& run = world.scratch.active_set.capstan.runs[index(flip.row)];
+    run.slip = flip.slip;
+    run.flipped = world.diagnostics.active_set_solves;
     return;
   }
   Row& row = world.scratch.rows[index(flip.row)];
+  row.flipped = world.diagnostics.active_set_solves;
   if (is_friction(row)) {
     row.slip = flip.slip;
   } else {
     row.on = flip.on;
+  }
+}
+
+/// One flip, where flipping everything makes no progress. With friction every fixed rule of choice
+/// has its cycles, so the choice hops about: by a fixed multiplicative sequence, the same in every
+/// run.
+const Flip& choose_flip(const ActiveSet& set, int solve) {
+  const auto hop = static_cast<std::uint32_t>(solve) * 2654435761u;
+  return set.flips[(hop >> 8) % set.flips.size()];
+}
+
+/// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
+/// makes energy nor moves material; only the bound on its force is exceeded, for one step.
+void freeze_friction(World& world) {
+  for (Row& row : world.scratch.rows) {
+    if (!is_friction(row) || row.flipped == 0) continue;
+    row.slip = Slip::stick;
+    row.frozen = true;
+  }
+  for (Run& run : world.scratch.active_set.capstan.runs) {
+    if (run.frictionless || run.flipped == 0) continue;
+    run.slip = Slip::stick;
+    run.frozen = true;
   }
 }
 
@@ -125,7 +161,7 @@ void sweep(World& world) {
       double least = 0.0, most = infinity;
       if (is_friction(row)) {
         const double force = row.normal >= 0 ? s.rows[index(row.normal)].impulse : infinity;
-        most = row.friction == 0.0 || force == 0.0 ? 0.0 : row.friction * force;
+        most = row.bound == 0.0 || force == 0.0 ? 0.0 : row.bound * force;
         least = -most;
       }
       const double before = row.impulse;
@@ -198,32 +234,32 @@ void solve(const Scene& scene, World& world, double kick) {
 
   order_rows(world);
   find_runs(scene, world);
-  constexpr int patience = 10, most_solves = 100;
+  // All contradicted states flip while that makes progress, then one at a time.
+  constexpr int patience = 3, before_freezing = 40, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
   int left = patience;
   bool settled = false;
   for (int solves = 1; solves <= most_solves && !settled; ++solves) {
-    couple_friction_to_contacts(s.rows);
+    if (solves == before_freezing) {
+      freeze_friction(world);
+      ++world.diagnostics.fallbacks;
+    }
+    bound_friction(world);
     solve_for_states(world);
     world.diagnostics.active_set_solves = solves;
     check(world);
-    if (set.flips.empty()) {
-      settled = true;
-    } else if (set.flips.size() < fewest) {
-      fewest = set.flips.size();
-      left = patience;
-      for (const Flip& flip : set.flips) apply(world, flip);
-    } else if (left > 0) {
-      --left;
+    settled = set.flips.empty();
+    if (settled) break;
+    const bool progress = set.flips.size() < fewest;
+    left = progress ? patience : left - 1;
+    fewest = std::min(fewest, set.flips.size());
+    if (left > 0) {
       for (const Flip& flip : set.flips) apply(world, flip);
     } else {
-      apply(world, set.flips.back());
+      apply(world, choose_flip(set, solves));
     }
   }
-  if (!settled) {
-    sweep(world);
-    ++world.diagnostics.fallbacks;
-  }
+  if (!settled) sweep(world);
   for (Row& row : s.rows) {
     if (!is_friction(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
   }

@@ -12,9 +12,10 @@ namespace pinchlab {
 /// states and forces.
 ///
 /// Each guess of the states gives one linear system, solved directly. Contradicted states are
-/// flipped all at once while their number falls, then one by one in a fixed order (Judice & Pires
-/// 1994), which ends for the frictionless part. If friction makes it cycle, projected sweeps finish
-/// the step, and diagnostics.fallbacks counts it.
+/// flipped all at once while their number falls (block pivoting, Judice & Pires 1994), then one by
+/// one, the one that has kept its state longest first. If friction makes the states cycle, what has
+/// flipped sticks for the rest of the step, and diagnostics.fallbacks counts the step; projected
+/// sweeps are the last resort.
 void solve(const Scene& scene, World& world, double kick);
 
 }  // namespace pinchlab

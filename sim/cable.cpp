@@ -104,6 +104,7 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
 }
 
 void update_segments(World& world) {
+  world.scratch.released.clear();
   for (CableState& cable : world.cables) {
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       Segment& segment = cable.segments[i];
@@ -158,6 +159,8 @@ void remove_links(World& world) {
         const Link& link = cable.links[i];
         const bool needed = cable.closed && cable.links.size() <= 2;
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed) {
+          world.scratch.released.push_back(
+              {static_cast<int>(&cable - world.cables.data()), link.body});
           remove_link(world, cable, static_cast<int>(i));
           changed = true;
           break;

@@ -188,6 +188,36 @@ void find_runs(const Scene& scene, World& world) {
   }
 }
 
+namespace {
+
+void part_slack_segments(World& world, int begin, int count, int start) {
+  CapstanScratch& s = world.scratch.active_set.capstan;
+  bool slack_before = false;
+  int oldest = -1;
+  for (int k = 0; k < count; ++k) {
+    const int position = begin + (start + k) % count;
+    const int number = s.run_before[index(position)];
+    if (k > 0) {
+      Run& run = s.runs[index(number)];
+      if (run.slip == Slip::stick) {
+        slack_before = false;
+        oldest = -1;
+      } else if (!run.frictionless && (oldest < 0 || run.flipped < s.runs[index(oldest)].flipped)) {
+        oldest = number;
+      }
+    }
+    if (world.scratch.rows[index(s.segments[index(position)])].on) continue;
+    if (slack_before && oldest >= 0) {
+      s.runs[index(oldest)].slip = Slip::stick;
+      s.runs[index(oldest)].flipped = world.diagnostics.active_set_solves + 1;
+    }
+    slack_before = true;
+    oldest = -1;
+  }
+}
+
+}  // namespace
+
 void make_groups(World& world) {
   Scratch& scratch = world.scratch;
   CapstanScratch& s = scratch.active_set.capstan;
@@ -206,6 +236,7 @@ void make_groups(World& world) {
         break;
       }
     }
+    part_slack_segments(world, begin, count, start);
     for (int k = 0; k < count; ++k) {
       const int position = begin + (start + k) % count;
       const int row = s.segments[index(position)], run = s.run_before[index(position)];
@@ -348,7 +379,6 @@ void check_runs(World& world, double speed_tolerance, double impulse_tolerance) 
       if (w < -speed_tolerance && rows[index(row)].diagonal > 0.0) {
         set.flips.push_back({row, false, true, Slip::stick});
       }
-      continue;
     }
     // The member that would be pushed hardest goes slack.
     int worst = -1;
@@ -364,7 +394,7 @@ void check_runs(World& world, double speed_tolerance, double impulse_tolerance) 
   }
   for (std::size_t i = 0; i < s.runs.size(); ++i) {
     const Run& run = s.runs[i];
-    if (run.frictionless || run.passages_begin == run.passages_end) continue;
+    if (run.frictionless || run.frozen || run.passages_begin == run.passages_end) continue;
     const int number = static_cast<int>(i);
     const double out = rows[index(run.row_out)].impulse;
     if (run.slip != Slip::stick) {

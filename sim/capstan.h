@@ -27,7 +27,9 @@ struct Run {
   int row_in = -1, row_out = -1;  // segment rows before and after
   bool frictionless = false;      // always slides; the direction does not matter
   Slip slip = Slip::stick;
-  double speed = 0.0;  // m/s, of the material over the body, by slip_speeds
+  double speed = 0.0;   // m/s, of the material over the body, by slip_speeds
+  int flipped = 0;      // solve of this step at which `slip` last changed
+  bool frozen = false;  // sticks for this step, whatever its bounds
   int passages_begin = 0, passages_end = 0;
 };
 
@@ -56,6 +58,9 @@ struct CapstanScratch {
 void find_runs(const Scene& scene, World& world);
 
 /// Joins segments into groups for the present states of runs and segments.
+///
+/// Two slack segments of one group would determine the tension between them twice, from either
+/// side. One run between them must stick then; the one that has kept its state longest is made to.
 void make_groups(World& world);
 
 /// Impulses of the groups' members in terms of the unknowns, appended to the active set's lists.

@@ -63,6 +63,21 @@ struct NewPinch {
   int body;
 };
 
+/// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
+/// than the cable's width it would press the span against the link's body, so it must keep that
+/// distance already before it hits the span.
+bool over_adjacent_span(const World& world, const CableState& cable, std::size_t i, int other) {
+  const int after = next_link(cable, static_cast<int>(i));
+  for (const int s : {static_cast<int>(i), after}) {
+    const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
+    const Vec2 x = world.position[static_cast<std::size_t>(other)] - segment.tail;
+    const double along = segment.direction.dot(x);
+    const double side = cross(segment.direction, x) * cable.links[i].orientation;
+    if (!segment.pinched && along > 0.0 && along < segment.length && side < 0.0) return true;
+  }
+  return false;
+}
+
 /// The turns of link i that `contact` presses, apart from the end at which the other body is the
 /// cable's next or previous one (there the pinch is transitional or made already).
 void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_t i, int other,
@@ -77,6 +92,10 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
   };
   constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
   const double width = 2.0 * cable.half_width;
+  if (world.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
+    contact.target = std::max(contact.target, width);
+    contact.pinch_linked = true;
+  }
   for (double arc = arc_of_direction(cable, i, u); arc <= link.wrap + arc_tolerance;
        arc += 2.0 * std::numbers::pi) {
     if (is_other(before) && arc < near_end) continue;
@@ -199,7 +218,7 @@ void find_contacts(const Scene& scene, World& world) {
 void configure_pinches(const Scene& scene, World& world) {
   if (world.method == Method::cable) return;
   remove_open_pinches(world);
-  if (world.contacts.empty()) return;
+  if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
 
   // Only links of bodies that have contacts matter.
   auto& contacts_of_body = world.scratch.contacts_of_body;

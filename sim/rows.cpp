@@ -57,7 +57,7 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
 }
 
 /// What presses the middle body of a non-transitional pinch, and how much of it this cable gets.
-void bound_pinch_friction(const World& world, Row& row) {
+void bound_pinch_friction(const Scene& scene, const World& world, Row& row) {
   const Link& middle =
       world.cables[static_cast<std::size_t>(row.index)].links[static_cast<std::size_t>(row.item)];
   const Contact* contact =
@@ -73,7 +73,13 @@ void bound_pinch_friction(const World& world, Row& row) {
   }
   row.normal = clamped ? -1 : normal;
   if (row.normal < 0) row.friction = 0.0;
-  if (contact) row.friction /= std::max(1, contact->pinch_points);
+  if (contact == nullptr) return;
+  const Link& wrapped = world.cables[static_cast<std::size_t>(row.index)]
+                            .links[static_cast<std::size_t>(row.item - 1)];
+  const int points = std::max(1, contact->pinch_points);
+  row.friction /= points;
+  row.wrapped_friction =
+      scene.bodies[static_cast<std::size_t>(wrapped.body)].cable_friction / points;
 }
 
 }  // namespace
@@ -190,13 +196,17 @@ void make_contact_rows(const Scene& scene, World& world) {
     friction.normal = world.scratch.normal_row_of_contact.back();
     friction.a = contact.a;
     friction.b = contact.b;
-    friction.ja = {-t.x(), -t.y(), -body.radius};
-    friction.jb = {t.x(), t.y(), contact.b >= 0 ? -scene.bodies[b].radius : 0.0};
+    // Both forces act at one point, a share of the gap off the surfaces, so that they have no
+    // moment.
+    const double radii = body.radius + (contact.b >= 0 ? scene.bodies[b].radius : 0.0);
+    const double reach = (radii + contact.gap) / radii;
+    friction.ja = {-t.x(), -t.y(), -body.radius * reach};
+    friction.jb = {t.x(), t.y(), contact.b >= 0 ? -scene.bodies[b].radius * reach : 0.0};
     friction.diagonal = diagonal_of(friction, world.scratch.mobility);
     world.scratch.rows.push_back(friction);
   }
   for (Row& row : world.scratch.rows) {
-    if (row.kind == RowKind::pinch_middle) bound_pinch_friction(world, row);
+    if (row.kind == RowKind::pinch_middle) bound_pinch_friction(scene, world, row);
   }
 }
 

@@ -39,15 +39,19 @@ struct Row {
   Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = Eigen::Vector3d::Zero();  // (x, y, angle)
   double bias = 0.0;                                                           // m/s
   double compliance = 0.0;                                                     // 1/kg
-  double diagonal = 0.0;           // 1/kg, J * mobility * J^T
-  double impulse = 0.0;            // N s
-  double speed = 0.0;              // w, m/s, after the solve
-  bool on = false;                 // active set: bears a force
-  Slip slip = Slip::stick;         // active set: friction rows
-  int run = -1;                    // pinch_middle: the wrapped body's run, where it may slide
-  bool in_group_equation = false;  // pinch_middle: its equation is part of its group's
-  int normal = -1;                 // friction rows: the row whose force bounds them, or -1
-  double friction = 0.0;           // friction rows: |impulse| <= friction * impulse of `normal`
+  double diagonal = 0.0;               // 1/kg, J * mobility * J^T
+  double impulse = 0.0;                // N s
+  double speed = 0.0;                  // w, m/s, after the solve
+  bool on = false;                     // active set: bears a force
+  Slip slip = Slip::stick;             // active set: friction rows
+  int run = -1;                        // pinch_middle: the wrapped body's run, where it may slide
+  bool in_group_equation = false;      // pinch_middle: its equation is part of its group's
+  int normal = -1;                     // friction rows: the row whose force bounds them, or -1
+  double friction = 0.0;               // friction rows: coefficient of the row's own body or pair
+  double wrapped_friction = infinity;  // pinch_middle: that of the wrapped body
+  double bound = 0.0;   // friction rows: |impulse| <= bound * impulse of `normal`, in force
+  int flipped = 0;      // solve of this step at which `on` or `slip` last changed
+  bool frozen = false;  // friction rows: sticks for this step, whatever its bound
 };
 
 /// Mobilities for a velocity kick of `kick` seconds.

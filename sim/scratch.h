@@ -47,7 +47,13 @@ struct ActiveSet {
   std::vector<Flip> flips;
 };
 
+/// A body that has just left a cable.
+struct Release {
+  int cable, body;
+};
+
 struct Scratch {
+  std::vector<Release> released;  // since update_segments
   BroadPhase broad_phase;
   std::vector<Contact> old_contacts;
   Lists<int> contacts_of_body;

@@ -33,6 +33,18 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   return beside(tail, before) || beside(head, after);
 }
 
+/// A body that has just left the cable was on the other side of the span that closed up behind it:
+/// the cable then ran round it. It has not crossed.
+bool just_left(const World& world, const CableState& cable, const Segment& segment, int body) {
+  const bool fresh = segment.previous_tail == segment.tail && segment.previous_head == segment.head;
+  if (!fresh) return false;
+  for (const Release& release : world.scratch.released) {
+    if (&world.cables[static_cast<std::size_t>(release.cable)] == &cable && release.body == body)
+      return true;
+  }
+  return false;
+}
+
 /// A body may hit the span that ends on it only where it holds the end at its rim.
 bool holds_span(const Scene& scene, const CableState& cable, const Link& end, int body) {
   if (end.body != body) return false;
@@ -45,6 +57,7 @@ Hit test_span(const Scene& scene, const World& world, const CableState& cable, s
   const Segment& segment = cable.segments[s];
   Hit hit;
   if (segment.pinched || !(segment.length > 0.0) || pinched_beside(cable, s, body)) return hit;
+  if (just_left(world, cable, segment, body)) return hit;
   const auto b = static_cast<std::size_t>(body);
   const double margin = scene.bodies[b].radius + cable.half_width - graze;
   const Vec2 now = world.position[b] - segment.tail;

@@ -73,7 +73,7 @@ void express(World& world) {
       // Sliding friction opposes the sliding: p = -slip * friction * normal.
       const int normal = set.unknown_of_row[index(row.normal)];
       if (normal >= 0)
-        set.impulse_terms.push_back({normal, -static_cast<int>(row.slip) * row.friction});
+        set.impulse_terms.push_back({normal, -static_cast<int>(row.slip) * row.bound});
     }
     set.impulse_end[r] = static_cast<int>(set.impulse_terms.size());
   }

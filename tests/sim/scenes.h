@@ -14,7 +14,8 @@ namespace pinchlab::testing {
 
 constexpr double g = 9.81;  // m/s^2, the default gravity
 
-inline Body body(const std::string& name, BodyKind kind, double x, double y, double radius, double mass) {
+inline Body body(const std::string& name, BodyKind kind, double x, double y, double radius,
+                 double mass) {
   Body b;
   b.name = name;
   b.kind = kind;
@@ -25,7 +26,8 @@ inline Body body(const std::string& name, BodyKind kind, double x, double y, dou
 }
 
 /// A cable from the world (or the centre of a body, where index >= 0) over wraps to the like.
-inline Cable cable(Attachment start, std::vector<Wrap> wraps, Attachment end, double half_width = 0.05) {
+inline Cable cable(Attachment start, std::vector<Wrap> wraps, Attachment end,
+                   double half_width = 0.05) {
   Cable c;
   c.name = "cable";
   c.half_width = half_width;
@@ -35,12 +37,17 @@ inline Cable cable(Attachment start, std::vector<Wrap> wraps, Attachment end, do
   return c;
 }
 
-inline Attachment at(double x, double y) { return {-1, {x, y}}; }
-inline Attachment on(int b) { return {b, {0.0, 0.0}}; }
+inline Attachment at(double x, double y) {
+  return {-1, {x, y}};
+}
+inline Attachment on(int b) {
+  return {b, {0.0, 0.0}};
+}
 
-/// Loads m1 and m2 on one cable over `pulleys` equal pulleys with fixed axles in a row, wrapped over and
-/// under in turn: bodies 0 and 1 are the loads, the pulleys follow.
-inline Scene load_chain(int pulleys, double m1, double m2, double pulley_mass, double friction = infinity) {
+/// Loads m1 and m2 on one cable over `pulleys` equal pulleys with fixed axles in a row, wrapped
+/// over and under in turn: bodies 0 and 1 are the loads, the pulleys follow.
+inline Scene load_chain(int pulleys, double m1, double m2, double pulley_mass,
+                        double friction = infinity) {
   Scene scene;
   const double r = 0.5, w = 0.05, spacing = 1.5, R = r + w;
   scene.bodies.push_back(body("left", BodyKind::free, -R, -3.0, 0.2, m1));
@@ -52,7 +59,8 @@ inline Scene load_chain(int pulleys, double m1, double m2, double pulley_mass, d
   }
   scene.bodies.push_back(body("right", BodyKind::free, x_last + R, -3.0, 0.2, m2));
   for (int i = 0; i < pulleys; ++i) {
-    Body p = body(fmt::format("pulley {}", i), BodyKind::fixed_axle, spacing * i, 0.0, r, pulley_mass);
+    Body p =
+        body(fmt::format("pulley {}", i), BodyKind::fixed_axle, spacing * i, 0.0, r, pulley_mass);
     p.cable_friction = friction;
     scene.bodies.push_back(p);
   }

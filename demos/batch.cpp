@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/batch.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <set>
+#include <stdexcept>
+#include <thread>
+
+#include "demos/manifest.h"
+#include "demos/progress.h"
+#include "demos/worker_pool.h"
+#include "render/canvas.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+// One batch at a time in a folder. The lock is on the folder itself and goes with the process.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ < 0) {
+      throw std::runtime_error(
+          fmt::format("{}: is not a folder that can be used", folder.string()));
+    }
+    if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(folder_);
+      throw std::runtime_error(
+          fmt::format("{}: another process is rendering into it; wait for it or use another --out",
+                      folder.string()));
+    }
+  }
+  ~FolderLock() { ::close(folder_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_;
+};
+
+// What an interrupted run left. Only safe under the lock.
+void remove_partial_files(const fs::path& folder) {
+  const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json"};
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (path.extension() == ".partial" && ours.contains(path.stem().extension())) {
+      fs::remove(path);
+    }
+  }
+}
+
+std::vector<SceneFile> read_scenes(const std::vector<fs::path>& paths) {
+  std::vector<SceneFile> scenes;
+  std::set<std::string> names;
+  for (const fs::path& path : find_scenes(paths)) {
+    scenes.push_back(read_scene_file(path));
+    if (!names.insert(scenes.back().scene.name).second) {
+      throw std::invalid_argument(fmt::format("{}: a scene called {} is in the list already",
+                                              path.string(), scenes.back().scene.name));
+    }
+  }
+  return scenes;
+}
+
+bool is_demo_name(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const auto is_digit = [](char c) { return '0' <= c && c <= '9'; };
+  return name.size() > 8 && is_digit(name[0]) && is_digit(name[1]) && name[2] == '-' &&
+         name.ends_with(".json");
+}
+
+std::int64_t panels_to_draw(const ClipPlan& plan) {
+  return plan.poster ? 1 : static_cast<std::int64_t>(plan.methods.size()) * plan.scene.frame_count;
+}
+
+double cpu_seconds(int who) {
+  struct rusage usage = {};
+  ::getrusage(who, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// Drops what is up to date, puts the longest first so that no core is left idle at the end.
+std::vector<ClipPlan> plans_to_make(const std::vector<ClipPlan>& plans, const Manifest& manifest,
+                                    const fs::path& out) {
+  std::vector<ClipPlan> to_make;
+  for (const ClipPlan& plan : plans) {
+    if (!is_up_to_date(manifest, out, plan_entry(plan))) {
+      to_make.push_back(plan);
+    }
+  }
+  std::ranges::stable_sort(to_make, std::ranges::greater(), panels_to_draw);
+  return to_make;
+}
+
+struct Outcome {
+  int signal = 0, made = 0, failed = 0;
+};
+
+Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jobs,
+                 Manifest& manifest) {
+  std::vector<Work> work;
+  std::int64_t total = 0;
+  for (const ClipPlan& plan : plans) {
+    work.emplace_back([&plan, &out](const std::function<void()>& tick) {
+      return make_clip(plan, out, tick).dump();
+    });
+    total += panels_to_draw(plan);
+  }
+  Outcome outcome;
+  Progress progress("rendering", "pictures", total);
+  const WorkerPoolEvents events = {
+      .tick =
+          [&](std::size_t i) {
+            progress.add(plans[i].poster ? 1 : static_cast<std::int64_t>(plans[i].methods.size()));
+          },
+      .done =
+          [&](std::size_t, const std::string& entry) {
+            put(manifest, ordered_json::parse(entry));
+            write_manifest(out, manifest);
+            ++outcome.made;
+          },
+      .failed =
+          [&](std::size_t i, const std::string& error) {
+            progress.clear();
+            fmt::print(stderr, "{}: not made: {}\n", plans[i].file, error);
+            ++outcome.failed;
+          }};
+  outcome.signal = run_in_processes(work, jobs, events);
+  return outcome;
+}
+
+void check_size(const BatchOptions& options) {
+  const int width = options.width * (options.side_by_side ? 2 : 1);  // px
+  if (std::min(options.width, options.height) < smallest_frame ||
+      std::max(width, options.height) > largest_frame) {
+    throw std::invalid_argument(
+        fmt::format("frames of {} x {} pixels cannot be drawn: each must be {} to {}", width,
+                    options.height, smallest_frame, largest_frame));
+  }
+  if (options.codec != Codec::ffv1 && (options.width % 2 != 0 || options.height % 2 != 0)) {
+    throw std::invalid_argument(
+        fmt::format("{} needs an even size, not {}x{}; change --size, or use --codec ffv1",
+                    to_string(options.codec), options.width, options.height));
+  }
+}
+
+}  // namespace
+
+Method method_of(const Scene& scene, const std::string& name) {
+  return name == "baseline" ? scene.baseline : method_from_string(name);
+}
+
+std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> scenes;
+  for (const fs::path& path : paths) {
+    if (!fs::is_directory(path)) {
+      scenes.push_back(path);
+      continue;
+    }
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+      if (is_demo_name(entry.path())) {
+        found.push_back(entry.path());
+      }
+    }
+    if (found.empty()) {
+      throw std::runtime_error(fmt::format("{}: has no scene called NN-name.json", path.string()));
+    }
+    std::ranges::sort(found);
+    scenes.insert(scenes.end(), found.begin(), found.end());
+  }
+  return scenes;
+}
+
+std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
+  check_size(options);
+  const Scene scene = with_timing(source.scene, options.timing);
+  const auto plan = [&](const std::string& role, std::vector<Method> methods,
+                        const std::string& ending) {
+    ClipPlan clip;
+    clip.file = scene.name + "." + role + ending;
+    clip.role = role;
+    clip.source = &source;
+    clip.scene = scene;
+    clip.methods = std::move(methods);
+    clip.video.codec = options.codec;
+    clip.video.width = options.width * (role.starts_with("left-") ? 2 : 1);
+    clip.video.height = options.height;
+    clip.video.frames_per_second = scene.frames_per_second;
+    return clip;
+  };
+  const std::string ending = file_ending(options.codec);
+  if (options.method) {
+    return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
+  }
+  const Method pinch = Method::pinch, baseline = scene.baseline;
+  std::vector<ClipPlan> plans = {plan("pinch", {pinch}, ending),
+                                 plan("baseline", {baseline}, ending),
+                                 plan("poster", {pinch, baseline}, ".png")};
+  plans.back().poster = true;
+  if (options.side_by_side) {
+    plans.push_back(plan("left-pinch", {pinch, baseline}, ending));
+    plans.push_back(plan("left-baseline", {baseline, pinch}, ending));
+  }
+  return plans;
+}
+
+int render_batch(const BatchOptions& options) {
+  // Everything that can be wrong with the input is found before the first file is touched.
+  const std::vector<SceneFile> scenes = read_scenes(options.scenes);
+  std::vector<ClipPlan> plans;
+  for (const SceneFile& scene : scenes) {
+    std::ranges::move(plan_clips(scene, options), std::back_inserter(plans));
+  }
+  for (const ClipPlan& plan : plans) {
+    for (const Method method : plan.methods) {
+      start_world(plan.scene, plan.source->path, method);
+    }
+  }
+
+  fs::create_directories(options.out);
+  const FolderLock lock(options.out);
+  remove_partial_files(options.out);
+  Manifest manifest = read_manifest(options.out);
+  const auto is_gone = [&](const ordered_json& entry) {
+    return !fs::exists(options.out / entry["file"].get<std::string>());
+  };
+  if (std::erase_if(manifest.entries, is_gone) > 0) {
+    write_manifest(options.out, manifest);
+  }
+  const std::vector<ClipPlan> to_make = plans_to_make(plans, manifest, options.out);
+
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_before = cpu_seconds(RUSAGE_CHILDREN);
+  const Outcome outcome =
+      make_all(to_make, options.out, options.jobs > 0 ? options.jobs : cores, manifest);
+  if (outcome.signal != 0) {
+    remove_partial_files(options.out);
+    ::raise(outcome.signal);  // as if it had not been caught
+  }
+  const double wall =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();  // s
+  fmt::print(stderr, "{}: {} made, {} up to date already, {} failed", options.out.string(),
+             outcome.made, plans.size() - to_make.size(), outcome.failed);
+  if (outcome.made > 0) {
+    fmt::print(stderr, "; {:.1f} s, {:.2f} of {} cores busy", wall,
+               (cpu_seconds(RUSAGE_CHILDREN) - cpu_before) / wall, cores);
+  }
+  fmt::print(stderr, "\n");
+  return outcome.failed;
+}
+
+}  // namespace pinchlab

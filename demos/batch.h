@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The main job: every scene's pair of clips, its poster and the manifest, made by worker processes.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/clip.h"
+#include "demos/player.h"
+
+namespace pinchlab {
+
+struct BatchOptions {
+  std::vector<std::filesystem::path> scenes;  ///< files, or folders of NN-name.json
+  std::filesystem::path out = "clips";        ///< made if missing
+  std::optional<std::string> method;  ///< only this one ("baseline": each scene's own), no poster
+  int width = 960, height = 960;      ///< px, of one panel
+  Timing timing;
+  Codec codec = Codec::h264;
+  int jobs = 0;               ///< worker processes; 0: one a core
+  bool side_by_side = false;  ///< also both left/right orders of each pair in one file
+};
+
+/// The method called `name`, where "baseline" is the scene's own. Throws std::invalid_argument.
+Method method_of(const Scene& scene, const std::string& name);
+
+/// The scene files that `paths` name, in order: a folder stands for its NN-name.json, NN two
+/// digits. Throws std::runtime_error if a folder has none.
+std::vector<std::filesystem::path> find_scenes(const std::vector<std::filesystem::path>& paths);
+
+/// What a batch makes of one scene: the pair's clips and poster, or the one clip asked for. Throws
+/// std::invalid_argument for options that the scene or the codec cannot have.
+std::vector<ClipPlan> plan_clips(const SceneFile& scene, const BatchOptions& options);
+
+/// Makes what is missing or out of date and keeps the rest; tells progress, and at the end what was
+/// done, on standard error. Files appear under their names when complete, one by one, and
+/// manifest.json with them. The same scenes and options give the same bytes, for any number of
+/// jobs.
+///
+/// A clip that fails does not stop the others. Returns the number of failed ones; throws
+/// std::runtime_error (SceneFileError for a bad scene, before anything is made) if nothing could be
+/// done, std::invalid_argument for options that cannot be. SIGINT, SIGTERM and SIGHUP end the batch
+/// and then the program, as they would without it.
+int render_batch(const BatchOptions& options);
+
+}  // namespace pinchlab

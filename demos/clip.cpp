@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/clip.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "demos/hash.h"
+#include "demos/player.h"
+#include "demos/version.h"
+#include "render/canvas.h"
+#include "render/compose.h"
+#include "render/png.h"
+
+namespace pinchlab {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::vector<std::string> method_names(const ClipPlan& plan) {
+  std::vector<std::string> names;
+  for (const Method method : plan.methods) {
+    names.emplace_back(to_string(method));
+  }
+  return names;
+}
+
+std::size_t frame_bytes(int width, int height) {
+  return 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
+// Returns the hash of the raw frames (RGBA, top row first, one after the other).
+std::string write_video(const ClipPlan& plan, const std::string& path,
+                        const std::function<void()>& tick) {
+  std::deque<Player> players;
+  for (const Method method : plan.methods) {
+    players.emplace_back(*plan.source, plan.scene, method);
+  }
+  std::vector<Picture> pictures(players.size());
+  std::vector<const Picture*> panels(pictures.size());
+  std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
+  Canvas canvas(plan.video.width, plan.video.height);
+  VideoWriter video(path, plan.video);
+  Hash frames(HashKind::murmur3);
+  for (int frame = 0; frame < plan.scene.frame_count; ++frame) {
+    for (std::size_t i = 0; i < players.size(); ++i) {
+      players[i].advance_to(frame);
+      compose(plan.scene, players[i].world(), pictures[i]);
+    }
+    const std::uint8_t* rgba = canvas.draw(panels);
+    frames.add(std::as_bytes(std::span(rgba, frame_bytes(plan.video.width, plan.video.height))));
+    video.add(rgba);
+    tick();
+  }
+  video.finish();
+  return frames.hex();
+}
+
+std::string write_poster(const ClipPlan& plan, const std::string& path,
+                         const std::function<void()>& tick) {
+  const int width = panel_width(plan);
+  const std::size_t bytes = frame_bytes(width, plan.video.height);
+  Canvas canvas(width, plan.video.height);
+  Picture picture;
+  Hash frames(HashKind::murmur3);
+  std::vector<SheetFrame> sheet;
+  for (const Method method : plan.methods) {
+    Player player(*plan.source, plan.scene, method);
+    player.advance_to(poster_frame(plan));
+    compose(plan.scene, player.world(), picture);
+    const std::uint8_t* rgba = canvas.draw(picture);
+    frames.add(std::as_bytes(std::span(rgba, bytes)));
+    sheet.push_back(
+        {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", to_string(method), player.time())});
+  }
+  contact_sheet(path, width, plan.video.height, sheet, static_cast<int>(plan.methods.size()));
+  tick();
+  return frames.hex();
+}
+
+}  // namespace
+
+int panel_width(const ClipPlan& plan) {
+  return plan.poster ? plan.video.width : plan.video.width / static_cast<int>(plan.methods.size());
+}
+
+int poster_frame(const ClipPlan& plan) {
+  const auto nearest =
+      static_cast<int>(std::lround(plan.source->poster_time * plan.scene.frames_per_second));
+  return std::min(nearest, plan.scene.frame_count - 1);
+}
+
+ordered_json plan_entry(const ClipPlan& plan) {
+  const Scene& scene = plan.scene;
+  ordered_json entry = {
+      {"file", plan.file},
+      {"role", plan.role},
+      {"scene", plan.source->path.filename().string()},
+      {"scene_sha256", plan.source->sha256},
+      {"title", scene.title},
+      {"methods", method_names(plan)},
+      {"panel_width_px", panel_width(plan)},
+      {"panel_height_px", plan.video.height},
+      {"frames_per_second", scene.frames_per_second},
+      {"steps_per_frame", scene.steps_per_frame},
+  };
+  if (plan.poster) {
+    entry["time_s"] = static_cast<double>(poster_frame(plan)) / scene.frames_per_second;
+  } else {
+    entry["frame_count"] = scene.frame_count;
+    entry["duration_s"] = static_cast<double>(scene.frame_count) / scene.frames_per_second;
+    entry["codec"] = to_string(plan.video.codec);
+    entry["settings"] = describe(plan.video);
+  }
+  entry["version"] = version;
+  return entry;
+}
+
+ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
+                       const std::function<void()>& tick) {
+  const std::string path = (folder / plan.file).string();
+  ordered_json entry = plan_entry(plan);
+  entry["raw_frames_murmur3"] =
+      plan.poster ? write_poster(plan, path, tick) : write_video(plan, path, tick);
+  entry["sha256"] = sha256_of_file(path);
+  return entry;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// One output file of a batch: a clip, or the poster of a pair.
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "demos/scene_json.h"
+#include "render/video.h"
+
+namespace pinchlab {
+
+/// Everything that a file's bytes depend on.
+struct ClipPlan {
+  std::string file;  ///< name in the output folder, e.g. "03-drop.pinch.mp4"
+  std::string role;  ///< "pinch", "baseline", "left-pinch", "left-baseline", "poster", or a method
+  const SceneFile* source = nullptr;
+  Scene scene;                  ///< the source's, with the timing to use
+  std::vector<Method> methods;  ///< one a panel, left to right
+  VideoSettings video;          ///< of the whole frame, all panels together
+  bool poster = false;          ///< one frame as PNG, with labels
+};
+
+/// px of one panel.
+int panel_width(const ClipPlan& plan);
+
+/// Frame that the poster shows.
+int poster_frame(const ClipPlan& plan);
+
+/// What the manifest says of the plan before the file is made. Free of paths, dates and hosts.
+nlohmann::ordered_json plan_entry(const ClipPlan& plan);
+
+/// Makes the file in `folder` and returns its manifest entry: the plan's, and the hashes. Calls
+/// `tick` after every frame. Throws std::runtime_error where the simulation, OpenGL or the file
+/// fails.
+nlohmann::ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
+                                 const std::function<void()>& tick);
+
+}  // namespace pinchlab

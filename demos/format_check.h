@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "demos/scene_format.h"
+#include "demos/scene_json.h"
+
+namespace pinchlab {
+
+/// Checks `value` against `format`, all the way down, and appends every mistake of form to
+/// `problems`. `place` is the JSON pointer of `value`.
+void check_format(const nlohmann::json& value, const ObjectFormat& format, const std::string& place,
+                  std::vector<SceneProblem>& problems);
+
+}  // namespace pinchlab

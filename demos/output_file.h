@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "render/partial_file.h"
+
+namespace pinchlab {
+
+/// A file that appears under its name only when complete. "-" is standard output, and what exists
+/// and is no ordinary file (/dev/null, a pipe) is written directly. Every function throws
+/// std::runtime_error, with the name and the reason, where the file cannot be written.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+  ~OutputFile();  ///< removes what is not complete
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::string_view text);
+  /// Brings everything to the disk and gives the file its name.
+  void finish();
+
+ private:
+  [[noreturn]] void fail(const char* what) const;
+
+  std::filesystem::path path_;
+  std::optional<PartialFile> partial_;  // none when written directly
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace pinchlab

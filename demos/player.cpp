@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/player.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "demos/scene_format.h"
+#include "sim/step.h"
+
+namespace pinchlab {
+namespace {
+
+void check_range(const char* what, int value, int high) {
+  if (value < 1 || value > high) {
+    throw std::invalid_argument(fmt::format("{} must be 1 to {}, not {}", what, high, value));
+  }
+}
+
+}  // namespace
+
+Scene with_timing(const Scene& scene, const Timing& timing) {
+  Scene changed = scene;
+  if (timing.frames_per_second) {
+    const int rate = *timing.frames_per_second;
+    check_range("frames per second", rate, 1000);
+    const auto frames = static_cast<std::int64_t>(scene.frame_count) * rate;
+    if (frames % scene.frames_per_second != 0) {
+      throw std::invalid_argument(fmt::format(
+          "{}: its {} s are not a whole number of frames at {} a second; its own rate is {}",
+          scene.name, static_cast<double>(scene.frame_count) / scene.frames_per_second, rate,
+          scene.frames_per_second));
+    }
+    const std::int64_t count = frames / scene.frames_per_second;
+    if (count > max_frame_count) {
+      throw std::invalid_argument(fmt::format("{}: {} frames are more than the {} that can be made",
+                                              scene.name, count, max_frame_count));
+    }
+    changed.frame_count = static_cast<int>(count);
+    changed.frames_per_second = rate;
+    changed.steps_per_frame = (scene.frames_per_second * scene.steps_per_frame + rate - 1) / rate;
+  }
+  if (timing.steps_per_frame) {
+    check_range("steps per frame", *timing.steps_per_frame, 1'000'000);
+    changed.steps_per_frame = *timing.steps_per_frame;
+  }
+  return changed;
+}
+
+std::string failure_report(const std::filesystem::path& path, const Scene& scene,
+                           const World& world, int frame) {
+  return fmt::format(
+      "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
+      "--steps-per-frame {4} --until {5} --out -",
+      path.string(), to_string(world.method), world.failure, scene.frames_per_second,
+      scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
+}
+
+Player::Player(const SceneFile& file, const Scene& scene, Method method)
+    : file_(file), scene_(scene), world_(start_world(scene, file.path, method)) {}
+
+void Player::advance_to(int frame) {
+  for (; frame_ < frame; ++frame_) {
+    for (int i = 0; i < scene_.steps_per_frame; ++i) {
+      if (step(scene_, world_) != StepStatus::ok) {
+        throw std::runtime_error(failure_report(file_.path, scene_, world_, frame_ + 1));
+      }
+    }
+  }
+}
+
+}  // namespace pinchlab

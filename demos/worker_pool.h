@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+namespace pinchlab {
+
+/// A piece of work done in a process of its own. What it returns, or what() of the exception it
+/// throws, comes back to the parent; it calls its argument after every bit of progress.
+using Work = std::function<std::string(const std::function<void()>& tick)>;
+
+struct WorkerPoolEvents {
+  std::function<void(std::size_t work)> tick;
+  std::function<void(std::size_t work, const std::string& result)> done;
+  std::function<void(std::size_t work, const std::string& error)> failed;
+};
+
+/// Does all of `work`, in this order, up to `jobs` pieces at a time, each in a freshly forked
+/// process (OSMesa draws one frame at a time a process, so that threads would not help). Workers
+/// die with the process that called. The caller must have made no OpenGL context before.
+///
+/// Returns 0, or the number of the signal (SIGINT, SIGTERM, SIGHUP) that stopped it: then the
+/// workers have been ended and the signals' former handlers are back in place.
+int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvents& events);
+
+}  // namespace pinchlab

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The main job on small scenes: the same bytes always, nothing made twice, no half file ever.
+
+#include "demos/batch.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <set>
+#include <thread>
+
+#include "demos/hash.h"
+#include "demos/version.h"
+#include "run_program.h"
+#include "scene_files.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void write_scene(const fs::path& path, double duration_s) {
+  json scene = small_scene();
+  scene["duration_s"] = duration_s;
+  std::ofstream(path) << scene.dump(1);
+}
+
+// Two short scenes as demos/ of the folder.
+fs::path folder_with_demos() {
+  fs::path folder = scratch_folder();
+  fs::create_directory(folder / "demos");
+  write_scene(folder / "demos/01-long.json", 2.0);
+  write_scene(folder / "demos/02-short.json", 0.5);
+  std::ofstream(folder / "demos/scene.schema.json") << "{}";  // not a demonstration
+  return folder;
+}
+
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    files[entry.path().filename().string()] = text_of(entry.path());
+  }
+  return files;
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  for (const auto& [name, bytes] : files_in(folder)) {
+    names.insert(name);
+  }
+  return names;
+}
+
+const std::vector<std::string> render = {"render", "--size", "64x64"};
+
+std::vector<std::string> render_with(const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = render;
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(Batch, MakesPairsPostersAndManifest) {
+  const fs::path folder = folder_with_demos();
+  const RunResult run = run_program(folder, render);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_TRUE(run.err.starts_with("clips: 6 made, 0 up to date already, 0 failed; ")) << run.err;
+  EXPECT_EQ(names_in(folder / "clips"),
+            (std::set<std::string>{"01-long.baseline.mp4", "01-long.pinch.mp4",
+                                   "01-long.poster.png", "02-short.baseline.mp4",
+                                   "02-short.pinch.mp4", "02-short.poster.png", "manifest.json"}));
+}
+
+TEST(Batch, ManifestSaysWhatEachFileIs) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render_with({"--side-by-side"})).exit_code, 0);
+  const std::string text = text_of(folder / "clips/manifest.json");
+  EXPECT_EQ(text.find(folder.string()), std::string::npos);
+  const json manifest = json::parse(text);
+  EXPECT_EQ(manifest["format"], "pinchlab clips 1");
+  ASSERT_EQ(manifest["clips"].size(), 10U);
+  std::vector<std::string> files;
+  for (const json& clip : manifest["clips"]) {
+    files.push_back(clip["file"]);
+    EXPECT_EQ(clip["sha256"], sha256_of_file(folder / "clips" / clip["file"]));
+    EXPECT_EQ(clip["scene_sha256"], sha256_of_file(folder / "demos" / clip["scene"]));
+    EXPECT_EQ(clip["raw_frames_murmur3"].get<std::string>().size(), 32U);
+    EXPECT_EQ(clip["version"], version);
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(files));
+
+  const auto entry = [&](const std::string& file) {
+    json clip =
+        manifest["clips"][static_cast<std::size_t>(std::ranges::find(files, file) - files.begin())];
+    for (const char* key : {"sha256", "scene_sha256", "raw_frames_murmur3", "version"}) {
+      clip.erase(key);
+    }
+    return clip;
+  };
+  const json clip = {{"file", "01-long.baseline.mp4"},
+                     {"role", "baseline"},
+                     {"scene", "01-long.json"},
+                     {"title", "Weight and wheel"},
+                     {"methods", {"cable"}},
+                     {"panel_width_px", 64},
+                     {"panel_height_px", 64},
+                     {"frames_per_second", 30},
+                     {"steps_per_frame", 4},
+                     {"frame_count", 60},
+                     {"duration_s", 2.0},
+                     {"codec", "h264"},
+                     {"settings", describe({Codec::h264, 64, 64, 30, ""})}};
+  EXPECT_EQ(entry("01-long.baseline.mp4"), clip);
+  json pair = clip;
+  pair["file"] = "01-long.left-baseline.mp4";
+  pair["role"] = "left-baseline";
+  pair["methods"] = {"cable", "pinch"};
+  pair["settings"] = describe({Codec::h264, 128, 64, 30, ""});
+  EXPECT_EQ(entry("01-long.left-baseline.mp4"), pair);
+  json poster = clip;
+  poster["file"] = "01-long.poster.png";
+  poster["role"] = "poster";
+  poster["methods"] = {"pinch", "cable"};
+  poster["time_s"] = 1.0;
+  for (const char* key : {"frame_count", "duration_s", "codec", "settings"}) {
+    poster.erase(key);
+  }
+  EXPECT_EQ(entry("01-long.poster.png"), poster);
+}
+
+TEST(Batch, SameBytesForAnyJobs) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(
+      run_program(folder, render_with({"--side-by-side", "--jobs", "1", "--out", "one"})).exit_code,
+      0);
+  ASSERT_EQ(run_program(folder, render_with({"--side-by-side", "--jobs", "3", "--out", "three"}))
+                .exit_code,
+            0);
+  EXPECT_EQ(files_in(folder / "one"), files_in(folder / "three"));
+}
+
+TEST(Batch, ReadsBackAsVideo) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render_with({"--side-by-side"})).exit_code, 0);
+  VideoReader reader((folder / "clips/02-short.left-pinch.mp4").string());
+  EXPECT_EQ(reader.info().width, 128);
+  EXPECT_EQ(reader.info().height, 64);
+  int frames = 0;
+  while (const auto frame = reader.next()) {
+    EXPECT_NEAR(frame->time_s, frames / 30.0, 1e-9);
+    ++frames;
+  }
+  EXPECT_EQ(frames, 15);
+}
+
+TEST(Batch, SecondRunMakesNothing) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render).exit_code, 0);
+  const auto made = fs::last_write_time(folder / "clips/01-long.pinch.mp4");
+  const auto files = files_in(folder / "clips");
+  const RunResult again = run_program(folder, render);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "clips: 0 made, 6 up to date already, 0 failed\n");
+  EXPECT_EQ(fs::last_write_time(folder / "clips/01-long.pinch.mp4"), made);
+  EXPECT_EQ(files_in(folder / "clips"), files);
+}
+
+TEST(Batch, MakesOnlyWhatIsMissingOrOutOfDate) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render).exit_code, 0);
+  const auto files = files_in(folder / "clips");
+  const auto made_again = [&] {
+    const RunResult run = run_program(folder, render);
+    return run.err.substr(0, run.err.find(" up to date"));
+  };
+
+  fs::remove(folder / "clips/01-long.pinch.mp4");
+  EXPECT_EQ(made_again(), "clips: 1 made, 5");
+  std::ofstream(folder / "clips/02-short.baseline.mp4", std::ios::app) << "damaged";
+  EXPECT_EQ(made_again(), "clips: 1 made, 5");
+  std::ofstream(folder / "clips/02-short.pinch.mp4.partial") << "left by a killed run";
+  EXPECT_EQ(made_again(), "clips: 0 made, 6");
+  EXPECT_EQ(files_in(folder / "clips"), files);
+
+  write_scene(folder / "demos/02-short.json", 1.0);
+  EXPECT_EQ(made_again(), "clips: 3 made, 3");
+  EXPECT_EQ(run_program(folder, {"render", "--size", "32x32"}).err.substr(0, 13), "clips: 6 made");
+
+  json manifest = json::parse(text_of(folder / "clips/manifest.json"));
+  for (json& clip : manifest["clips"]) {
+    clip["version"] = "0.0.0";
+  }
+  std::ofstream(folder / "clips/manifest.json") << manifest;
+  EXPECT_EQ(made_again(), "clips: 6 made, 0");
+}
+
+TEST(Batch, KeepsTheEntriesOfOtherRuns) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render_with({"demos/01-long.json"})).exit_code, 0);
+  ASSERT_EQ(
+      run_program(folder, render_with({"demos/02-short.json", "--method", "cable"})).exit_code, 0);
+  EXPECT_EQ(json::parse(text_of(folder / "clips/manifest.json"))["clips"].size(), 4U);
+  fs::remove(folder / "clips/01-long.pinch.mp4");
+  ASSERT_EQ(
+      run_program(folder, render_with({"demos/02-short.json", "--method", "cable"})).exit_code, 0);
+  EXPECT_EQ(json::parse(text_of(folder / "clips/manifest.json"))["clips"].size(), 3U);
+}
+
+TEST(Batch, OneFailureDoesNotStopTheOthers) {
+  const fs::path folder = folder_with_demos();
+  fs::create_directories(folder / "clips/01-long.pinch.mp4");  // in the way
+  const RunResult run = run_program(folder, render);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("01-long.pinch.mp4: not made: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("clips: 5 made, 0 up to date already, 1 failed"), std::string::npos)
+      << run.err;
+}
+
+TEST(Batch, FullDiskLeavesNoHalfFile) {
+  const fs::path folder = folder_with_demos();
+  write_scene(folder / "demos/01-long.json", 20.0);
+  const RunResult run = run_program(folder, render_with({"--codec", "ffv1"}), 20'000);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("01-long.pinch.mkv: not made: "), std::string::npos) << run.err;
+  for (const auto& [name, bytes] : files_in(folder / "clips")) {
+    EXPECT_FALSE(name.ends_with(".partial")) << name;
+    EXPECT_NE(name, "01-long.pinch.mkv");
+  }
+}
+
+// Waits until the folder has a file with this ending; false if none comes.
+bool wait_for_file(const fs::path& folder, const std::string& ending) {
+  for (int i = 0; i < 2000; ++i) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+      if (entry.path().string().ends_with(ending)) {
+        return true;
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
+}
+
+fs::path folder_with_long_demo() {
+  fs::path folder = folder_with_demos();
+  write_scene(folder / "demos/01-long.json", 600.0);
+  return folder;
+}
+
+TEST(Batch, KilledRunLeavesNoHalfFile) {
+  const fs::path folder = folder_with_long_demo();
+  const pid_t process = start_program(folder, render);
+  ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.partial"));
+  ::kill(process, SIGKILL);
+  EXPECT_EQ(wait_for_program(folder, process).signal, SIGKILL);
+  EXPECT_FALSE(fs::exists(folder / "clips/01-long.pinch.mp4"));
+
+  // The workers are gone too: they hold the folder's lock, so that the next run can begin only
+  // then.
+  write_scene(folder / "demos/01-long.json", 2.0);
+  RunResult again;
+  for (int i = 0; i < 100 && again.exit_code != 0; ++i) {
+    again = run_program(folder, render);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  ASSERT_EQ(run_program(folder, render_with({"--out", "fresh"})).exit_code, 0);
+  EXPECT_EQ(files_in(folder / "clips"), files_in(folder / "fresh"));
+}
+
+TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path folder = folder_with_long_demo();
+    const pid_t process = start_program(folder, render);
+    ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.partial"));
+    ::kill(process, signal);
+    EXPECT_EQ(wait_for_program(folder, process).signal, signal);
+    for (const std::string& name : names_in(folder / "clips")) {
+      EXPECT_FALSE(name.ends_with(".partial")) << name;
+      EXPECT_FALSE(name.starts_with("01-long.pinch")) << name;
+    }
+  }
+}
+
+TEST(Batch, OneRunAtATimeInAFolder) {
+  const fs::path folder = folder_with_long_demo();
+  const pid_t first = start_program(folder, render);
+  ASSERT_TRUE(wait_for_file(folder / "clips", ".partial"));
+  fs::create_directory(folder / "other");
+  const RunResult second =
+      run_program(folder / "other", {"render", "../demos", "--out", "../clips"});
+  ::kill(first, SIGTERM);
+  wait_for_program(folder, first);
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_EQ(second.err,
+            "../clips: another process is rendering into it; wait for it or use another --out\n");
+}
+
+TEST(Batch, BadInputStopsItBeforeAnythingIsMade) {
+  const fs::path folder = folder_with_demos();
+  json scene = small_scene();
+  scene["bodies"][0]["mass_kg"] = -1;
+  std::ofstream(folder / "demos/03-bad.json") << scene;
+  const RunResult run = run_program(folder, render);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "demos/03-bad.json: /bodies/0/mass_kg: must be 1e-09 to 1e+12, not -1\n");
+  EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Batch, ForeignManifestIsNotOverwritten) {
+  for (const char* text :
+       {"", "[]", "{\"format\": \"other\"}", "{\"format\": \"pinchlab clips 1\", \"clips\": [1]}",
+        "{\"format\": \"pinchlab clips 1\", \"clips\": [{\"file\": \"../x\"}]}"}) {
+    const fs::path folder = folder_with_demos();
+    fs::create_directory(folder / "clips");
+    std::ofstream(folder / "clips/manifest.json") << text;
+    const RunResult run = run_program(folder, render);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.err,
+              "clips/manifest.json: is not a manifest of this program; remove it to have every "
+              "clip made anew\n");
+    EXPECT_EQ(names_in(folder / "clips"), std::set<std::string>{"manifest.json"});
+  }
+}
+
+SceneFile small_file() {
+  return parse_scene(small_scene().dump(), "01-small.json");
+}
+
+TEST(PlanClips, OptionsThatCannotBe) {
+  const SceneFile file = small_file();
+  const auto error = [&](const BatchOptions& options) -> std::string {
+    try {
+      plan_clips(file, options);
+    } catch (const std::invalid_argument& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  BatchOptions odd;
+  odd.width = 65;
+  EXPECT_EQ(error(odd), "h264 needs an even size, not 65x960; change --size, or use --codec ffv1");
+  odd.codec = Codec::ffv1;
+  EXPECT_EQ(error(odd), "no error");
+  BatchOptions wide;
+  wide.width = 5000;
+  wide.side_by_side = true;
+  EXPECT_EQ(error(wide), "frames of 10000 x 960 pixels cannot be drawn: each must be 16 to 8192");
+  BatchOptions rate;
+  json scene = small_scene();
+  scene["duration_s"] = 2.1;
+  const SceneFile uneven = parse_scene(scene.dump(), "01-small.json");
+  rate.timing.frames_per_second = 24;
+  EXPECT_EQ(error(rate), "no error");
+  EXPECT_THROW(plan_clips(uneven, rate), std::invalid_argument);
+}
+
+TEST(FindScenes, FolderStandsForItsNumberedScenesInOrder) {
+  const fs::path folder = folder_with_demos();
+  EXPECT_EQ(find_scenes({"x.json", folder / "demos"}),
+            (std::vector<fs::path>{"x.json", folder / "demos/01-long.json",
+                                   folder / "demos/02-short.json"}));
+  EXPECT_THROW(find_scenes({folder}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pinchlab

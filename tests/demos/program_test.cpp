@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program's other commands as a user runs them: exit codes, where messages go, what files hold.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <sstream>
+
+#include "demos/player.h"
+#include "demos/progress.h"
+#include "demos/version.h"
+#include "demos/worker_pool.h"
+#include "run_program.h"
+#include "scene_files.h"
+#include "sim/step.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_with_scene() {
+  fs::path folder = scratch_folder();
+  std::ofstream(folder / "01-small.json") << small_scene();
+  return folder;
+}
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows rows_of(const std::string& csv) {
+  Rows rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) {
+      rows.back().push_back(cell);
+    }
+  }
+  return rows;
+}
+
+TEST(Program, HelpTeachesOnStandardOutput) {
+  const fs::path folder = scratch_folder();
+  const std::map<std::string, std::string> commands = {{"render", "pinchlab render --side-by-side"},
+                                                       {"still", "--time 2.5"},
+                                                       {"simulate", "time_s,body,x_m"}};
+  for (const auto& [command, expected] : commands) {
+    const RunResult run = run_program(folder, {command, "--help"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_EQ(run.err, "");
+    EXPECT_NE(run.out.find("Examples:"), std::string::npos) << run.out;
+    EXPECT_NE(run.out.find(expected), std::string::npos) << run.out;
+    EXPECT_NE(run_program(folder, {"--help"}).out.find("  " + command + " "), std::string::npos);
+  }
+  EXPECT_EQ(run_program(folder, {"--version"}).out, fmt::format("pinchlab {}\n", version));
+}
+
+TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
+  const fs::path folder = folder_with_scene();
+  const std::vector<std::vector<std::string>> bad = {
+      {},
+      {"rendr"},
+      {"render", "--sise", "64x64"},
+      {"render", "--size", "64"},
+      {"render", "--size", "64x64x64"},
+      {"render", "--size", "8x8"},
+      {"render", "--size", "65x65", "01-small.json"},
+      {"render", "--size", "999999x64"},
+      {"render", "--method", "plain"},
+      {"render", "--codec", "mpeg2"},
+      {"render", "--jobs", "0"},
+      {"render", "--jobs", "two"},
+      {"render", "--fps", "0"},
+      {"render", "--fps", "24.5"},
+      {"render", "01-small.json", "./01-small.json"},
+      {"still"},
+      {"still", "01-small.json", "--time", "1"},
+      {"still", "01-small.json", "--out", "x.png"},
+      {"still", "01-small.json", "--time", "-0.1", "--out", "x.png"},
+      {"still", "01-small.json", "--time", "2.1", "--out", "x.png"},
+      {"still", "01-small.json", "--time", "nan", "--out", "x.png"},
+      {"still", "01-small.json", "--time", "1", "--both", "--method", "cable", "--out", "x.png"},
+      {"simulate", "01-small.json"},
+      {"simulate", "--out", "-"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--segments", "a.csv"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--until", "-1"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--until", "nan"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--until", "inf"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--until", "1e9"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "0"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "99999999999"},
+      {"bench"},
+  };
+  for (const auto& arguments : bad) {
+    const RunResult run = run_program(folder, arguments);
+    EXPECT_EQ(run.exit_code, 2) << fmt::format("{}", fmt::join(arguments, " ")) << "\n" << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err, "");
+  }
+  EXPECT_FALSE(fs::exists(folder / "x.png"));
+  EXPECT_FALSE(fs::exists(folder / "a.csv"));
+  EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Program, FailureIsOneAndLeavesNoFile) {
+  const fs::path folder = folder_with_scene();
+  std::ofstream(folder / "bad.json") << "{";
+  const std::vector<std::pair<std::vector<std::string>, std::string>> failures = {
+      {{"render"},
+       "demos: there is no such folder here; go to the project's folder, or name scene files\n"},
+      {{"still", "none.json", "--time", "1", "--out", "x.png"},
+       "none.json: No such file or directory\n"},
+      {{"simulate", "bad.json", "--out", "x.csv"},
+       "bad.json: line 1, column 1: not JSON: unexpected end of input; expected string literal\n"},
+      {{"simulate", "01-small.json", "--out", "none/x.csv"},
+       "none/x.csv: the folder none does not exist; create it first\n"},
+  };
+  for (const auto& [arguments, message] : failures) {
+    const RunResult run = run_program(folder, arguments);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.out, "");
+    EXPECT_EQ(run.err, message);
+  }
+  const RunResult full = run_program(folder, {"simulate", "01-small.json", "--out", "x.csv"}, 1000);
+  EXPECT_EQ(full.exit_code, 1);
+  EXPECT_EQ(full.err, "x.csv: cannot be written: File too large\n");
+  EXPECT_FALSE(fs::exists(folder / "x.csv"));
+  EXPECT_FALSE(fs::exists(folder / "x.csv.partial"));
+}
+
+TEST(Simulate, WritesOneRowABodyAndFrame) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run =
+      run_program(folder, {"simulate", "01-small.json", "--out", "-", "--segments", "s.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const Rows rows = rows_of(run.out);
+  ASSERT_EQ(rows.size(), 1U + 60U * 3U);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"time_s", "body", "x_m", "y_m", "angle_rad",
+                                               "vx_m_s", "vy_m_s", "omega_rad_s"}));
+  EXPECT_EQ(rows[2],
+            (std::vector<std::string>{"0", "left weight", "-0.55", "-2", "0", "0", "0", "0"}));
+
+  // Every number reads back as exactly what the simulation has.
+  const SceneFile file = read_scene_file(folder / "01-small.json");
+  Player player(file, file.scene, Method::pinch);
+  for (int frame = 0; frame < 60; ++frame) {
+    player.advance_to(frame);
+    EXPECT_EQ(player.world().step, 4 * frame);
+    const Velocities velocity = velocities_now(player.scene(), player.world());
+    for (std::size_t body = 0; body < 3; ++body) {
+      const auto& row = rows[1 + 3 * static_cast<std::size_t>(frame) + body];
+      ASSERT_EQ(row.size(), 8U);
+      const std::vector<double> expected = {
+          player.world().position[body].x(), player.world().position[body].y(),
+          player.world().angle[body],        velocity.linear[body].x(),
+          velocity.linear[body].y(),         velocity.angular[body]};
+      EXPECT_EQ(std::stod(row[0]), frame / 30.0);
+      EXPECT_EQ(row[1], file.scene.bodies[body].name);
+      for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(std::strtod(row[i + 2].c_str(), nullptr), expected[i]);
+      }
+    }
+  }
+}
+
+TEST(Simulate, WritesOneRowASegmentAndFrame) {
+  const fs::path folder = folder_with_scene();
+  ASSERT_EQ(
+      run_program(folder, {"simulate", "01-small.json", "--out", "t.csv", "--segments", "s.csv"})
+          .exit_code,
+      0);
+  const Rows rows = rows_of(text_of(folder / "s.csv"));
+  ASSERT_EQ(rows.size(), 1U + 60U * 2U);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"time_s", "cable", "segment", "from_body", "to_body",
+                                               "length_m", "rest_length_m", "tension_n", "pinched",
+                                               "slipping"}));
+  // Atwood's machine with a disc: T = m (g + a), a = g (m2 - m1) / (m1 + m2 + I / R^2), R with the
+  // cable's half width.
+  const double a = 9.81 * 0.2 / (2.2 + 0.25 / (0.55 * 0.55));  // m/s^2
+  for (std::size_t i = 3; i < rows.size(); ++i) {
+    const bool left = i % 2 == 1;
+    ASSERT_EQ(rows[i].size(), 10U);
+    EXPECT_EQ(rows[i][1], "rope");
+    EXPECT_EQ(rows[i][2], left ? "0" : "1");
+    EXPECT_EQ(rows[i][3], left ? "left weight" : "wheel");
+    EXPECT_EQ(rows[i][4], left ? "wheel" : "right weight");
+    EXPECT_NEAR(std::stod(rows[i][5]), std::stod(rows[i][6]), 1e-9);
+    EXPECT_NEAR(std::stod(rows[i][7]), left ? 9.81 + a : 1.2 * (9.81 - a), 1e-6);
+    EXPECT_EQ(rows[i][8] + rows[i][9], "00");
+  }
+}
+
+TEST(Simulate, UntilAndTiming) {
+  const fs::path folder = folder_with_scene();
+  const auto rows = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"simulate", "01-small.json", "--out", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return rows_of(run_program(folder, arguments).out);
+  };
+  EXPECT_EQ(rows({"--until", "0"}).size(), 1U + 3U);
+  EXPECT_EQ(rows({"--until", "0.3"}).size(), 1U + 10U * 3U);  // frames 0 to 9, at 30 a second
+  EXPECT_EQ(rows({"--until", "0.34"}).size(), 1U + 11U * 3U);
+  EXPECT_EQ(rows({"--until", "2.5"}).size(), 1U + 76U * 3U);  // beyond the clip
+  // Twice the frames of half the steps: the same motion at the common times.
+  const Rows usual = rows({"--until", "1"}), twice = rows({"--until", "1", "--fps", "60"});
+  ASSERT_EQ(twice.size(), 1U + 61U * 3U);
+  EXPECT_EQ(usual.back(), twice.back());
+  const Rows fine = rows({"--until", "1", "--steps-per-frame", "64"});
+  EXPECT_NE(usual.back(), fine.back());
+  EXPECT_NEAR(std::stod(usual.back()[3]), std::stod(fine.back()[3]), 1e-3);
+}
+
+TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
+  Scene scene;
+  scene.frame_count = 300;
+  scene.frames_per_second = 60;
+  scene.steps_per_frame = 4;
+  for (const int rate : {1, 24, 25, 30, 50, 60, 120, 240, 300, 1000}) {
+    const Scene changed = with_timing(scene, {rate, {}});
+    EXPECT_EQ(changed.frame_count, 5 * rate);
+    EXPECT_LE(step_length(changed), step_length(scene));
+    if (changed.steps_per_frame > 1) {  // one step fewer would be too long
+      EXPECT_GT(1.0 / (rate * (changed.steps_per_frame - 1)), step_length(scene));
+    }
+  }
+  EXPECT_EQ(with_timing(scene, {{}, 9}).steps_per_frame, 9);
+  EXPECT_EQ(with_timing(scene, {30, 2}).steps_per_frame, 2);
+  scene.frame_count = 301;
+  EXPECT_THROW(with_timing(scene, {30, {}}), std::invalid_argument);
+  EXPECT_THROW(with_timing(scene, {0, {}}), std::invalid_argument);
+}
+
+TEST(Player, FailureSaysHowToSeeItAgain) {
+  Scene scene;
+  World world;
+  world.method = Method::cable;
+  world.failure = "step 1841, cable 3, segment 12: velocity not finite";
+  EXPECT_EQ(
+      failure_report("demos/03-drop.json", scene, world, 461),
+      "demos/03-drop.json: method cable: step 1841, cable 3, segment 12: velocity not finite; to "
+      "see it again: "
+      "pinchlab simulate demos/03-drop.json --method cable --fps 60 --steps-per-frame 4 --until "
+      "7.683333333333334 --out -");
+}
+
+// Width and height from a PNG's header.
+std::pair<int, int> png_size(const fs::path& path) {
+  const std::string bytes = text_of(path);
+  EXPECT_TRUE(bytes.starts_with("\x89PNG")) << path;
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      value = 256 * value + static_cast<unsigned char>(bytes.at(at + i));
+    }
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST(Still, OneTimeIsAFrameSeveralAreASheet) {
+  const fs::path folder = folder_with_scene();
+  const auto still = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"still", "01-small.json", "--size",
+                                          "64x48", "--out",         "x.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_program(folder, arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return png_size(folder / "x.png");
+  };
+  EXPECT_EQ(still({"--time", "0.5"}), (std::pair{64, 48}));
+  const auto row = still({"--time", "1.5,0.5", "--both"});
+  EXPECT_GE(row.first, 2 * 64);
+  EXPECT_LT(row.first, 3 * 64);
+  EXPECT_GE(row.second, 2 * 48);
+  const std::string list = text_of(folder / "x.png");
+  still({"--time", "1.5", "--time", "0.5", "--both"});
+  EXPECT_EQ(text_of(folder / "x.png"), list);
+  still({"--time", "0.5,1.5", "--both"});
+  EXPECT_NE(text_of(folder / "x.png"), list);
+}
+
+TEST(Bench, PrintsWhatAFrameCosts) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(
+      folder, {"bench", "render", "01-small.json", "--size", "64x64", "--frames", "10"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("simulate"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("encode"), std::string::npos) << run.out;
+}
+
+TEST(WorkerPool, ResultsErrorsAndDeathsComeBack) {
+  const std::vector<Work> work = {
+      [](const auto& tick) {
+        tick();
+        tick();
+        return std::string("+-.\nresult");
+      },
+      [](const auto&) -> std::string { throw std::runtime_error("no luck"); },
+      [](const auto&) -> std::string {
+        ::raise(SIGKILL);
+        return "";
+      },
+      [](const auto&) { return std::string(); },
+  };
+  std::map<std::size_t, std::string> results, errors;
+  int ticks = 0;
+  const int signal = run_in_processes(
+      work, 2,
+      {.tick = [&](std::size_t) { ++ticks; },
+       .done = [&](std::size_t i, const std::string& text) { results[i] = text; },
+       .failed = [&](std::size_t i, const std::string& text) { errors[i] = text; }});
+  EXPECT_EQ(signal, 0);
+  EXPECT_EQ(ticks, 2);
+  EXPECT_EQ(results, (std::map<std::size_t, std::string>{{0, "+-.\nresult"}, {3, ""}}));
+  EXPECT_EQ(errors, (std::map<std::size_t, std::string>{
+                        {1, "no luck"},
+                        {2, "its process was ended by signal 9 (Killed); was memory short?"}}));
+}
+
+TEST(Progress, Times) {
+  EXPECT_EQ(minutes_and_seconds(-1), "0:00");
+  EXPECT_EQ(minutes_and_seconds(9.4), "0:09");
+  EXPECT_EQ(minutes_and_seconds(725), "12:05");
+  EXPECT_EQ(minutes_and_seconds(3723), "1:02:03");
+}
+
+}  // namespace
+}  // namespace pinchlab

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Runs the built program as a user would.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace pinchlab {
+
+struct RunResult {
+  int exit_code = -1;  // -1: ended by a signal
+  int signal = 0;
+  std::string out, err;
+};
+
+inline std::string text_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A folder of this test's own, empty at first.
+inline std::filesystem::path scratch_folder() {
+  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pinchlab" /
+                                 (std::string(test->test_suite_name()) + "." + test->name());
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
+/// Starts the program in `folder`; its output goes to stdout.txt and stderr.txt there. No file that
+/// it writes may become larger than `file_limit` bytes.
+inline pid_t start_program(const std::filesystem::path& folder,
+                           const std::vector<std::string>& arguments,
+                           rlim_t file_limit = RLIM_INFINITY) {
+  const pid_t process = ::fork();
+  if (process != 0) {
+    return process;
+  }
+  std::vector<char*> argv = {const_cast<char*>("pinchlab")};
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+  const int out = ::open((folder / "stdout.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  const int err = ::open((folder / "stderr.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (::chdir(folder.c_str()) == 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
+      ::dup2(err, STDERR_FILENO) >= 0) {
+    if (file_limit != RLIM_INFINITY) {
+      const struct rlimit limit = {file_limit, file_limit};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      ::signal(SIGXFSZ, SIG_IGN);  // the write fails, as on a full disk
+    }
+    ::execv(PINCHLAB_PROGRAM, argv.data());
+  }
+  ::_exit(127);
+}
+
+inline RunResult wait_for_program(const std::filesystem::path& folder, pid_t process) {
+  int status = 0;
+  EXPECT_EQ(::waitpid(process, &status, 0), process);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
+          text_of(folder / "stdout.txt"), text_of(folder / "stderr.txt")};
+}
+
+inline RunResult run_program(const std::filesystem::path& folder,
+                             const std::vector<std::string>& arguments,
+                             rlim_t file_limit = RLIM_INFINITY) {
+  return wait_for_program(folder, start_program(folder, arguments, file_limit));
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies that squeeze cables: gaps, rest, many bodies and cables, and the change between kinds of
+// pinch.
+
+#include "sim/cable.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+constexpr double r = 0.5, w = 0.05, R = r + w;
+
+double least_gap(const World& world, const Scene& scene, std::size_t a, std::size_t b) {
+  return (world.position[b] - world.position[a]).norm() - scene.bodies[a].radius -
+         scene.bodies[b].radius;
+}
+
+/// A drum with `count` rollers of 1 kg on a rail above it, falling from a little above one another.
+/// With zig_zag the cable runs round all of them in turn; else it only lies over the drum.
+Scene tower(int count, bool zig_zag, int cables = 1) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 10.0));
+  for (int i = 0; i < count; ++i) {
+    scene.bodies.push_back(body(fmt::format("roller {}", i), BodyKind::rail, 0.0,
+                                r + 0.25 + 2.0 * w + 0.05 + i * (0.5 + 2.0 * w + 0.05), 0.25, 1.0));
+  }
+  for (int c = 0; c < cables; ++c) {
+    if (zig_zag) {
+      std::vector<Wrap> wraps{{0, -1, 0}};
+      for (int i = 0; i < count; ++i) wraps.push_back({1 + i, i % 2 == 0 ? 1 : -1, 0});
+      const double side = count % 2 == 1 ? -3.0 : 3.0;
+      scene.bodies.push_back(body(fmt::format("weight {}", c), BodyKind::free, -R, -3.0, 0.2, 1.0));
+      scene.cables.push_back(
+          cable(on(static_cast<int>(scene.bodies.size()) - 1), wraps,
+                at(side, scene.bodies[static_cast<std::size_t>(count)].position.y()), w));
+    } else {
+      scene.cables.push_back(cable(at(-1.0, -2.0), {{0, -1, 0}}, at(1.0, -2.0), w));
+    }
+    scene.cables.back().name = fmt::format("cable {}", c);
+  }
+  return scene;
+}
+
+class Stack : public ::testing::TestWithParam<int> {};
+
+TEST_P(Stack, OfTenPinchingBodiesComesToRest) {
+  Scene scene = tower(10, true);
+  scene.steps_per_frame = GetParam();
+  scene.bodies.back().linear_drag = scene.bodies.back().angular_drag = 5.0;
+  World world = make_world(scene, Method::pinch);
+  const int second = 60 * GetParam();
+  for (int i = 0; i < 10 * second; ++i) {
+    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-6 * w) << "step " << i;
+  }
+  std::vector<Vec2> settled = world.position;
+  const std::vector<double> turned = world.angle;
+  run(scene, world, 10 * second);
+  for (std::size_t b = 0; b <= 10; ++b) {
+    EXPECT_LT(world.velocity[b].norm(), 1e-9);
+    EXPECT_LT(std::abs(world.angular_velocity[b]), 1e-9);
+    EXPECT_LT((world.position[b] - settled[b]).norm(), 1e-9);
+    EXPECT_LT(std::abs(world.angle[b] - turned[b]), 1e-9);
+    if (b > 0) {
+      EXPECT_NEAR(least_gap(world, scene, b - 1, b), 2.0 * w, 1e-6 * w) << b;
+    }
+  }
+  EXPECT_EQ(world.diagnostics.fallbacks, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(StepsPerFrame, Stack, ::testing::Values(1, 2, 4, 8));
+
+TEST(Pinch, TowerOnAWrapPressesWithItsWholeWeight) {
+  Scene scene = tower(10, false);
+  World world = make_world(scene, Method::pinch);
+  run(scene, world, 240 * 4);
+  ASSERT_EQ(world.contacts.size(), 10u);
+  for (const Contact& contact : world.contacts) {
+    EXPECT_NEAR(contact.normal_force, (10 - contact.a) * g, 1e-8);
+    // Only the drum carries cable; the rollers above touch one another bare.
+    EXPECT_NEAR(contact.gap, contact.a == 0 ? 2.0 * w : 0.0, 1e-12);
+  }
+}
+
+TEST(Pinch, NeverSqueezesTheCableWhileFalling) {
+  for (const int steps_per_frame : {1, 2, 4}) {
+    Scene scene = tower(1, false);
+    scene.bodies[1].position.y() = 6.0;  // hits at 10 m/s
+    scene.steps_per_frame = steps_per_frame;
+    World world = make_world(scene, Method::pinch);
+    for (int i = 0; i < 120 * steps_per_frame; ++i) {
+      ASSERT_EQ(step(scene, world), StepStatus::ok);
+      ASSERT_GE(least_gap(world, scene, 0, 1), 2.0 * w - 1e-12);
+    }
+    EXPECT_NEAR(least_gap(world, scene, 0, 1), 2.0 * w, 1e-12);
+  }
+}
+
+TEST(Pinch, WithoutContactBodiesSinkIntoTheCableButNotIntoEachOther) {
+  Scene scene = tower(1, false);
+  World world = make_world(scene, Method::pinch_no_contact);
+  run(scene, world, 480);
+  EXPECT_NEAR(least_gap(world, scene, 0, 1), 0.0, 1e-12);
+  EXPECT_EQ(world.cables[0].links.size(), 5u);
+}
+
+TEST(Pinch, PlainCableJointsDoNotSeeTheRoller) {
+  Scene scene = tower(1, false);
+  World world = make_world(scene, Method::cable);
+  run(scene, world, 480);
+  EXPECT_NEAR(least_gap(world, scene, 0, 1), 0.0, 1e-12);
+  EXPECT_EQ(world.cables[0].links.size(), 3u);
+}
+
+TEST(Pinch, SeveralCablesShareOneContact) {
+  for (const int cables : {2, 5, 10}) {
+    Scene scene = tower(1, false, cables);
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 480);
+    ASSERT_EQ(world.contacts.size(), 1u);
+    EXPECT_EQ(world.contacts[0].pinch_points, cables);
+    EXPECT_NEAR(world.contacts[0].normal_force, g, 1e-9);
+    EXPECT_NEAR(least_gap(world, scene, 0, 1), 2.0 * w, 1e-12);
+    for (const CableState& c : world.cables) EXPECT_EQ(c.links.size(), 5u);
+  }
+}
+
+TEST(Pinch, OnEveryTurnOfAWindingAtOnce) {
+  Scene scene = tower(1, false);
+  scene.cables[0].wraps[0].extra_turns = 9;
+  World world = make_world(scene, Method::pinch);
+  run(scene, world, 480);
+  // The cable lies over the drum's crown ten times: ten middle links, eleven arcs.
+  EXPECT_EQ(world.cables[0].links.size(), 2u + 11u + 10u);
+  EXPECT_EQ(world.contacts[0].pinch_points, 10);
+  EXPECT_NEAR(world.contacts[0].normal_force, g, 1e-9);
+  EXPECT_LT(world.diagnostics.cable_length_error, 1e-12);
+}
+
+// A roller in the notch between two wrapped drums, pressing the slack cable on both: each contact
+// bears m g / (2 cos(angle)).
+TEST(Pinch, BodyRestingOnTwoWrappedBodies) {
+  const double half = 0.7;
+  Scene scene;
+  scene.bodies.push_back(body("left", BodyKind::fixed_axle, -half, 0.0, r, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::fixed_axle, half, 0.0, r, 1.0));
+  scene.bodies.push_back(body("roller", BodyKind::free, 0.0, 1.2, 0.4, 2.0));
+  scene.cables.push_back(cable(at(-2.5, -2.0), {{0, -1, 0}, {1, -1, 0}}, at(2.5, -2.0)));
+  scene.cables[0].slack = 0.6;
+  World world = make_world(scene, Method::pinch);
+  for (int i = 0; i < 240 * 5; ++i) {
+    run(scene, world, 1);
+    ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-12) << i;
+  }
+  const double distance = r + 0.4 + 2.0 * w, height = std::sqrt(distance * distance - half * half);
+  EXPECT_NEAR(world.position[2].y(), height, 1e-9);
+  EXPECT_NEAR(world.position[2].x(), 0.0, 1e-9);
+  EXPECT_LT(world.velocity[2].norm(), 1e-9);
+  ASSERT_EQ(world.cables[0].links.size(), 5u) << "it lies on the span between the drums";
+  int bearing = 0;
+  for (const Contact& contact : world.contacts) {
+    if (contact.b != 2) continue;
+    ++bearing;
+    EXPECT_NEAR(contact.normal_force, 2.0 * g / (2.0 * height / distance), 1e-6);
+  }
+  EXPECT_EQ(bearing, 2);
+}
+
+TEST(Pinch, MiddleLinkDoesNotChangeTheCable) {
+  Scene scene = tower(1, false);
+  World world = make_world(scene, Method::pinch);
+  double before = 0.0;
+  for (const Link& link : world.cables[0].links) before += link.radius * link.wrap;
+  run(scene, world, 240);
+  double after = 0.0;
+  for (const Link& link : world.cables[0].links) after += link.radius * link.wrap;
+  EXPECT_EQ(world.cables[0].links.size(), 5u);
+  EXPECT_NEAR(before, after, 1e-12);
+  EXPECT_NEAR(world.cables[0].segments[1].rest_length + world.cables[0].segments[4].rest_length,
+              world.cables[0].segments[1].length + world.cables[0].segments[4].length, 1e-12);
+}
+
+// Rolling from a span over the wrap and off to the other span: ordinary link, transitional pinch,
+// middle link, transitional pinch, ordinary link; and no cable is lost on the way.
+TEST(Pinch, RollsOverAWrapThroughAllKindsOfPinch) {
+  Scene scene;
+  scene.steps_per_frame = 16;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.33, 10.0));
+  Body roller = body("roller", BodyKind::free, -1.7, 0.8, 0.164, 1.0);
+  scene.bodies.push_back(roller);
+  scene.cables.push_back(cable(at(-2.1, 0.95), {{1, 1, 0}, {0, -1, 0}}, at(2.0, -1.1)));
+  World world = make_world(scene, Method::pinch);
+  bool middle = false, before = false, behind = false;
+  for (int i = 0; i < 60 * 16 * 2 && world.position[1].x() < 1.2; ++i) {
+    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-3 * w);
+    ASSERT_LT(world.diagnostics.cable_length_error, 1e-12);
+    const auto& links = world.cables[0].links;
+    for (std::size_t k = 1; k + 1 < links.size(); ++k) {
+      if (links[k].body != 1) continue;
+      middle = middle || links[k].pinch_middle;
+      before = before || (!links[k].pinch_middle && links[k + 1].body == 0);
+      behind = behind || (!links[k].pinch_middle && links[k - 1].body == 0);
+    }
+  }
+  EXPECT_TRUE(before);
+  EXPECT_TRUE(middle);
+  EXPECT_TRUE(behind);
+  EXPECT_GT(world.position[1].x(), 1.0) << "the roller has crossed";
+}
+
+// Pinch friction is bounded by what presses: a driven roller drags a slipping cable with mu N at
+// most.
+TEST(Pinch, DrivenRollerPullsWithItsFriction) {
+  const double mu = 0.25, mass = 2.0;
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 5.0));
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, r + 0.25 + 2.0 * w, 0.25, mass));
+  scene.bodies.push_back(body("left", BodyKind::free, -R, -2.0, 0.2, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, R, -2.0, 0.2, 1.0));
+  scene.bodies[0].cable_friction = 0.0;
+  scene.bodies[1].cable_friction = mu;
+  scene.bodies[1].driven_angular_velocity = -50.0;
+  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
+  World world = make_world(scene, Method::pinch);
+  const double y = world.position[2].y();
+  run(scene, world, 240);
+  // The drum is frictionless, so the roller's mu N moves the two loads alone: a = mu N / (2 m).
+  // Driven clockwise, its lower side drags the cable to the left.
+  const double a = mu * mass * g / 2.0;
+  EXPECT_NEAR(y - world.position[2].y(), 0.5 * a, 1e-10);
+  EXPECT_NEAR(world.angle[0], 0.0, 1e-12);
+}
+
+// With friction on the drum too the cable carries it along, by the capstan law and the pinch
+// together.
+TEST(Pinch, SlippingCableUnderARollerTurnsTheDrum) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 5.0));
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, r + 0.25 + 2.0 * w, 0.25, 2.0));
+  scene.bodies.push_back(body("left", BodyKind::free, -R, -2.0, 0.2, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, R, -2.0, 0.2, 1.0));
+  scene.bodies[0].cable_friction = 0.01;
+  scene.bodies[1].cable_friction = 0.3;
+  scene.bodies[1].driven_angular_velocity = -10.0;
+  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
+  World world = make_world(scene, Method::pinch);
+  double last = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    run(scene, world, 1);
+    EXPECT_GE(world.angle[0], last);
+    last = world.angle[0];
+  }
+  const Velocities now = velocities_now(scene, world);
+  const double cable_speed = -now.linear[2].y(), rim_speed = now.angular[0] * R;
+  EXPECT_GT(rim_speed, 0.0);
+  EXPECT_GT(cable_speed, rim_speed) << "the cable slips over the drum";
+  EXPECT_LT(cable_speed, 10.0 * (0.25 + w)) << "and the roller over the cable";
+  EXPECT_EQ(world.diagnostics.fallbacks, 0);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing

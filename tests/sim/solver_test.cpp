@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gsl/gsl_rng.h>
+
+#include <Eigen/Dense>
+
+#include "sim/profile_lu.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+/// A random matrix that is narrow about its diagonal, with a few full rows, diagonally dominant.
+TEST(ProfileLu, AgreesWithDenseLu) {
+  gsl_rng* rng = gsl_rng_alloc(gsl_rng_mt19937);
+  for (int n = 1; n < 60; n += 7) {
+    std::vector<int> first(static_cast<std::size_t>(n));
+    for (int u = 0; u < n; ++u)
+      first[static_cast<std::size_t>(u)] = u % 11 == 10 ? 0 : std::max(0, u - u % 4);
+    ProfileLu lu;
+    lu.reset(first);
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    for (int u = 0; u < n; ++u) {
+      for (int v = first[static_cast<std::size_t>(u)]; v <= u; ++v) {
+        for (const auto& [i, j] : {std::pair(u, v), std::pair(v, u)}) {
+          if (i == j && a(i, j) != 0.0) continue;
+          const double value = gsl_rng_uniform(rng) - 0.5 + (i == j ? 20.0 : 0.0);
+          a(i, j) += value;
+          lu.add(i, j, value);
+        }
+      }
+    }
+    Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1.0, 1.0);
+    std::vector<double> x(b.data(), b.data() + n);
+    EXPECT_EQ(lu.factor(std::vector<double>(static_cast<std::size_t>(n), 20.0), 0.0), 0);
+    lu.solve(x);
+    const Eigen::VectorXd exact = a.partialPivLu().solve(b);
+    for (int u = 0; u < n; ++u) EXPECT_NEAR(x[static_cast<std::size_t>(u)], exact(u), 1e-13);
+  }
+  gsl_rng_free(rng);
+}
+
+TEST(ProfileLu, FindsRepeatedRows) {
+  ProfileLu lu;
+  lu.reset({0, 0, 0});
+  const double a[3][3] = {{2, 1, 2}, {1, 3, 1}, {2, 1, 2}};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) lu.add(i, j, a[i][j]);
+  }
+  EXPECT_EQ(lu.factor({2, 3, 2}, 0.0), 1);
+  std::vector<double> x{5, 5, 5};
+  lu.solve(x);
+  EXPECT_EQ(x[2], 0.0);
+  EXPECT_NEAR(2 * x[0] + x[1], 5.0, 1e-14);
+  EXPECT_NEAR(x[0] + 3 * x[1], 5.0, 1e-14);
+}
+
+TEST(Solver, AStepAllocatesNothingElseWhenWarm) {
+  // Capacity of the scratch vectors settles: a second thousand steps leaves them as the first did.
+  Scene scene = load_chain(21, 3.0, 2.0, 1.0, 0.3);
+  World world = make_world(scene, Method::pinch);
+  run(scene, world, 100);
+  const Scratch& s = world.scratch;
+  const auto capacities = [&] {
+    return std::vector<std::size_t>{s.rows.capacity(),
+                                    s.order.capacity(),
+                                    s.active_set.impulse_terms.capacity(),
+                                    s.active_set.columns.capacity(),
+                                    s.active_set.equations.capacity(),
+                                    s.active_set.solution.capacity(),
+                                    s.active_set.capstan.members.capacity()};
+  };
+  const auto before = capacities();
+  run(scene, world, 100);
+  EXPECT_EQ(before, capacities());
+}
+
+TEST(Solver, StagesAreTimedOnRequest) {
+  Scene scene = load_chain(21, 3.0, 2.0, 1.0);
+  World world = make_world(scene, Method::pinch);
+  StageTimes times;
+  for (int i = 0; i < 50; ++i) step(scene, world, &times);
+  for (std::size_t stage = 0; stage < times.seconds.size(); ++stage) {
+    EXPECT_GT(times.seconds[stage], 0.0) << to_string(static_cast<Stage>(stage));
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes whose geometry cannot be are refused, with place and cure.
+
+#include <numbers>
+
+#include "sim/scene_error.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+void expect_refused(const Scene& scene, const std::string& place, const std::string& words) {
+  for (const Method method : {Method::pinch, Method::pinch_no_contact, Method::cable}) {
+    try {
+      make_world(scene, method);
+      ADD_FAILURE() << "accepted, expected " << place << ": ..." << words;
+    } catch (const SceneError& error) {
+      EXPECT_EQ(error.place, place) << error.what();
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+}
+
+Scene drum_scene() {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 1.0));
+  scene.cables.push_back(cable(at(-1.0, -2.0), {{0, -1, 0}}, at(1.0, -2.0)));
+  return scene;
+}
+
+TEST(MakeWorld, RefusesOverlappingBodies) {
+  Scene scene = drum_scene();
+  scene.bodies.push_back(body("roller", BodyKind::free, 0.0, 0.7, 0.25, 1.0));
+  expect_refused(scene, "/bodies/1", "overlaps body 'drum' by 50 mm");
+}
+
+TEST(MakeWorld, RefusesABodyInAWall) {
+  Scene scene = drum_scene();
+  scene.walls.push_back({Vec2(-1.0, 0.4), Vec2(1.0, 0.4), 0.5, 0.0});
+  expect_refused(scene, "/bodies/0", "overlaps wall 0 by 100 mm");
+}
+
+TEST(MakeWorld, RefusesACableThroughABody) {
+  Scene scene = drum_scene();
+  scene.bodies.push_back(body("roller", BodyKind::free, -0.95, -1.5, 0.2, 1.0));
+  expect_refused(scene, "/cables/0", "runs through body 'roller'");
+}
+
+TEST(MakeWorld, RefusesAnEndInsideThePulley) {
+  Scene scene = drum_scene();
+  scene.cables[0].start.point = {-0.5, 0.1};
+  expect_refused(scene, "/cables/0/wraps/0", "the cable's end lies");
+}
+
+TEST(MakeWorld, RefusesASqueezedCable) {
+  Scene scene = drum_scene();
+  scene.bodies.push_back(body("roller", BodyKind::free, 0.0, 0.8, 0.25, 1.0));
+  expect_refused(scene, "/bodies/1", "squeezes a cable on body 'drum'");
+}
+
+TEST(MakeWorld, RefusesTooNarrowACrossing) {
+  Scene scene;
+  scene.bodies.push_back(body("lower", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 1.0));
+  scene.bodies.push_back(body("upper", BodyKind::fixed_axle, 0.0, 1.05, 0.5, 1.0));
+  scene.cables.push_back(cable(at(-2.0, -1.0), {{0, -1, 0}, {1, 1, 0}}, at(2.0, 2.0)));
+  expect_refused(scene, "/cables/0/wraps/1", "does not fit between");
+}
+
+TEST(MakeWorld, RefusesAWrapTheWrongWayRound) {
+  Scene scene = drum_scene();
+  scene.cables[0] = cable(at(-2.0, 0.6), {{0, -1, 0}}, at(2.0, 0.6));
+  expect_refused(scene, "/cables/0/wraps/0", "turn the orientation round");
+}
+
+TEST(MakeWorld, RefusesAnEndOffTheRimItIsWoundOn) {
+  Scene scene = drum_scene();
+  scene.cables[0] = cable(at(-2.0, -0.6), {{0, -1, 1}}, {0, {0.5, 0.0}});
+  expect_refused(scene, "/cables/0/end", "must lie at its rim");
+}
+
+TEST(MakeWorld, LaysCablesTaut) {
+  Scene scene = drum_scene();
+  World world = make_world(scene, Method::pinch);
+  const CableState& c = world.cables[0];
+  EXPECT_NEAR(c.segments[1].length, c.segments[2].length, 1e-14);
+  EXPECT_NEAR(c.length, 2.0 * c.segments[1].length + 0.55 * c.links[1].wrap, 1e-14);
+  EXPECT_GT(c.links[1].wrap, std::numbers::pi / 2.0);
+  EXPECT_NEAR(c.segments[1].rest_length, c.segments[1].length, 1e-14);
+  EXPECT_NEAR(tail_material(c, 1, 0.0), c.segments[1].length, 1e-14);
+}
+
+TEST(MakeWorld, SharesSlackByLength) {
+  Scene scene = drum_scene();
+  scene.cables[0].slack = 0.4;
+  World world = make_world(scene, Method::pinch);
+  for (std::size_t s : {1u, 2u}) {
+    EXPECT_NEAR(world.cables[0].segments[s].rest_length - world.cables[0].segments[s].length, 0.2,
+                1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
