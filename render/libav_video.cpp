@@ -187,6 +187,7 @@ std::string describe(const VideoSettings& settings) {
 
 struct VideoWriter::State {
   VideoSettings settings;
+  PixelRect whole{0, 0, settings.width, settings.height};
   PartialFile partial;
   AVFormatContext* format = nullptr;
   AVStream* stream = nullptr;
@@ -317,11 +318,13 @@ VideoWriter::VideoWriter(const std::string& path, const VideoSettings& settings)
 VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const std::uint8_t* rgba) {
-  const PixelRect whole{0, 0, state_->settings.width, state_->settings.height};
-  add(rgba, std::span(&whole, 1));
+  add(rgba, std::span(&state_->whole, 1));
 }
 
 void VideoWriter::add(const std::uint8_t* rgba, std::span<const PixelRect> changed) {
+  // There is no frame before the first: all of it is new, whatever the caller's canvas has drawn
+  // before.
+  if (state_->frames == 0) changed = std::span(&state_->whole, 1);
   const double start = processor_seconds();
   state_->convert(rgba, changed);
   const double converted = processor_seconds();
