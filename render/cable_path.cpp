@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "render/hanging.h"
 #include "sim/cable.h"
@@ -42,14 +43,14 @@ class PathBuilder {
         cable_(cable),
         smallest_sag_(smallest_sag),
         points_(points),
-        first_(points.size()) {
+        begins_{points.size()} {
     const double g = scene.gravity.norm();
     up_ = g > 0.0 ? Vec2(-scene.gravity / g) : Vec2(0.0, 1.0);
   }
 
-  void build() {
+  std::vector<std::size_t> build() {
     const std::size_t count = cable_.links.size();
-    if (count < 2) return;
+    if (count < 2) return {};
     find_bounds();
     if (cable_.closed) {
       // Start behind the seam, on the first link, and come back to it.
@@ -63,6 +64,7 @@ class PathBuilder {
         add_arc(i);
       }
     }
+    return begins_;
   }
 
  private:
@@ -124,7 +126,7 @@ class PathBuilder {
   }
 
   void add_point(const Vec2& position, const Vec2& tangent, double material) {
-    if (points_.size() > first_) {
+    if (points_.size() > begins_.back()) {
       // A kink is a fan of points at one place: a round joint.
       const StripPoint last = points_.back();
       const double bend = std::atan2(cross(last.tangent, tangent), last.tangent.dot(tangent));
@@ -188,9 +190,14 @@ class PathBuilder {
     // Where an arc gives way it is no circle: finer pieces come close enough.
     const GiveWay way = give_way(i);
     const double most = way.none() ? most_turn : 0.25 * most_turn;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / most)));
+    // Of several turns the last one hides the others.
+    constexpr double full_turn = 2.0 * std::numbers::pi;
+    const double hidden = std::max(0.0, 1.0 - full_turn / std::max(std::abs(sweep), full_turn));
+    if (hidden > 0.0 && points_.size() > begins_.back()) begins_.push_back(points_.size());
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil((1.0 - hidden) * std::abs(sweep) / most)));
     for (int k = 0; k <= pieces; ++k) {
-      const double share = static_cast<double>(k) / pieces, s = share * way.length;
+      const double share = hidden + (1.0 - hidden) * k / pieces, s = share * way.length;
       const Vec2 e = unit_vector(b.tail_angle + share * sweep);
       add_point(tangent_point(centre, link.signed_radius(), e) + way.shift(s),
                 (e + way.slope(s)).normalized(),
@@ -230,7 +237,7 @@ class PathBuilder {
   const CableState& cable_;
   double smallest_sag_;
   std::vector<StripPoint>& points_;
-  std::size_t first_;
+  std::vector<std::size_t> begins_;  // indices of the strips' first points
   Vec2 up_;
   std::vector<Bounds> bounds_;
   std::vector<Span> spans_;
@@ -244,9 +251,10 @@ double mark_spacing(const CableState& cable) {
   return cable.length / std::max(1.0, std::round(cable.length / wanted));
 }
 
-void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
-                       double smallest_sag, std::vector<StripPoint>& points) {
-  PathBuilder(scene, world, cable, smallest_sag, points).build();
+std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
+                                           const CableState& cable, double smallest_sag,
+                                           std::vector<StripPoint>& points) {
+  return PathBuilder(scene, world, cable, smallest_sag, points).build();
 }
 
 }  // namespace pinchlab

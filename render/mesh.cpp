@@ -79,7 +79,8 @@ void Mesh::add(const Stroke& stroke, const Fit& fit) {
   const Vec2 along = length > 0.0 ? Vec2((b - a) / length) : Vec2(1.0, 0.0);
   const Vec2 across(-along.y(), along.x());
   Vertex common{};
-  common.shape = {narrow(length), narrow(half), narrow(half - fit.scale * stroke.edge_width), 0.0f};
+  common.shape = {narrow(length), narrow(half),
+                  narrow(std::max(0.0, half - fit.scale * stroke.edge_width)), 0.0f};
   common.fill = stroke.fill;
   common.edge = stroke.edge;
   std::array<Vec2, 4> positions, places;
@@ -118,7 +119,7 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
 
   begin(Program::strip);
   Vertex common{};
-  common.shape = {narrow(half), narrow(half - fit.scale * strip.edge_width),
+  common.shape = {narrow(half), narrow(std::max(0.0, half - fit.scale * strip.edge_width)),
                   narrow(fit.scale * strip.mark_spacing),
                   narrow(0.5 * fit.scale * strip.mark_length)};
   common.fill = strip.fill;

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/yuv.h"
 
+// The loops below are a tenth of a clip's cost: let the compiler also make a version for wider
+// vectors. All versions give the same bytes.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define PINCHLAB_WIDE __attribute__((target_clones("avx2", "default"), optimize("O3")))
+#else
+#define PINCHLAB_WIDE
+#endif
+
 namespace pinchlab {
 
 namespace {
@@ -32,8 +40,8 @@ std::uint8_t y_of(const std::uint8_t* p) {
 
 }  // namespace
 
-void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
-                    const YuvPlanes& to) {
+PINCHLAB_WIDE void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
+                                  const YuvPlanes& to) {
   const std::ptrdiff_t row = std::ptrdiff_t{width} * 4;
   for (int y = part.top; y < part.top + part.height; y += 2) {
     const std::uint8_t* const upper = rgba + y * row + std::ptrdiff_t{part.left} * 4;
