@@ -9,6 +9,13 @@
 
 #include "render/gl_context.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+// OSMesa keeps a few bytes a context for ever.
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
+  return "leak:libOSMesa";
+}
+#endif
+
 namespace pinchlab {
 
 struct GlContext::State {

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/yuv.h"
 
+// The loops below are a tenth of a clip's cost: let the compiler also make a version for wider
+// vectors. All versions give the same bytes.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define PINCHLAB_WIDE __attribute__((target_clones("avx2", "default"), optimize("O3")))
+#else
+#define PINCHLAB_WIDE
+#endif
+
 namespace pinchlab {
 
 namespace {
@@ -32,8 +40,8 @@ std::uint8_t y_of(const std::uint8_t* p) {
 
 }  // namespace
 
-void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
-                    const YuvPlanes& to) {
+PINCHLAB_WIDE void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
+                                  const YuvPlanes& to) {
   const std::ptrdiff_t row = std::ptrdiff_t{width} * 4;
   for (int y = part.top; y < part.top + part.height; y += 2) {
     const std::uint8_t* const upper = rgba + y * row + std::ptrdiff_t{part.left} * 4;
@@ -42,9 +50,9 @@ void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
     std::uint8_t* const y_lower = y_upper + to.y_stride;
     std::uint8_t* const u = to.u + y / 2 * to.u_stride + part.left / 2;
     std::uint8_t* const v = to.v + y / 2 * to.v_stride + part.left / 2;
-    for (int x = 0; x < part.width; ++x) y_upper[x] = y_of(upper + 4 * x);
-    for (int x = 0; x < part.width; ++x) y_lower[x] = y_of(lower + 4 * x);
-    for (int x = 0; x < part.width / 2; ++x) {
+    for (std::ptrdiff_t x = 0; x < part.width; ++x) y_upper[x] = y_of(upper + 4 * x);
+    for (std::ptrdiff_t x = 0; x < part.width; ++x) y_lower[x] = y_of(lower + 4 * x);
+    for (std::ptrdiff_t x = 0; x < part.width / 2; ++x) {
       const std::uint8_t *a = upper + 8 * x, *b = lower + 8 * x;
       const std::int32_t red = a[0] + a[4] + b[0] + b[4];
       const std::int32_t green = a[1] + a[5] + b[1] + b[5];
