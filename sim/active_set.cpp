@@ -44,20 +44,23 @@ struct Tolerances {
   double impulse;  // N s
 };
 
-/// Round-off of the quantities that the checks compare.
+/// Round-off of the quantities that the checks compare: of speeds, and of positions and lengths,
+/// which the rows' biases divide by the step.
 Tolerances tolerances(const World& world) {
   const Scratch& s = world.scratch;
-  double speed = 0.0, impulse = 0.0, stiffest = 0.0;
+  double speed = 0.0, extent = 0.0, impulse = 0.0, stiffest = 0.0;
   for (std::size_t b = 0; b < world.velocity.size(); ++b) {
+    extent = std::max(extent, world.position[b].cwiseAbs().maxCoeff());
     speed = std::max(
         {speed, world.velocity[b].cwiseAbs().maxCoeff(), s.velocity_free[b].cwiseAbs().maxCoeff()});
   }
+  for (const CableState& cable : world.cables) extent = std::max(extent, cable.length);
   for (const Row& row : s.rows) {
     impulse = std::max(impulse, std::abs(row.impulse));
     stiffest = std::max(stiffest, row.diagonal);
     if (row.on) speed = std::max(speed, std::abs(row.bias));
   }
-  const double tolerance = 1e-12 * speed + 1e-15;
+  const double tolerance = 1e-12 * speed + 1e-15 * extent / world.step_length;
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
