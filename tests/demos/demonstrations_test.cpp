@@ -60,8 +60,8 @@ Motion play(const Scene& scene, Method method) {
   return motion;
 }
 
-/// Hashes of the motions that the pair of clips shows. What changes one changes the clips: put the printed
-/// value here and say so in demos/CHANGELOG.md.
+/// Hashes of the motions that the pair of clips shows. What changes one changes the clips: put the
+/// printed value here and say so in demos/CHANGELOG.md.
 struct Golden {
   const char* name;
   std::uint64_t pinch, baseline;
@@ -72,10 +72,14 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x85ae97eff85ecd05, 0xd3e85fd1977bba25},     {"02-stack", 0x6279f4e6a9675cd0, 0x7820a2ac0bb68cc1},
-    {"03-drop", 0x9e143139d9c1c962, 0xdce3b9c0911a188e},          {"04-two-blocking", 0x299e3d804dcbf342, 0x7a829535bdd956a8},
-    {"05-notch", 0x705325b82a599c57, 0x85adcdfd00025d37},         {"06-windlass", 0x8015cba13a7140f4, 0xa7df6b8c613f189e},
-    {"07-driven-roller", 0x3cf905786cf63aef, 0x5523930d78f26db7}, {"08-driven-roller-weights", 0xaec508a92da1490d, 0xeadde69f6f8b7ccc},
+    {"01-roll-over", 0x85ae97eff85ecd05, 0xd3e85fd1977bba25},
+    {"02-stack", 0x6279f4e6a9675cd0, 0x7820a2ac0bb68cc1},
+    {"03-drop", 0x9e143139d9c1c962, 0xdce3b9c0911a188e},
+    {"04-two-blocking", 0x299e3d804dcbf342, 0x7a829535bdd956a8},
+    {"05-notch", 0x705325b82a599c57, 0x85adcdfd00025d37},
+    {"06-windlass", 0x8015cba13a7140f4, 0xa7df6b8c613f189e},
+    {"07-driven-roller", 0x3cf905786cf63aef, 0x5523930d78f26db7},
+    {"08-driven-roller-weights", 0xaec508a92da1490d, 0xeadde69f6f8b7ccc},
 };
 
 class Demonstration : public ::testing::TestWithParam<Golden> {
@@ -117,8 +121,10 @@ TEST_P(Demonstration, HasTheBaselineThatItsRoughnessAllows) {
 TEST_P(Demonstration, MovesAsItDidBefore) {
   const std::uint64_t pinch = play(scene_, Method::pinch).hash;
   const std::uint64_t baseline = play(scene_, scene_.baseline).hash;
-  EXPECT_EQ(pinch, GetParam().pinch) << fmt::format("{} {:#018x}, {:#018x}", scene_.name, pinch, baseline);
-  EXPECT_EQ(baseline, GetParam().baseline) << fmt::format("{} {:#018x}, {:#018x}", scene_.name, pinch, baseline);
+  EXPECT_EQ(pinch, GetParam().pinch)
+      << fmt::format("{} {:#018x}, {:#018x}", scene_.name, pinch, baseline);
+  EXPECT_EQ(baseline, GetParam().baseline)
+      << fmt::format("{} {:#018x}, {:#018x}", scene_.name, pinch, baseline);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Demonstration, ::testing::ValuesIn(goldens), [](const auto& test) {
