@@ -40,6 +40,24 @@ TEST(Yuv, EverySampleIsTheNearestToItsExactValue) {
   }
 }
 
+TEST(Yuv, WideAndNarrowPartsGiveTheSameBytes) {
+  // Parts of 16 px and more take a path of their own.
+  const int width = 64, height = 32;
+  std::vector<std::uint8_t> rgba;
+  for (std::uint32_t i = 0; i < 4 * width * height; ++i)
+    rgba.push_back(static_cast<std::uint8_t>(i * 2654435761u >> 24));
+  const auto convert = [&](int part) {
+    std::vector<std::uint8_t> planes(width * height * 3 / 2);
+    std::uint8_t* const u = planes.data() + width * height;
+    for (int x = 0; x < width; x += part) {
+      rgba_to_yuv420(rgba.data(), width, {x, 0, part, height},
+                     {planes.data(), u, u + width * height / 4, width, width / 2, width / 2});
+    }
+    return planes;
+  };
+  EXPECT_EQ(convert(64), convert(2));
+}
+
 TEST(Yuv, ConvertsOnlyThePartAskedFor) {
   const int width = 16, height = 8;
   const std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width) * height * 4, 255);
