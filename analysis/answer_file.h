@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The answer file of the study page: one participant, one JSON file (README.md documents every
+// key).
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/answers_table.h"
+
+namespace pinchlab::analysis {
+
+enum class TrialKind { main, training, attention };
+
+/// One pair of clips that was shown, and what the participant did.
+struct Trial {
+  int position = 0;  ///< place in the session, from 1; training and attention trials count
+  TrialKind kind = TrialKind::main;
+  std::string demonstration;
+  std::string left, right;  ///< "pinch" or "baseline"; attention checks may show "check"
+  Side choice = Side::left;
+  Side expected = Side::unknown;  ///< attention checks only: the side that a watchful eye picks
+  double reaction_time_s = 0.0;   ///< s, from the moment the buttons appear to the choice
+  long focus_lost_count = 0;
+  long dropped_frames = 0;
+  long playback_errors = 0;  ///< how many messages the player gave
+};
+
+struct AnswerFile {
+  std::string participant;
+  std::vector<std::string> planned;  ///< demonstrations of the plan
+  int answers_per_demonstration = 1;
+  std::vector<Trial> trials;
+  std::map<std::string, std::string> free_text;  ///< question -> text
+  /// (demonstration, variant) -> hash
+  std::map<std::pair<std::string, std::string>, std::string> clips_sha256;
+};
+
+/// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
+/// Unknown keys, wrong types and answers that contradict the plan throw InputError.
+AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file);
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// START HERE: the one checked table that every statistic is computed from.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace pinchlab::analysis {
+
+/// Left, right, or not recorded.
+enum class Side : std::uint8_t { unknown, left, right };
+
+/// One answer of one participant to one pair of clips.
+struct Answer {
+  double reaction_time_s = -1.0;    ///< s, >= 0; -1: not recorded
+  std::uint32_t participant = 0;    ///< index into AnswersTable::participants
+  std::uint32_t line = 0;           ///< running number over the lines (trials) of all inputs
+  std::uint16_t demonstration = 0;  ///< index into AnswersTable::demonstrations
+  std::uint16_t position = 0;       ///< place in the participant's session, from 1; 0: not recorded
+  bool chose_pinch = false;         ///< the pinch clip was chosen, not the cable (baseline) clip
+  Side pinch_side = Side::unknown;  ///< where the pinch clip was shown
+};
+
+/// How often each method was chosen.
+struct Counts {
+  std::int64_t pinch = 0;
+  std::int64_t cable = 0;
+  [[nodiscard]] std::int64_t total() const { return pinch + cable; }
+};
+
+/// Demonstrations that are analysed together.
+struct Group {
+  std::string name;
+  std::vector<std::uint16_t> demonstrations;  ///< indices, increasing
+};
+
+/// What went on around one participant's answers.
+struct Session {
+  int attention_passed = 0;
+  int attention_failed = 0;
+  std::int64_t focus_lost_count = 0;
+  std::int64_t dropped_frames = 0;
+  std::int64_t playback_errors = 0;
+  std::map<std::string, std::string> free_text;  ///< question -> what was written
+};
+
+/// A participant who was left out, and the reason that was given.
+struct Exclusion {
+  std::string participant;
+  std::string reason;
+};
+
+/// All answers, checked and in an order that does not depend on the order of the inputs:
+/// participants by name, demonstrations by natural order, answers by participant, demonstration and
+/// position.
+struct AnswersTable {
+  std::vector<std::string> sources;       ///< the files read
+  std::vector<std::string> participants;  ///< empty if only counts are known
+  std::vector<std::string> demonstrations;
+  std::vector<Group> groups;                  ///< the last one is "all"
+  std::string groups_from;                    ///< in words: where the groups come from
+  std::vector<Answer> answers;                ///< empty if only counts are known
+  std::vector<Counts> counts;                 ///< one a demonstration
+  std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
+  bool has_session_records = false;  ///< some input records focus, frames and playback errors
+  std::vector<Exclusion> exclusions;
+  int answers_per_demonstration = 1;    ///< that a complete participant gave
+  std::vector<std::string> incomplete;  ///< participants with answers missing (if that is allowed)
+};
+
+/// How inputs are to be read.
+struct ReadOptions {
+  std::map<std::string, std::string> columns;  ///< our column name -> the file's
+  std::string pinch_value = "pinch";           ///< in column `choice`, for the method under test
+  std::string cable_value = "cable";  ///< in column `choice`, for the method it is compared with
+  char separator = ',';
+  bool ignore_other_columns = false;
+  int repetitions = 1;  ///< answers a participant gives to each demonstration (CSV), 1..100
+  bool allow_missing = false;
+  std::filesystem::path groups_file;   ///< empty: group column, or the default by leading number
+  std::filesystem::path exclude_file;  ///< empty: nobody is left out
+};
+
+/// Reads answer files (.json), folders of them, tidy CSV files and tables of counts (.csv) into one
+/// table. Throws InputError that names file, place and cure for whatever is missing, double,
+/// contradictory or unknown.
+AnswersTable read_answers(const std::vector<std::filesystem::path>& inputs,
+                          const ReadOptions& options);
+
+/// Is this the name of a column that CSV inputs can have?
+bool is_input_column(const std::string& name);
+
+/// The name of the group that holds every demonstration.
+inline constexpr const char* all_group = "all";
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "analysis/table_builder.h"
+
+namespace pinchlab::analysis {
+
+/// Reads a CSV file into `builder`: a tidy one (columns participant, demonstration, choice;
+/// optional group, side, position, reaction_time_s, kind) or a table of counts (demonstration,
+/// pinch, cable; optional group). The header decides which. Throws InputError.
+void read_csv_input(const std::filesystem::path& path, const ReadOptions& options,
+                    TableBuilder& builder);
+
+}  // namespace pinchlab::analysis

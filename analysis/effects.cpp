@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/effects.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/clustered.h"
+
+namespace pinchlab::analysis {
+
+namespace {
+
+// Calls `take(first, last)` with pointers to each participant's answers.
+template <class Take>
+void each_participant(const AnswersTable& table, Take take) {
+  const Answer* end = table.answers.data() + table.answers.size();
+  for (const Answer *first = table.answers.data(), *last = first; first != end; first = last) {
+    while (last != end && last->participant == first->participant) ++last;
+    take(first, last);
+  }
+}
+
+std::string why_no_answers(const AnswersTable& table) {
+  return table.answers.empty() ? "the input is a table of counts" : "";
+}
+
+ReactionTimes spread(std::string name, std::vector<double>& seconds) {
+  ReactionTimes row;
+  row.name = std::move(name);
+  row.answers = static_cast<std::int64_t>(seconds.size());
+  if (seconds.empty()) {
+    const Estimate none = Estimate::none("no reaction times in the input");
+    row.median_s = row.lower_quartile_s = row.upper_quartile_s = row.shortest_s = row.longest_s =
+        none;
+    return row;
+  }
+  std::sort(seconds.begin(), seconds.end());
+  const auto quantile = [&](double f) {
+    return gsl_stats_quantile_from_sorted_data(seconds.data(), 1, seconds.size(), f);
+  };
+  row.median_s = quantile(0.5);
+  row.lower_quartile_s = quantile(0.25);
+  row.upper_quartile_s = quantile(0.75);
+  row.shortest_s = seconds.front();
+  row.longest_s = seconds.back();
+  return row;
+}
+
+}  // namespace
+
+SideBias side_bias(const AnswersTable& table, std::uint64_t seed) {
+  SideBias result;
+  std::vector<std::int64_t> scores;
+  each_participant(table, [&](const Answer* first, const Answer* last) {
+    std::int64_t score = 0;
+    for (const Answer* answer = first; answer != last; ++answer) {
+      if (answer->pinch_side == Side::unknown) {
+        ++result.unknown;
+        continue;
+      }
+      const bool pinch_left = answer->pinch_side == Side::left;
+      const bool chose_left = answer->chose_pinch == pinch_left;
+      ++(chose_left ? result.chosen.pinch : result.chosen.cable);
+      score += chose_left ? 1 : -1;
+      Counts& shown = pinch_left ? result.shown_left : result.shown_right;
+      ++(answer->chose_pinch ? shown.pinch : shown.cable);
+    }
+    scores.push_back(score);
+  });
+  if (result.chosen.total() == 0) {
+    std::string reason = why_no_answers(table);
+    if (reason.empty()) reason = "no sides in the input";
+    result.p_exact = result.p_sign_flip = Estimate::none(reason);
+    return result;
+  }
+  result.p_exact = exact_binomial_p(result.chosen);
+  result.p_sign_flip = sign_flip_test(std::move(scores), RandomUse::side_flip, seed).p;
+  return result;
+}
+
+OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
+  OrderEffect result;
+  std::vector<std::int64_t> scores;
+  std::vector<const Answer*> in_order;
+  each_participant(table, [&](const Answer* first, const Answer* last) {
+    in_order.clear();
+    for (const Answer* answer = first; answer != last; ++answer) {
+      if (answer->position > 0) in_order.push_back(answer);
+    }
+    std::sort(in_order.begin(), in_order.end(),
+              [](const Answer* a, const Answer* b) { return a->position < b->position; });
+    // n sum(rank y) - sum(rank) sum(y): the participant's covariance of rank and choice, in
+    // integers.
+    const auto n = static_cast<std::int64_t>(in_order.size());
+    std::int64_t pinch = 0;
+    std::int64_t pinch_ranks = 0;
+    for (size_t i = 0; i < in_order.size(); ++i) {
+      if (result.by_position.size() <= i) result.by_position.emplace_back();
+      Counts& counts = result.by_position[i];
+      ++(in_order[i]->chose_pinch ? counts.pinch : counts.cable);
+      if (!in_order[i]->chose_pinch) continue;
+      ++pinch;
+      pinch_ranks += static_cast<std::int64_t>(i + 1);
+    }
+    scores.push_back(n * pinch_ranks - n * (n + 1) / 2 * pinch);
+  });
+
+  const auto all = [&](const std::string& reason) {
+    result.chi_square = result.p_trend = result.p_sign_flip = Estimate::none(reason);
+    return result;
+  };
+  if (!why_no_answers(table).empty()) return all(why_no_answers(table));
+  if (result.by_position.empty()) return all("no positions in the input");
+  // Cochran and Armitage: squared covariance of position and choice over its variance.
+  double n = 0.0, pinch = 0.0, x = 0.0, xx = 0.0, xy = 0.0;
+  for (size_t i = 0; i < result.by_position.size(); ++i) {
+    const auto position = static_cast<double>(i + 1);
+    const auto total = static_cast<double>(result.by_position[i].total());
+    n += total;
+    pinch += static_cast<double>(result.by_position[i].pinch);
+    x += position * total;
+    xx += position * position * total;
+    xy += position * static_cast<double>(result.by_position[i].pinch);
+  }
+  if (pinch == 0.0 || pinch == n) return all("every answer is the same");
+  if (result.by_position.size() < 2) return all("one answer a participant has no order");
+  const double share = pinch / n;
+  const double covariance = xy - share * x;
+  const double chi_square = covariance * covariance / (share * (1.0 - share) * (xx - x * x / n));
+  result.chi_square = chi_square;
+  result.p_trend = chi_square_p(chi_square, 1.0);
+  result.p_sign_flip = sign_flip_test(std::move(scores), RandomUse::order_flip, seed).p;
+  return result;
+}
+
+std::vector<ReactionTimes> reaction_times(const AnswersTable& table, const std::string& pinch_label,
+                                          const std::string& cable_label) {
+  std::vector<ReactionTimes> rows;
+  const auto add = [&](const std::string& name, auto wanted) {
+    std::vector<double> seconds;
+    for (const Answer& answer : table.answers) {
+      if (answer.reaction_time_s >= 0.0 && wanted(answer))
+        seconds.push_back(answer.reaction_time_s);
+    }
+    rows.push_back(spread(name, seconds));
+    return !seconds.empty();
+  };
+  if (!add("all answers", [](const Answer&) { return true; })) return rows;
+  add("answers for " + pinch_label, [](const Answer& answer) { return answer.chose_pinch; });
+  add("answers for " + cable_label, [](const Answer& answer) { return !answer.chose_pinch; });
+  std::vector<std::vector<double>> seconds(table.demonstrations.size());
+  for (const Answer& answer : table.answers) {
+    if (answer.reaction_time_s >= 0.0)
+      seconds[answer.demonstration].push_back(answer.reaction_time_s);
+  }
+  for (size_t i = 0; i < seconds.size(); ++i)
+    rows.push_back(spread(table.demonstrations[i], seconds[i]));
+  return rows;
+}
+
+AttentionChecks attention_checks(const AnswersTable& table) {
+  AttentionChecks result;
+  for (const auto& [participant, session] : table.sessions) {
+    result.passed += session.attention_passed;
+    result.failed += session.attention_failed;
+    if (session.attention_failed > 0) result.failed_by.push_back(table.participants[participant]);
+  }
+  return result;
+}
+
+Playback playback(const AnswersTable& table) {
+  Playback result;
+  result.recorded = table.has_session_records;
+  for (const auto& [participant, session] : table.sessions) {
+    result.focus_lost_count += session.focus_lost_count;
+    result.dropped_frames += session.dropped_frames;
+    result.playback_errors += session.playback_errors;
+    if (session.playback_errors > 0) result.errors_for.push_back(table.participants[participant]);
+  }
+  return result;
+}
+
+ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) {
+  const auto z = [](double p) {
+    return p > 0.0 && p < 1.0 ? Estimate(gsl_cdf_ugaussian_Pinv(p))
+                              : Estimate::none("a share of 0 or 1 is infinitely far on the scale");
+  };
+  // Perez-Ortiz and Mantiuk (2017): a difference of 1 JOD makes 3 of 4 people choose the better
+  // one.
+  const double unit = gsl_cdf_ugaussian_Pinv(0.75);
+  const auto jod = [&](const Estimate& p) {
+    if (!p) return p;
+    const Estimate distance = z(p.value);
+    return distance ? Estimate(distance.value / unit) : distance;
+  };
+  ScaleValue value;
+  const Estimate distance = z(share);
+  value.bradley_terry_log_odds = distance ? Estimate(std::log(share / (1.0 - share))) : distance;
+  value.thurstone_d = distance ? Estimate(std::sqrt(2.0) * distance.value) : distance;
+  value.jod = jod(Estimate(share));
+  value.jod_low = jod(low);
+  value.jod_high = jod(high);
+  return value;
+}
+
+}  // namespace pinchlab::analysis

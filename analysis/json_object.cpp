@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/json_object.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+#include "analysis/input_error.h"
+#include "analysis/text_checks.h"
+
+namespace pinchlab::analysis {
+
+using nlohmann::json;
+
+namespace {
+
+std::string read_bytes(const std::filesystem::path& path, size_t limit_bytes) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(path.string(), "cannot be opened");
+  std::string bytes(limit_bytes + 1, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (file.bad()) throw InputError(path.string(), "cannot be read");
+  bytes.resize(static_cast<size_t>(file.gcount()));
+  if (bytes.size() > limit_bytes) {
+    throw InputError(path.string(),
+                     fmt::format("larger than {} bytes, no answer file is", limit_bytes));
+  }
+  return bytes;
+}
+
+// Refuses doubled keys, of which the parser would silently keep the last.
+class DoubledKeys {
+ public:
+  explicit DoubledKeys(std::string file) : file_(std::move(file)) {}
+
+  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == json::parse_event_t::object_end) keys_.pop_back();
+    if (event == json::parse_event_t::key) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      if (!keys_.back().insert(key).second) {
+        throw InputError(file_, fmt::format("key `{}` stands twice in one object", key));
+      }
+    }
+    return true;
+  }
+
+ private:
+  std::string file_;
+  std::vector<std::set<std::string>> keys_;
+};
+
+bool matches(const std::string& text, const char* pattern) {
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (pattern[i] == '\0') return false;
+    const bool digit = text[i] >= '0' && text[i] <= '9';
+    if (pattern[i] == '#' ? !digit : text[i] != pattern[i]) return false;
+  }
+  return pattern[text.size()] == '\0';
+}
+
+std::string place(const std::string& file, const std::string& pointer) {
+  return pointer.empty() ? file : fmt::format("{}: {}", file, pointer);
+}
+
+// The date and the time of day must exist: no 31 February, no 25 o'clock.
+bool is_moment(const std::string& text) {
+  const auto number = [&](size_t at) { return (text[at] - '0') * 10 + (text[at + 1] - '0'); };
+  const int year = number(0) * 100 + number(2);
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(number(5))),
+                                         std::chrono::day(static_cast<unsigned>(number(8)))};
+  return date.ok() && number(11) < 24 && number(14) < 60 && number(17) < 61;
+}
+
+}  // namespace
+
+json read_json_file(const std::filesystem::path& path, size_t limit_bytes) {
+  const std::string bytes = read_bytes(path, limit_bytes);
+  try {
+    return json::parse(bytes, DoubledKeys(path.string()));
+  } catch (const json::exception& error) {
+    const std::string message = error.what();
+    const size_t end_of_tag = message.find("] ");
+    throw InputError(path.string(),
+                     end_of_tag == std::string::npos ? message : message.substr(end_of_tag + 2));
+  }
+}
+
+JsonObject::JsonObject(const json& value, std::string file, std::string pointer)
+    : value_(value), file_(std::move(file)), pointer_(std::move(pointer)) {
+  if (!value.is_object()) {
+    throw InputError(place(file_, pointer_),
+                     fmt::format("must be an object, not {}", value.type_name()));
+  }
+}
+
+void JsonObject::fail(const std::string& key, const std::string& message) const {
+  throw InputError(place(file_, pointer_to(key)), message);
+}
+
+bool JsonObject::has(const std::string& key) {
+  asked_.insert(key);
+  return value_.contains(key);
+}
+
+const json& JsonObject::need(const std::string& key) {
+  asked_.insert(key);
+  const auto found = value_.find(key);
+  if (found == value_.end()) {
+    std::vector<std::string> present;
+    for (const auto& item : value_.items()) present.push_back(item.key());
+    throw InputError(place(file_, pointer_),
+                     fmt::format("key `{}` is missing{}", key, did_you_mean(key, present)));
+  }
+  return *found;
+}
+
+std::string JsonObject::text(const std::string& key, size_t limit_bytes) {
+  const json& value = need(key);
+  if (!value.is_string()) fail(key, fmt::format("must be a string, not {}", value.type_name()));
+  const auto& text = value.get_ref<const std::string&>();
+  if (text.size() > limit_bytes) fail(key, fmt::format("longer than {} bytes", limit_bytes));
+  return text;
+}
+
+std::string JsonObject::name(const std::string& key) {
+  std::string value = text(key, 4096);
+  const std::string why = why_not_a_name(value);
+  if (!why.empty()) fail(key, why);
+  return value;
+}
+
+std::string JsonObject::choice(const std::string& key, const std::vector<std::string>& allowed) {
+  std::string value = text(key, 4096);
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
+    fail(key, fmt::format("`{}` is unknown{}; it must be {}", value.substr(0, 60),
+                          did_you_mean(value, allowed), one_of(allowed)));
+  }
+  return value;
+}
+
+std::string JsonObject::utc(const std::string& key) {
+  std::string value = text(key, 64);
+  std::string body = value;
+  // A fraction of the second does not matter to the pattern.
+  if (const size_t dot = body.find('.'); dot == 19 && body.size() > 21) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (std::all_of(body.begin() + 20, body.end() - 1, digit))
+      body = body.substr(0, 19) + body.back();
+  }
+  if (!matches(body, "####-##-##T##:##:##Z") || !is_moment(body)) {
+    fail(key, fmt::format("`{}` is not a moment in UTC like 2026-11-20T12:05:01Z", value));
+  }
+  return value;
+}
+
+std::string JsonObject::sha256(const std::string& key) {
+  std::string value = text(key, 4096);
+  const auto hexadecimal = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  if (value.size() != 64 || !std::all_of(value.begin(), value.end(), hexadecimal)) {
+    fail(key, "must be a SHA-256: 64 lower-case hexadecimal digits");
+  }
+  return value;
+}
+
+long JsonObject::whole(const std::string& key, long low, long high) {
+  const json& value = need(key);
+  const bool fits = value.is_number_unsigned()
+                        ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(high)
+                        : value.is_number_integer();
+  if (!fits || value.get<long>() < low || value.get<long>() > high) {
+    fail(key, fmt::format("must be a whole number from {} to {}", low, high));
+  }
+  return value.get<long>();
+}
+
+double JsonObject::number(const std::string& key, double low, double high) {
+  const json& value = need(key);
+  if (!value.is_number() || !(value.get<double>() >= low && value.get<double>() <= high)) {
+    fail(key, fmt::format("must be a number from {} to {}", low, high));
+  }
+  return value.get<double>();
+}
+
+bool JsonObject::flag(const std::string& key) {
+  const json& value = need(key);
+  if (!value.is_boolean()) fail(key, "must be true or false");
+  return value.get<bool>();
+}
+
+const json& JsonObject::array(const std::string& key, size_t limit) {
+  const json& value = need(key);
+  if (!value.is_array()) fail(key, fmt::format("must be an array, not {}", value.type_name()));
+  if (value.size() > limit) fail(key, fmt::format("more than {} entries", limit));
+  return value;
+}
+
+JsonObject JsonObject::object(const std::string& key) {
+  return {need(key), file_, pointer_to(key)};
+}
+
+std::vector<std::string> JsonObject::all_keys() {
+  std::vector<std::string> keys;
+  for (const auto& item : value_.items()) keys.push_back(item.key());
+  asked_.insert(keys.begin(), keys.end());
+  return keys;
+}
+
+void JsonObject::finish() const {
+  const std::vector<std::string> known(asked_.begin(), asked_.end());
+  for (const auto& item : value_.items()) {
+    if (asked_.contains(item.key())) continue;
+    fail(item.key(), fmt::format("unknown key{}; see analysis/README.md for the format",
+                                 did_you_mean(item.key(), known)));
+  }
+}
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The first paragraph of every report: the answer, in words that need no statistics.
+#include <fmt/format.h>
+
+#include "analysis/document.h"
+
+namespace pinchlab::analysis {
+
+namespace {
+
+std::string out_of(const Counts& counts) {
+  return fmt::format("{} of {}", counts.pinch, counts.total());
+}
+
+// "a", "a and b", "a, b and c"; long lists are cut.
+std::string list_of(const std::vector<std::string>& items) {
+  constexpr size_t most = 12;
+  std::string text;
+  const size_t shown = items.size() > most ? most : items.size();
+  for (size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == items.size();
+    text += i == 0 ? "" : last ? " and " : ", ";
+    text += items[i];
+  }
+  if (items.size() > most) text += fmt::format(" and {} more", items.size() - most);
+  return text;
+}
+
+std::string p_in_words(double p) {
+  return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
+}
+
+struct PooledP {
+  double p;
+  std::string how;
+};
+
+// The p-value that a reader should go by: participants as units where they are known.
+PooledP fair_p(const GroupResult& group) {
+  if (group.pooled.sign_flip.p && group.pooled.participants > 1) {
+    return {group.pooled.sign_flip.p.value, "sign-flip test over participants"};
+  }
+  if (group.demonstrations.size() == 1) return {group.row.p_exact, "exact binomial test"};
+  return {group.row.p_chi_square, "chi-square test that takes all answers as independent"};
+}
+
+std::string verdict(const Report& report) {
+  const GroupResult& all = report.all();
+  const PooledP fair = fair_p(all);
+  const std::string& pinch = report.options.pinch_label;
+  const std::string& cable = report.options.cable_label;
+  const std::string found =
+      fair.p >= report.options.alpha
+          ? fmt::format("No clear preference between {} and {}", pinch, cable)
+          : fmt::format("{} was preferred to {}", all.row.share > 0.5 ? pinch : cable,
+                        all.row.share > 0.5 ? cable : pinch);
+  const bool one = report.demonstrations.size() == 1;
+  const std::string where =
+      one ? fmt::format(" in demonstration {}", report.demonstrations[0].row.name)
+          : fmt::format(" over the {} demonstrations", report.demonstrations.size());
+  return fmt::format(
+      "{}: {} {}{} ({}; {}, {}).", found,
+      one ? out_of(all.row.counts) + " preferred" : out_of(all.row.counts) + " answers chose",
+      pinch, where, percent(all.row.share), p_in_words(fair.p), fair.how);
+}
+
+std::string demonstrations_in_words(const Report& report) {
+  std::vector<std::string> for_pinch, for_cable, unclear, robust;
+  for (const DemonstrationResult& result : report.demonstrations) {
+    const Row& row = result.row;
+    const std::string item = fmt::format("{} ({})", row.name, out_of(row.counts));
+    if (row.p_chi_square >= report.options.alpha) {
+      unclear.push_back(item);
+    } else {
+      (row.share > 0.5 ? for_pinch : for_cable).push_back(item);
+      if (row.p_holm < report.options.alpha) robust.push_back(row.name);
+    }
+  }
+  const std::string& pinch = report.options.pinch_label;
+  std::string text =
+      fmt::format(" Taken one by one (chi-square test, p < {}), {} was preferred in {} of ",
+                  report.options.alpha, pinch,
+                  for_pinch.empty() ? "none" : fmt::format("{}", for_pinch.size()));
+  text += for_pinch.empty() ? fmt::format("the {} demonstrations.", report.demonstrations.size())
+                            : fmt::format("{} demonstrations: {}.", report.demonstrations.size(),
+                                          list_of(for_pinch));
+  if (!for_cable.empty()) {
+    text += fmt::format(" {} was preferred in {}.", report.options.cable_label, list_of(for_cable));
+  }
+  if (!unclear.empty()) text += fmt::format(" No clear preference shows in {}.", list_of(unclear));
+  if (for_pinch.size() + for_cable.size() > 0) {
+    text += robust.empty()
+                ? " None of these holds once Holm's correction allows for testing so many."
+                : fmt::format(" Once Holm's correction allows for testing so many, {} remain{}.",
+                              list_of(robust), robust.size() == 1 ? "s" : "");
+  }
+  return text;
+}
+
+std::string groups_in_words(const Report& report) {
+  std::vector<std::string> items;
+  for (size_t i = 0; i + 1 < report.groups.size(); ++i) {
+    const GroupResult& group = report.groups[i];
+    items.push_back(fmt::format("{} {} answers ({}, {})", out_of(group.row.counts), group.row.name,
+                                percent(group.row.share), p_in_words(fair_p(group).p)));
+  }
+  return items.empty() ? ""
+                       : fmt::format(" By group, {} was chosen in {}.", report.options.pinch_label,
+                                     list_of(items));
+}
+
+}  // namespace
+
+std::string plain_words(const Report& report, const AnswersTable& table) {
+  std::string text = verdict(report);
+  if (report.demonstrations.size() > 1) {
+    text += demonstrations_in_words(report);
+    text += groups_in_words(report);
+  }
+  const Heterogeneity& heterogeneity = report.all().heterogeneity;
+  if (heterogeneity.p && heterogeneity.p.value < report.options.alpha) {
+    text += fmt::format(
+        " The demonstrations differ from one another (X² = {:.2f}, df {}, {}), so the figure over "
+        "all of them is an average of unlike cases.",
+        heterogeneity.chi_square.value, heterogeneity.df.value, p_in_words(heterogeneity.p.value));
+  }
+  if (!table.exclusions.empty()) {
+    text += fmt::format(" {} participant{} left out (listed below with the reasons).",
+                        table.exclusions.size(), table.exclusions.size() == 1 ? " was" : "s were");
+  }
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// How many participants does a study need? Exact binomial, no normal approximation.
+
+#include <cstdint>
+#include <string>
+
+namespace pinchlab::analysis {
+
+/// The two-sided exact binomial test of one half with `answers` answers: it rejects from `critical`
+/// choices of one method on.
+struct ExactTest {
+  std::int64_t answers = 0;
+  std::int64_t critical = 0;  ///< answers + 1: it never rejects
+  double size = 0.0;          ///< its true false-positive rate, at most alpha
+  double power = 0.0;         ///< at the share asked for
+};
+ExactTest exact_test(std::int64_t answers, double share, double alpha);
+
+struct PowerQuestion {
+  double share = 0.0;   ///< true share of pinch, in (0, 1) but not 1/2
+  double alpha = 0.05;  ///< in (0, 1)
+  double power = 0.8;   ///< wanted, in (alpha, 1)
+  int trials = 1;       ///< answers that each participant gives, 1 .. 1000
+  double icc = 0.0;     ///< intraclass correlation of one participant's answers, 0 .. 1
+};
+
+struct PowerAnswer {
+  ExactTest first;  ///< the smallest number of independent answers that reaches the power
+  ExactTest safe;   ///< the smallest from which no larger number falls below it again
+  double design_effect = 1.0;     ///< 1 + (trials - 1) icc (Kish)
+  std::int64_t participants = 0;  ///< for `safe`, with the design effect
+  std::int64_t participants_first = 0;
+};
+
+/// Throws InputError for a question out of range or one that needs more than 1000000 answers.
+PowerAnswer participants_needed(const PowerQuestion& question);
+
+/// The answer in words, as `pinchlab power` prints it.
+std::string power_text(const PowerQuestion& question, const PowerAnswer& answer);
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "analysis/report.h"
+
+namespace pinchlab::analysis {
+
+namespace {
+
+std::string quote(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + "\"";
+}
+
+// Shortest text that reads back as the same number; nothing where there is no value.
+std::string field(const Estimate& estimate) {
+  return estimate ? fmt::format("{}", estimate.value) : "";
+}
+
+constexpr const char* row_header =
+    "name,pinch,cable,share,chi_square,p_chi_square,p_exact,wilson_low,wilson_high,clopper_pearson_"
+    "low,"
+    "clopper_pearson_high,cohens_h,p_holm,p_bh,log_bayes_factor";
+constexpr const char* scale_header = "bradley_terry_log_odds,thurstone_d,jod,jod_low,jod_high";
+
+std::string row_fields(const Row& row) {
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote(row.name),
+                     row.counts.pinch, row.counts.cable, row.share, row.chi_square,
+                     row.p_chi_square, row.p_exact, row.wilson.low, row.wilson.high,
+                     row.clopper_pearson.low, row.clopper_pearson.high, row.cohens_h, row.p_holm,
+                     row.p_bh, row.log_bayes_factor);
+}
+
+std::string scale_fields(const ScaleValue& scale) {
+  return fmt::format("{},{},{},{},{}", field(scale.bradley_terry_log_odds),
+                     field(scale.thurstone_d), field(scale.jod), field(scale.jod_low),
+                     field(scale.jod_high));
+}
+
+CsvTable demonstrations_csv(const Report& report) {
+  CsvTable csv{"demonstrations.csv", fmt::format("{},{}\n", row_header, scale_header)};
+  for (const DemonstrationResult& result : report.demonstrations) {
+    csv.content += fmt::format("{},{}\n", row_fields(result.row), scale_fields(result.scale));
+  }
+  return csv;
+}
+
+CsvTable groups_csv(const Report& report) {
+  CsvTable csv{
+      "groups.csv",
+      fmt::format(
+          "{},{},participants,design_effect,intraclass_correlation,rao_scott_chi_square,p_rao_"
+          "scott,"
+          "p_rao_scott_f,p_sign_flip,bootstrap_low,bootstrap_high,p_bootstrap,"
+          "heterogeneity_chi_square,heterogeneity_df,heterogeneity_p,cochran_q,cochran_q_df,"
+          "cochran_q_p,mixed_intercept_log_odds,mixed_intercept_low_log_odds,"
+          "mixed_intercept_high_log_odds,mixed_p,mixed_sd_participant_log_odds,"
+          "mixed_sd_demonstration_log_odds\n",
+          row_header, scale_header)};
+  for (const GroupResult& result : report.groups) {
+    const Pooled& pooled = result.pooled;
+    const MixedModel& model = result.mixed_model;
+    csv.content += fmt::format("{},{},{}", row_fields(result.row), scale_fields(result.scale),
+                               pooled.participants);
+    for (const Estimate* estimate : {&pooled.rao_scott.design_effect,
+                                     &pooled.rao_scott.icc,
+                                     &pooled.rao_scott.chi_square,
+                                     &pooled.rao_scott.p,
+                                     &pooled.rao_scott.p_f,
+                                     &pooled.sign_flip.p,
+                                     &pooled.bootstrap.low,
+                                     &pooled.bootstrap.high,
+                                     &pooled.bootstrap.p,
+                                     &result.heterogeneity.chi_square,
+                                     &result.heterogeneity.df,
+                                     &result.heterogeneity.p,
+                                     &result.cochran_q.q,
+                                     &result.cochran_q.df,
+                                     &result.cochran_q.p,
+                                     &model.intercept,
+                                     &model.intercept_low,
+                                     &model.intercept_high,
+                                     &model.p,
+                                     &model.sd_participant,
+                                     &model.sd_demonstration}) {
+      csv.content += "," + field(*estimate);
+    }
+    csv.content += "\n";
+  }
+  return csv;
+}
+
+CsvTable positions_csv(const Report& report) {
+  CsvTable csv{"positions.csv", "position,pinch,cable\n"};
+  const auto& positions = report.order_effect.by_position;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    csv.content += fmt::format("{},{},{}\n", i + 1, positions[i].pinch, positions[i].cable);
+  }
+  return csv;
+}
+
+CsvTable times_csv(const Report& report) {
+  CsvTable csv{"reaction_times.csv",
+               "name,answers,median_s,lower_quartile_s,upper_quartile_s,shortest_s,longest_s\n"};
+  for (const ReactionTimes& row : report.reaction_times) {
+    csv.content +=
+        fmt::format("{},{},{},{},{},{},{}\n", quote(row.name), row.answers, field(row.median_s),
+                    field(row.lower_quartile_s), field(row.upper_quartile_s), field(row.shortest_s),
+                    field(row.longest_s));
+  }
+  return csv;
+}
+
+CsvTable texts_csv(const AnswersTable& table) {
+  CsvTable csv{"free_text.csv", "participant,question,text\n"};
+  for (const auto& [participant, session] : table.sessions) {
+    for (const auto& [question, text] : session.free_text) {
+      csv.content += fmt::format("{},{},{}\n", quote(table.participants[participant]),
+                                 quote(question), quote(text));
+    }
+  }
+  return csv;
+}
+
+const char* word(Side side) {
+  return side == Side::unknown ? "" : side == Side::left ? "left" : "right";
+}
+
+// The one group of each demonstration; empty if some demonstration has several, which a column
+// cannot say.
+std::vector<std::string> group_column(const AnswersTable& table) {
+  std::vector<std::string> names(table.demonstrations.size());
+  for (const Group& group : table.groups) {
+    if (group.name == all_group) continue;
+    for (std::uint16_t index : group.demonstrations) {
+      if (!names[index].empty()) return {};
+      names[index] = group.name;
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
+  if (table.answers.empty()) return;
+  std::vector<std::string> groups = group_column(table);
+  for (std::string& group : groups) group = quote(group) + ",";
+  out << "participant,demonstration," << (groups.empty() ? "" : "group,")
+      << "choice,side,position,reaction_time_s,kind\n";
+  std::vector<std::string> names;
+  for (const std::string& name : table.demonstrations) names.push_back(quote(name));
+  std::string line;
+  for (const Answer& answer : table.answers) {
+    line =
+        fmt::format("{},{},{}{},{},", quote(table.participants[answer.participant]),
+                    names[answer.demonstration], groups.empty() ? "" : groups[answer.demonstration],
+                    answer.chose_pinch ? "pinch" : "cable", word(answer.pinch_side));
+    if (answer.position > 0) fmt::format_to(std::back_inserter(line), "{}", answer.position);
+    line += ',';
+    if (answer.reaction_time_s >= 0.0)
+      fmt::format_to(std::back_inserter(line), "{}", answer.reaction_time_s);
+    out << line << ",main\n";
+  }
+  for (const auto& [participant, session] : table.sessions) {
+    for (int i = 0; i < session.attention_passed + session.attention_failed; ++i) {
+      out << quote(table.participants[participant]) << ",attention-check,"
+          << (groups.empty() ? "" : ",") << (i < session.attention_passed ? "pass" : "fail")
+          << ",,,,attention\n";
+    }
+  }
+}
+
+std::vector<CsvTable> report_csv(const Report& report, const AnswersTable& table) {
+  std::vector<CsvTable> tables{demonstrations_csv(report), groups_csv(report)};
+  if (!report.order_effect.by_position.empty()) tables.push_back(positions_csv(report));
+  if (report.reaction_times.front().median_s) tables.push_back(times_csv(report));
+  CsvTable texts = texts_csv(table);
+  if (texts.content.find('\n') + 1 < texts.content.size()) tables.push_back(std::move(texts));
+  return tables;
+}
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/tests_2afc.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_math.h>
+#include <gsl/gsl_sf_gamma.h>
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "analysis/gsl_support.h"
+
+namespace pinchlab::analysis {
+
+double chi_square_half(const Counts& counts) {
+  const auto difference = static_cast<double>(counts.pinch - counts.cable);
+  return difference * difference / static_cast<double>(counts.total());
+}
+
+double chi_square_p(double chi_square, double df) {
+  const GslErrorsOff guard;
+  return gsl_cdf_chisq_Q(chi_square, df);
+}
+
+double exact_binomial_p(const Counts& counts) {
+  const GslErrorsOff guard;
+  const auto n = static_cast<unsigned>(counts.total());
+  const auto larger = static_cast<unsigned>(std::max(counts.pinch, counts.cable));
+  return larger * 2 == n ? 1.0 : std::min(1.0, 2.0 * gsl_cdf_binomial_Q(larger - 1, 0.5, n));
+}
+
+Interval wilson_interval(const Counts& counts, double alpha) {
+  const double z = gsl_cdf_ugaussian_Qinv(alpha / 2.0);
+  const auto n = static_cast<double>(counts.total());
+  const auto k = static_cast<double>(counts.pinch);
+  const double centre = (k + z * z / 2.0) / (n + z * z);
+  const double half = z / (n + z * z) * std::sqrt(k * (n - k) / n + z * z / 4.0);
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+Interval clopper_pearson_interval(const Counts& counts, double alpha) {
+  const auto k = static_cast<double>(counts.pinch);
+  const auto rest = static_cast<double>(counts.cable);
+  // A bound p solves "the tail at k has probability alpha/2"; tails of the binomial are those of a
+  // beta.
+  const double low = counts.pinch == 0 ? 0.0 : beta_quantile(alpha / 2.0, k, rest + 1.0);
+  const double high = counts.cable == 0 ? 1.0 : beta_quantile(1.0 - alpha / 2.0, k + 1.0, rest);
+  return {low, high};
+}
+
+double cohens_h(double share) {
+  return 2.0 * std::asin(std::sqrt(share)) - M_PI / 2.0;
+}
+
+double log_bayes_factor(const Counts& counts) {
+  const auto k = static_cast<double>(counts.pinch);
+  const auto rest = static_cast<double>(counts.cable);
+  return gsl_sf_lnbeta(k + 1.0, rest + 1.0) + (k + rest) * M_LN2;
+}
+
+namespace {
+
+std::vector<size_t> increasing(std::span<const double> p) {
+  std::vector<size_t> order(p.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return p[a] < p[b]; });
+  return order;
+}
+
+}  // namespace
+
+std::vector<double> holm(std::span<const double> p) {
+  const std::vector<size_t> order = increasing(p);
+  std::vector<double> adjusted(p.size());
+  double running = 0.0;
+  for (size_t rank = 0; rank < order.size(); ++rank) {
+    const double scaled = p[order[rank]] * static_cast<double>(p.size() - rank);
+    running = std::max(running, std::min(1.0, scaled));
+    adjusted[order[rank]] = running;
+  }
+  return adjusted;
+}
+
+std::vector<double> benjamini_hochberg(std::span<const double> p) {
+  const std::vector<size_t> order = increasing(p);
+  std::vector<double> adjusted(p.size());
+  double running = 1.0;
+  for (size_t rank = order.size(); rank-- > 0;) {
+    const double scaled =
+        p[order[rank]] * static_cast<double>(p.size()) / static_cast<double>(rank + 1);
+    running = std::min(running, scaled);
+    adjusted[order[rank]] = running;
+  }
+  return adjusted;
+}
+
+Heterogeneity heterogeneity(std::span<const Counts> counts) {
+  Counts sum;
+  for (const Counts& row : counts) sum.pinch += row.pinch, sum.cable += row.cable;
+  Heterogeneity result;
+  const char* reason = counts.size() < 2 ? "one demonstration cannot differ from itself"
+                       : sum.pinch == 0 || sum.cable == 0
+                           ? "every answer is the same, so demonstrations cannot be compared"
+                           : nullptr;
+  if (reason) {
+    result.chi_square = result.df = result.p = Estimate::none(reason);
+    return result;
+  }
+  const double p = static_cast<double>(sum.pinch) / static_cast<double>(sum.total());
+  double chi_square = 0.0;
+  for (const Counts& row : counts) {
+    const double surplus = static_cast<double>(row.pinch) - static_cast<double>(row.total()) * p;
+    chi_square += surplus * surplus / (static_cast<double>(row.total()) * p * (1.0 - p));
+  }
+  const auto df = static_cast<double>(counts.size() - 1);
+  result.chi_square = chi_square;
+  result.df = df;
+  result.p = chi_square_p(chi_square, df);
+  return result;
+}
+
+Row make_row(const std::string& name, const Counts& counts, double alpha) {
+  assert(counts.total() > 0);
+  Row row;
+  row.name = name;
+  row.counts = counts;
+  row.share = static_cast<double>(counts.pinch) / static_cast<double>(counts.total());
+  row.chi_square = chi_square_half(counts);
+  row.p_chi_square = chi_square_p(row.chi_square, 1.0);
+  row.p_exact = exact_binomial_p(counts);
+  row.wilson = wilson_interval(counts, alpha);
+  row.clopper_pearson = clopper_pearson_interval(counts, alpha);
+  row.cohens_h = cohens_h(row.share);
+  row.log_bayes_factor = log_bayes_factor(counts);
+  return row;
+}
+
+void adjust_family(std::span<Row*> rows) {
+  std::vector<double> p;
+  for (const Row* row : rows) p.push_back(row->p_chi_square);
+  const std::vector<double> by_holm = holm(p);
+  const std::vector<double> by_bh = benjamini_hochberg(p);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    rows[i]->p_holm = by_holm[i];
+    rows[i]->p_bh = by_bh[i];
+  }
+}
+
+}  // namespace pinchlab::analysis

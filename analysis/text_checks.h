@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Checks of words and numbers that come from outside, shared by the readers of every input format.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pinchlab::analysis {
+
+/// " (did you mean `x`?)" for the candidate nearest to `word` if it is near enough, otherwise "".
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
+
+/// "`a`, `b` or `c`", for messages that list what would be right.
+std::string one_of(std::span<const std::string> words);
+
+/// Why `name` cannot name a participant, a demonstration or a group ("" if it can): names have 1 to
+/// 128 bytes of valid UTF-8, no control characters and no blanks at the ends.
+std::string why_not_a_name(std::string_view name);
+
+/// A finite decimal number that fills `text` whole, or nothing. "nan", "inf" and hexadecimal are
+/// refused.
+std::optional<double> parse_number(std::string_view text);
+
+/// A whole number in [low, high] that fills `text` whole, or nothing.
+std::optional<long> parse_whole(std::string_view text, long low, long high);
+
+/// Order of people: runs of digits compare as numbers, so "2-stack" comes before "10-drop".
+bool natural_less(std::string_view a, std::string_view b);
+
+}  // namespace pinchlab::analysis
