@@ -28,6 +28,8 @@ GlContext::GlContext() : state_(std::make_unique<State>()) {
   // The driver's own threads cost more than they give at these sizes: whole clips run side by side
   // instead.
   setenv("LP_NUM_THREADS", "0", 0);
+  // Mesa 22.3 corrupts its memory where this is not what the processor has.
+  unsetenv("LP_NATIVE_VECTOR_WIDTH");
   constexpr std::array<int, 9> attributes = {OSMESA_FORMAT,
                                              OSMESA_RGBA,
                                              OSMESA_PROFILE,
