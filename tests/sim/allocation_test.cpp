@@ -29,9 +29,9 @@ namespace {
 
 long allocations_of_warm_steps(const Scene& scene) {
   World world = make_world(scene, Method::pinch);
-  for (int i = 0; i < 300; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
   const long before = allocations;
-  for (int i = 0; i < 300; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
   return allocations - before;
 }
 
