@@ -234,6 +234,19 @@ TEST_P(RandomScene, StaysSound) {
   }
 }
 
+TEST(RandomScenes, FallBackRarely) {
+  std::int64_t steps = 0, fallbacks = 0;
+  for (int seed = 1; seed <= 60; ++seed) {
+    const Scene scene = random_scene(seed);
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 240 * 4);
+    steps += world.step;
+    fallbacks += world.diagnostics.fallbacks;
+  }
+  RecordProperty("fallbacks", std::to_string(fallbacks));
+  EXPECT_LT(static_cast<double>(fallbacks), 0.005 * static_cast<double>(steps)) << fallbacks;
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScene, ::testing::Range(1, 61));
 
 }  // namespace
