@@ -219,7 +219,7 @@ void add_bench(CLI::App& app) {
   CLI::App* bench = app.add_subcommand("bench", "Measure what things cost")->require_subcommand(1);
   CLI::App* command = bench->add_subcommand(
       "render", "What simulating, drawing, converting and encoding a frame cost");
-  command->add_option("scene", options->scene, "Scene file [the first of demos]")
+  command->add_option("scene", options->scene, "Scene file [all of demos, and their mean]")
       ->type_name("SCENE");
   add_method(*command, options->method,
              "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
@@ -228,13 +228,17 @@ void add_bench(CLI::App& app) {
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command->callback([options] {
-    const SceneFile file =
-        read_scene_file(options->scene.empty() ? find_scenes({demos_folder()}).front()
-                                               : std::filesystem::path(options->scene));
-    const RenderCost cost =
-        measure_render(file.scene, method_of(file.scene, options->method), options->size.width,
-                       options->size.height, options->frames);
-    fmt::print("{}", table(file.scene.name, cost));
+    std::vector<std::filesystem::path> scenes{options->scene};
+    if (options->scene.empty()) scenes = find_scenes({demos_folder()});
+    std::vector<RenderCost> costs;
+    for (const std::filesystem::path& path : scenes) {
+      const Scene scene = read_scene_file(path).scene;
+      costs.push_back(measure_render(scene, method_of(scene, options->method), options->size.width,
+                                     options->size.height, options->frames));
+      fmt::print("{}\n", table(scene.name, costs.back()));
+      std::fflush(stdout);
+    }
+    if (costs.size() > 1) fmt::print("{}", table("mean of all", mean_cost(costs)));
   });
 }
 

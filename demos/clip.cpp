@@ -51,7 +51,7 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
     }
     const std::uint8_t* rgba = canvas.draw(panels);
     frames.add(std::as_bytes(std::span(rgba, frame_bytes(plan.video.width, plan.video.height))));
-    video.add(rgba);
+    video.add(rgba, canvas.changed());
     tick();
   }
   video.finish();

@@ -225,7 +225,8 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
   const double radius = scene.bodies[static_cast<std::size_t>(attachment.body)].radius;
   if (from.contains("rim_angle_rad")) {
     if (from.contains("point_m")) {
-      problem(place + "/rim_angle_rad", "and point_m both say where the end is fixed; leave one out");
+      problem(place + "/rim_angle_rad",
+              "and point_m both say where the end is fixed; leave one out");
     }
     const double angle = from["rim_angle_rad"].get<double>();
     attachment.point = (radius + half_width) * Vec2(std::cos(angle), std::sin(angle));

@@ -145,6 +145,26 @@ RenderCost measure_render(const Scene& scene, Method method, int width, int heig
   return cost;
 }
 
+RenderCost mean_cost(const std::vector<RenderCost>& costs) {
+  RenderCost mean = costs.front();
+  for (double* figure : {&mean.simulate_ms, &mean.draw_ms, &mean.convert_ms, &mean.encode_ms,
+                         &mean.encode_stimuli_ms}) {
+    *figure = 0.0;
+  }
+  mean.frames = 0;
+  for (const RenderCost& cost : costs) mean.frames += cost.frames;
+  for (const RenderCost& cost : costs) {
+    const double share = static_cast<double>(cost.frames) / mean.frames;
+    mean.simulate_ms += share * cost.simulate_ms;
+    mean.draw_ms += share * cost.draw_ms;
+    mean.convert_ms += share * cost.convert_ms;
+    mean.encode_ms += share * cost.encode_ms;
+    mean.encode_stimuli_ms += share * cost.encode_stimuli_ms;
+    mean.least_luma_psnr_db = std::min(mean.least_luma_psnr_db, cost.least_luma_psnr_db);
+  }
+  return mean;
+}
+
 std::string table(const std::string& scene_name, const RenderCost& cost) {
   std::string text = fmt::format("{}: {} frames of {} x {} px, median processor time a frame\n",
                                  scene_name, cost.frames, cost.width, cost.height);

@@ -3,6 +3,7 @@
 // What a frame costs, stage by stage.
 
 #include <string>
+#include <vector>
 
 #include "sim/scene.h"
 
@@ -27,6 +28,10 @@ struct RenderCost {
 /// into scratch files that are removed. Throws std::runtime_error where the simulation or a file
 /// fails.
 RenderCost measure_render(const Scene& scene, Method method, int width, int height, int frames = 0);
+
+/// Several scenes together: each figure the mean over all their frames of the scenes' medians, the
+/// PSNR the least of all. `costs` is not empty.
+RenderCost mean_cost(const std::vector<RenderCost>& costs);
 
 /// The figures as a table for people.
 std::string table(const std::string& scene_name, const RenderCost& cost);

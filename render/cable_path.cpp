@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "render/hanging.h"
 #include "sim/cable.h"
@@ -28,6 +29,7 @@ struct Fade {
 };
 Fade fade(double s, double reach) {
   if (s >= reach) return {};
+  if (s <= 0.0) return {1.0, 0.0};
   const double x = s / reach;
   return {1.0 - x * x * (3.0 - 2.0 * x), -6.0 * x * (1.0 - x) / reach};
 }
@@ -41,14 +43,14 @@ class PathBuilder {
         cable_(cable),
         smallest_sag_(smallest_sag),
         points_(points),
-        first_(points.size()) {
+        begins_{points.size()} {
     const double g = scene.gravity.norm();
     up_ = g > 0.0 ? Vec2(-scene.gravity / g) : Vec2(0.0, 1.0);
   }
 
-  void build() {
+  std::vector<std::size_t> build() {
     const std::size_t count = cable_.links.size();
-    if (count < 2) return;
+    if (count < 2) return {};
     find_bounds();
     if (cable_.closed) {
       // Start behind the seam, on the first link, and come back to it.
@@ -62,6 +64,7 @@ class PathBuilder {
         add_arc(i);
       }
     }
+    return begins_;
   }
 
  private:
@@ -75,9 +78,20 @@ class PathBuilder {
     return segment == 0 ? cable_.links.size() - 1 : segment - 1;
   }
 
-  SpanEnd span_end(const Link& link) const {
-    const double unwrap = link.orientation != 0 ? 0.5 * std::max(link.wrap, 0.0) : 0.0;
-    return {link_centre(world_, link), link.signed_radius(), unwrap};
+  /// A hanging span may take as much off the wrap as the span on its other side has left.
+  SpanEnd span_end(std::size_t i) const {
+    const Link& link = cable_.links[i];
+    const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
+    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0)};
+  }
+
+  /// By how much more material than straight length span i hangs, m. A span about as short as the
+  /// cable is wide cannot hang, and a pinched one not at all: there it is drawn the straighter the
+  /// shorter it is.
+  double hanging_slack(std::size_t i) const {
+    const Segment& segment = cable_.segments[i];
+    const double share = 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
+    return segment.pinched ? 0.0 : share * std::max(segment.rest_length - segment.length, 0.0);
   }
 
   /// The shape of every span, and from it where each link's arc begins and ends.
@@ -95,13 +109,12 @@ class PathBuilder {
       const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
       span.drawn = !from.pinch_middle && !to.pinch_middle;
-      // A chord of length l and slack d sags by sqrt(3 l d / 8); where l vanishes, by d / 2.
-      const double slack = segment.rest_length - segment.length;
-      span.hanging = span.drawn && slack > 0.0 &&
-                     slack * std::max(segment.length, slack) > 2.0 * smallest_sag_ * smallest_sag_;
+      // A chord of length l and slack d sags by sqrt(3 l d / 8).
+      const double slack = hanging_slack(i);
+      span.hanging = span.drawn && slack * segment.length > 2.0 * smallest_sag_ * smallest_sag_;
       if (!span.hanging) continue;
       const HangingSpan shape =
-          hang(span_end(from), span_end(to), segment.alpha, segment.rest_length, up_);
+          hang(span_end(tail_link(i)), span_end(i), segment.alpha, segment.length + slack, up_);
       span.curve = shape.curve;
       Bounds &before = bounds_[tail_link(i)], &after = bounds_[i];
       const double seam = i == 0 ? cable_.turning : 0.0;
@@ -113,7 +126,7 @@ class PathBuilder {
   }
 
   void add_point(const Vec2& position, const Vec2& tangent, double material) {
-    if (points_.size() > first_) {
+    if (points_.size() > begins_.back()) {
       // A kink is a fan of points at one place: a round joint.
       const StripPoint last = points_.back();
       const double bend = std::atan2(cross(last.tangent, tangent), last.tangent.dot(tangent));
@@ -139,29 +152,55 @@ class PathBuilder {
   }
 
   /// Where two bodies clip, the arcs round them do not meet. Each gives way by half, smoothly,
-  /// along a few widths of cable.
+  /// along a few widths of cable; what is left at the end of a short arc moves the end of the span
+  /// beyond it.
+  struct GiveWay {
+    Vec2 at_tail = Vec2::Zero(), at_head = Vec2::Zero();  // m, at the ends of the arc
+    double length = 0.0, reach = 1.0;                     // m, of the arc; along which it fades
+    bool none() const { return at_tail.isZero(0.0) && at_head.isZero(0.0); }
+
+    Vec2 shift(double s) const {  // m, at s along the arc
+      return fade(s, reach).value * at_tail + fade(length - s, reach).value * at_head;
+    }
+    Vec2 slope(double s) const {  // its derivative
+      return fade(s, reach).slope * at_tail - fade(length - s, reach).slope * at_head;
+    }
+  };
+
+  GiveWay give_way(std::size_t i) const {
+    const Link& link = cable_.links[i];
+    if (link.orientation == 0 || link.pinch_middle) return {};
+    const bool last = !cable_.closed && i + 1 == cable_.links.size();
+    GiveWay way;
+    way.at_tail = -0.5 * clipped(i);
+    if (!last) way.at_head = 0.5 * clipped((i + 1) % cable_.links.size());
+    way.length = link.radius * std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
+    way.reach = 8.0 * cable_.half_width;
+    const bool both = !way.at_tail.isZero(0.0) && !way.at_head.isZero(0.0);
+    if (both) way.reach = std::min(way.reach, 0.5 * way.length);
+    return way;
+  }
+
   void add_arc(std::size_t i) {
     const Link& link = cable_.links[i];
     if (link.orientation == 0 || link.pinch_middle) return;
     const Bounds& b = bounds_[i];
     const Vec2& centre = world_.position[static_cast<std::size_t>(link.body)];
     const double sweep = b.head_angle - b.tail_angle;
-    const double length = link.radius * std::abs(sweep);
-    const double bend = std::min(8.0 * cable_.half_width, 0.5 * length);
-    const bool at_end = !cable_.closed && i + 1 == cable_.links.size();
-    const Vec2 at_tail = -0.5 * clipped(i);
-    const Vec2 at_head =
-        at_end ? Vec2(Vec2::Zero()) : Vec2(0.5 * clipped((i + 1) % cable_.links.size()));
     // Where an arc gives way it is no circle: finer pieces come close enough.
-    const double most = at_tail.isZero() && at_head.isZero() ? most_turn : 0.25 * most_turn;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / most)));
+    const GiveWay way = give_way(i);
+    const double most = way.none() ? most_turn : 0.25 * most_turn;
+    // Of several turns the last one hides the others.
+    constexpr double full_turn = 2.0 * std::numbers::pi;
+    const double hidden = std::max(0.0, 1.0 - full_turn / std::max(std::abs(sweep), full_turn));
+    if (hidden > 0.0 && points_.size() > begins_.back()) begins_.push_back(points_.size());
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil((1.0 - hidden) * std::abs(sweep) / most)));
     for (int k = 0; k <= pieces; ++k) {
-      const double share = static_cast<double>(k) / pieces;
+      const double share = hidden + (1.0 - hidden) * k / pieces, s = share * way.length;
       const Vec2 e = unit_vector(b.tail_angle + share * sweep);
-      const Fade tail = fade(share * length, bend), head = fade((1.0 - share) * length, bend);
-      const Vec2 shift = tail.value * at_tail + head.value * at_head;
-      const Vec2 slope = tail.slope * at_tail - head.slope * at_head;
-      add_point(tangent_point(centre, link.signed_radius(), e) + shift, (e + slope).normalized(),
+      add_point(tangent_point(centre, link.signed_radius(), e) + way.shift(s),
+                (e + way.slope(s)).normalized(),
                 b.tail_material + share * (b.head_material - b.tail_material));
     }
   }
@@ -171,22 +210,26 @@ class PathBuilder {
     if (!span.drawn) return;
     const double from = bounds_[tail_link(i)].head_material;
     const double to = bounds_[i].tail_material + (i == 0 ? cable_.length : 0.0);
+    const GiveWay before = give_way(tail_link(i)), after = give_way(i);
+    const Vec2 tail_shift = before.shift(before.length), head_shift = after.shift(0.0);
     if (!span.hanging) {
-      // Pinched: nothing lies between the arcs. Where bodies clip, the arcs' ends lie beside each
-      // other.
+      // Pinched: nothing lies between the arcs.
       const Segment& segment = cable_.segments[i];
       if (segment.length <= 0.0) return;
-      const Vec2 e = (segment.head - segment.tail).normalized();
-      add_point(segment.tail, e, from);
-      add_point(segment.head, e, to);
+      const Vec2 tail = segment.tail + tail_shift, head = segment.head + head_shift;
+      const Vec2 e = (head - tail).normalized();
+      add_point(tail, e, from);
+      add_point(head, e, to);
       return;
     }
     const double length = span.curve.length();
     constexpr double most = 0.15;  // rad: a catenary is no circle
     const int pieces = std::max(1, static_cast<int>(std::ceil(span.curve.turn() / most)));
     for (int k = 0; k <= pieces; ++k) {
-      const double s = span.curve.arc_at_turn(static_cast<double>(k) / pieces);
-      add_point(span.curve.point(s), span.curve.tangent(s), from + s / length * (to - from));
+      const double s = span.curve.arc_at_turn(static_cast<double>(k) / pieces), share = s / length;
+      const Vec2 slope = (head_shift - tail_shift) / length;
+      add_point(span.curve.point(s) + (1.0 - share) * tail_shift + share * head_shift,
+                (span.curve.tangent(s) + slope).normalized(), from + share * (to - from));
     }
   }
 
@@ -194,7 +237,7 @@ class PathBuilder {
   const CableState& cable_;
   double smallest_sag_;
   std::vector<StripPoint>& points_;
-  std::size_t first_;
+  std::vector<std::size_t> begins_;  // indices of the strips' first points
   Vec2 up_;
   std::vector<Bounds> bounds_;
   std::vector<Span> spans_;
@@ -208,9 +251,10 @@ double mark_spacing(const CableState& cable) {
   return cable.length / std::max(1.0, std::round(cable.length / wanted));
 }
 
-void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
-                       double smallest_sag, std::vector<StripPoint>& points) {
-  PathBuilder(scene, world, cable, smallest_sag, points).build();
+std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
+                                           const CableState& cable, double smallest_sag,
+                                           std::vector<StripPoint>& points) {
+  return PathBuilder(scene, world, cable, smallest_sag, points).build();
 }
 
 }  // namespace pinchlab

@@ -14,10 +14,13 @@ namespace pinchlab {
 double mark_spacing(const CableState& cable);
 
 /// Appends the centre line from the first link to the last (a closed cable: round to the first
-/// again), as the points of a Strip. Slack spans hang with their rest length, unless they sag less
-/// than about `smallest_sag` m. A middle link of a non-transitional pinch has no wrap: its two
-/// segments are left out.
-void append_cable_path(const Scene& scene, const World& world, const CableState& cable,
-                       double smallest_sag, std::vector<StripPoint>& points);
+/// again), as the points of strips; returns the index at which each strip begins. There is more
+/// than one only where the cable runs round a body by more than a turn: the turns that the last one
+/// hides are left out. Slack spans hang with their rest length, unless they sag less than about
+/// `smallest_sag` m. A middle link of a non-transitional pinch has no wrap: its two segments are
+/// left out.
+std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
+                                           const CableState& cable, double smallest_sag,
+                                           std::vector<StripPoint>& points);
 
 }  // namespace pinchlab

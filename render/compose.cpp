@@ -52,7 +52,7 @@ struct Page {
   double unit;  // a hundredth of the view's longer side
   explicit Page(const View& view) : unit(0.01 * (view.high - view.low).maxCoeff()) {}
   double hairline() const { return 0.1 * unit; }
-  double text() const { return 2.6 * unit; }
+  double text() const { return 2.8 * unit; }
 };
 
 class Composer {
@@ -111,10 +111,6 @@ class Composer {
 
   void add_cable(const CableState& cable) {
     Strip strip;
-    strip.first = picture_.points.size();
-    const double smallest_sag = 5e-3 * page_.unit;  // 1/20 px in 960
-    append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
-    strip.count = picture_.points.size() - strip.first;
     strip.half_width = cable.half_width;
     strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * page_.hairline());
     strip.mark_spacing = mark_spacing(cable);
@@ -122,7 +118,15 @@ class Composer {
     strip.fill = palette::cable;
     strip.edge = palette::cable_edge;
     strip.mark = palette::cable_mark;
-    picture_.add(strip);
+    const double smallest_sag = 5e-3 * page_.unit;  // 1/20 px in 960
+    std::vector<std::size_t> begins =
+        append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
+    begins.push_back(picture_.points.size());
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+      strip.first = begins[i];
+      strip.count = begins[i + 1] - begins[i];
+      picture_.add(strip);
+    }
   }
 
   void add_body(std::size_t i) {
@@ -207,13 +211,31 @@ class Composer {
     picture_.add(shaft);
   }
 
-  /// The mass of a body that hangs on a cable's end, under it.
+  /// The mass of a body that hangs on a cable's end: under it, or beside it where a cable runs
+  /// round it.
   void add_weight(std::size_t i) {
     const Body& body = scene_.bodies[i];
     if (body.kind == BodyKind::fixed || body.kind == BodyKind::fixed_axle || !holds_cable_end(i))
       return;
-    const Vec2 centre = world_.position[i] - Vec2(0.0, body.radius + 0.8 * page_.text());
-    picture_.add(Label{centre, page_.text(), fmt::format("{:.4g} kg", body.mass), palette::ink});
+    const std::string text = fmt::format("{:.4g} kg", body.mass);
+    Vec2 offset(0.0, -(body.radius + 0.8 * page_.text()));
+    if (const double round = cable_round(i); round > 0.0) {
+      const double half_text = 0.3 * page_.text() * static_cast<double>(text.size());  // about
+      offset = Vec2(body.radius + round + 0.5 * page_.text() + half_text, 0.0);
+    }
+    picture_.add(Label{world_.position[i] + offset, page_.text(), text, palette::ink});
+  }
+
+  /// Width of the widest cable that runs round body i at time 0, m; 0 if none does. (Were it the
+  /// present one, labels would jump.)
+  double cable_round(std::size_t i) const {
+    double width = 0.0;
+    for (const Cable& cable : scene_.cables) {
+      for (const Wrap& wrap : cable.wraps) {
+        if (wrap.body == static_cast<int>(i)) width = std::max(width, 2.0 * cable.half_width);
+      }
+    }
+    return width;
   }
 
   bool holds_cable_end(std::size_t i) const {

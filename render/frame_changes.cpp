@@ -2,86 +2,118 @@
 #include "render/frame_changes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace pinchlab {
 
 namespace {
 
-constexpr std::size_t corners = 4;  // a mesh consists of quads
-constexpr int band = 16;            // px, the height of a rectangle
+constexpr std::size_t corners = 4;                // a mesh consists of quads
+constexpr int tile_width = 32, tile_height = 16;  // px, even
 
 bool same_structure(const Mesh& a, const Mesh& b) {
   return a.sheets() == b.sheets() && a.batches() == b.batches() &&
          a.vertices().size() == b.vertices().size();
 }
 
-/// The columns of each band of rows that changed.
-class Bands {
+/// A grid of tiles over the frame, each changed or not.
+class Tiles {
  public:
-  Bands(int width, int height)
+  Tiles(int width, int height)
       : width_(width),
         height_(height),
-        spans_(static_cast<std::size_t>((height + band - 1) / band)) {}
+        columns_((width + tile_width - 1) / tile_width),
+        rows_((height + tile_height - 1) / tile_height),
+        changed_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {}
 
-  /// Everything that the triangles of a quad can touch.
+  /// Every tile that the triangles of a quad can touch.
   void mark(const Vertex* quad) {
-    float low_x = quad[0].position[0], high_x = low_x, low_y = quad[0].position[1], high_y = low_y;
-    for (std::size_t i = 1; i < corners; ++i) {
-      low_x = std::min(low_x, quad[i].position[0]);
-      high_x = std::max(high_x, quad[i].position[0]);
-      low_y = std::min(low_y, quad[i].position[1]);
-      high_y = std::max(high_y, quad[i].position[1]);
+    // Once round: the corners come in two pairs, the ends of opposite sides.
+    const std::array<const Vertex*, corners + 1> round = {quad, quad + 1, quad + 3, quad + 2, quad};
+    float low = infinity, high = -infinity;
+    for (const Vertex* corner : round) {
+      low = std::min(low, corner->position[1]);
+      high = std::max(high, corner->position[1]);
     }
-    const int left = within(std::floor(low_x) - 1.0f, width_),
-              right = within(std::ceil(high_x) + 1.0f, width_);
-    const int top = within(std::floor(low_y) - 1.0f, height_),
-              bottom = within(std::ceil(high_y) + 1.0f, height_);
-    if (left >= right) return;
-    for (int y = top; y < bottom; y += band - y % band) {
-      Span& span = spans_[static_cast<std::size_t>(y / band)];
-      span.left = std::min(span.left, left);
-      span.right = std::max(span.right, right);
+    const int first = within(low - margin, height_) / tile_height;
+    const int end = (within(high + margin, height_) + tile_height - 1) / tile_height;
+    for (int row = first; row < end; ++row) {
+      float left = infinity, right = -infinity;
+      for (std::size_t i = 0; i < corners; ++i) {
+        widen(*round[i], *round[i + 1], static_cast<float>(row * tile_height) - margin,
+              static_cast<float>((row + 1) * tile_height) + margin, left, right);
+      }
+      const int from = within(left - margin, width_) / tile_width;
+      const int to = (within(right + margin, width_) + tile_width - 1) / tile_width;
+      for (int column = from; column < to; ++column) at(column, row) = 1;
     }
   }
 
-  std::vector<PixelRect> rectangles() const {
+  /// Runs of changed tiles, row by row.
+  std::vector<PixelRect> rectangles() {
     std::vector<PixelRect> found;
-    for (std::size_t i = 0; i < spans_.size(); ++i) {
-      const Span& span = spans_[i];
-      if (span.left >= span.right) continue;
-      const int top = static_cast<int>(i) * band;
-      const int left = span.left / 2 * 2, right = std::min((span.right + 1) / 2 * 2, width_);
-      found.push_back({left, top, right - left, std::min(band, height_ - top)});
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        if (at(column, row) == 0) continue;
+        const int first = column;
+        while (column < columns_ && at(column, row) != 0) ++column;
+        const int left = first * tile_width, top = row * tile_height;
+        found.push_back({left, top, std::min(column * tile_width, width_) - left,
+                         std::min(top + tile_height, height_) - top});
+      }
     }
     return found;
   }
 
  private:
-  struct Span {
-    int left = 1 << 30, right = 0;
-  };
+  static constexpr float margin = 1.0f;  // px, for the rasteriser's rounding
+  static constexpr float infinity = std::numeric_limits<float>::infinity();
 
+  /// A coordinate as a whole number within 0..size; 0 if it is not a number.
   static int within(float value, int size) {
-    return static_cast<int>(std::fmin(std::fmax(value, 0.0f), static_cast<float>(size)));
+    return static_cast<int>(std::fmin(std::fmax(std::ceil(value), 0.0f), static_cast<float>(size)));
   }
 
-  int width_, height_;
-  std::vector<Span> spans_;
+  /// Widens left..right to the part of the side from a to b that lies between the rows top and
+  /// bottom.
+  static void widen(const Vertex& a, const Vertex& b, float top, float bottom, float& left,
+                    float& right) {
+    const float ax = a.position[0], ay = a.position[1], bx = b.position[0], by = b.position[1];
+    if (std::max(ay, by) < top || std::min(ay, by) > bottom) return;
+    for (const float y : {std::clamp(ay, top, bottom), std::clamp(by, top, bottom)}) {
+      const float x = ay == by ? ax : ax + (bx - ax) * (y - ay) / (by - ay);
+      left = std::min(left, x);
+      right = std::max(right, x);
+    }
+    if (ay == by) {
+      left = std::min(left, bx);
+      right = std::max(right, bx);
+    }
+  }
+
+  char& at(int column, int row) {
+    return changed_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                    static_cast<std::size_t>(column)];
+  }
+
+  int width_, height_, columns_, rows_;
+  std::vector<char> changed_;
 };
 
 }  // namespace
 
 std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int width, int height) {
   if (!same_structure(before, now)) return {{0, 0, width, height}};
-  Bands bands(width, height);
+  Tiles tiles(width, height);
   for (std::size_t i = 0; i < now.vertices().size(); i += corners) {
     const Vertex *old_quad = before.vertices().data() + i, *new_quad = now.vertices().data() + i;
     if (std::equal(old_quad, old_quad + corners, new_quad)) continue;
-    bands.mark(old_quad);
-    bands.mark(new_quad);
+    tiles.mark(old_quad);
+    tiles.mark(new_quad);
   }
-  return bands.rectangles();
+  return tiles.rectangles();
 }
 
 }  // namespace pinchlab

@@ -29,35 +29,36 @@ layout(location = 6) in vec4 mark;
 noperspective out vec2 at;
 flat out vec4 form;
 flat out vec3 bend;
-flat out vec4 fill_colour, edge_colour, mark_colour;  // premultiplied
+flat out vec4 edge_colour, fill_less_edge, mark_less_fill;  // premultiplied
 void main() {
   gl_Position = vec4(2.0 * position / frame_size - 1.0, 0.0, 1.0);
   at = place;
   form = shape;
   bend = curve;
-  fill_colour = vec4(fill.rgb * fill.a, fill.a);
+  vec4 fill_colour = vec4(fill.rgb * fill.a, fill.a);
   edge_colour = vec4(edge.rgb * edge.a, edge.a);
-  mark_colour = vec4(mark.rgb * mark.a, mark.a);
+  fill_less_edge = fill_colour - edge_colour;
+  mark_less_fill = vec4(mark.rgb * mark.a, mark.a) - fill_colour;
 }
 )";
 
-// The share of a pixel whose centre lies `t` px from the middle of a band of half width `h`: the
-// overlap of [t - 1/2, t + 1/2] and [-h, h]. Right for bands thinner than a pixel too.
+// coverage: the share of a pixel whose centre lies `t` px from the middle of a band of half width
+// `h`, that is the overlap of [t - 1/2, t + 1/2] and [-h, h]; right for bands thinner than a pixel
+// too.
 constexpr const char* coverage_source = R"(#version 330 core
 noperspective in vec2 at;
 flat in vec4 form;
 flat in vec3 bend;
-flat in vec4 fill_colour, edge_colour, mark_colour;
+flat in vec4 edge_colour, fill_less_edge, mark_less_fill;
 out vec4 colour;
-float coverage(float t, float h) { return max(0.0, min(t + 0.5, h) - max(t - 0.5, -h)); }
+float coverage(float t, float h) { return clamp(h + 0.5 - t, 0.0, min(2.0 * h, 1.0)); }
 )";
 
 // at: px along and across the line; form: its length, outer and inner half width, px.
 constexpr const char* stroke_source = R"(
 void main() {
   float t = length(vec2(at.x - clamp(at.x, 0.0, form.x), at.y));
-  float inner = coverage(t, form.z);
-  colour = edge_colour * (coverage(t, form.y) - inner) + fill_colour * inner;
+  colour = edge_colour * coverage(t, form.y) + fill_less_edge * coverage(t, form.z);
 }
 )";
 
@@ -70,20 +71,19 @@ constexpr const char* strip_source = R"(
 void main() {
   bool curved = bend.x > 0.0;
   float t = curved ? abs(length(at) - bend.x) : abs(at.x);
-  float u = clamp(at.y / max(abs(at.x), 1e-3), -1.0, 1.0), q = u * u;
+  float u = at.y / max(at.x, 1e-3), q = u * u;
   float s = curved ? bend.x * u * (1.0 + q * (-1.0 / 3.0 + q * 0.2)) : at.y;
   float m = bend.y + bend.z * s;
-  float inner = coverage(t, form.y);
   float marked = coverage(form.z * abs(fract(m + 0.5) - 0.5), form.w);
-  vec4 core = mix(fill_colour, mark_colour, marked);
-  colour = edge_colour * (coverage(t, form.x) - inner) + core * inner;
+  vec4 core_less_edge = fill_less_edge + mark_less_fill * marked;
+  colour = edge_colour * coverage(t, form.x) + core_less_edge * coverage(t, form.y);
 }
 )";
 
 // at: texture coordinates.
 constexpr const char* label_source = R"(
 uniform sampler2D text;
-void main() { colour = fill_colour * texture(text, at).r; }
+void main() { colour = (edge_colour + fill_less_edge) * texture(text, at).r; }
 )";
 
 GLuint compile(const Gl& gl, GLenum kind, const char* head, const char* body) {

@@ -176,15 +176,18 @@ const char* file_ending(Codec codec) {
 
 std::string describe(const VideoSettings& settings) {
   const CodecTraits& t = traits(settings.codec);
-  const bool rgb = settings.codec == Codec::ffv1;
-  return fmt::format("{} in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
-                     t.container, av_get_pix_fmt_name(t.pixel_format),
-                     rgb ? "sRGB, lossless" : "BT.709 limited range", settings.width,
-                     settings.height, settings.frames_per_second, encoder_options(settings));
+  const unsigned version = avcodec_version();
+  return fmt::format(
+      "{} (libavcodec {}.{}.{}) in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
+      version >> 16, version >> 8 & 0xff, version & 0xff, t.container,
+      av_get_pix_fmt_name(t.pixel_format),
+      settings.codec == Codec::ffv1 ? "sRGB, lossless" : "BT.709 limited range", settings.width,
+      settings.height, settings.frames_per_second, encoder_options(settings));
 }
 
 struct VideoWriter::State {
   VideoSettings settings;
+  PixelRect whole{0, 0, settings.width, settings.height};
   PartialFile partial;
   AVFormatContext* format = nullptr;
   AVStream* stream = nullptr;
@@ -315,11 +318,13 @@ VideoWriter::VideoWriter(const std::string& path, const VideoSettings& settings)
 VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const std::uint8_t* rgba) {
-  const PixelRect whole{0, 0, state_->settings.width, state_->settings.height};
-  add(rgba, std::span(&whole, 1));
+  add(rgba, std::span(&state_->whole, 1));
 }
 
 void VideoWriter::add(const std::uint8_t* rgba, std::span<const PixelRect> changed) {
+  // There is no frame before the first: all of it is new, whatever the caller's canvas has drawn
+  // before.
+  if (state_->frames == 0) changed = std::span(&state_->whole, 1);
   const double start = processor_seconds();
   state_->convert(rgba, changed);
   const double converted = processor_seconds();

@@ -79,7 +79,8 @@ void Mesh::add(const Stroke& stroke, const Fit& fit) {
   const Vec2 along = length > 0.0 ? Vec2((b - a) / length) : Vec2(1.0, 0.0);
   const Vec2 across(-along.y(), along.x());
   Vertex common{};
-  common.shape = {narrow(length), narrow(half), narrow(half - fit.scale * stroke.edge_width), 0.0f};
+  common.shape = {narrow(length), narrow(half),
+                  narrow(std::max(0.0, half - fit.scale * stroke.edge_width)), 0.0f};
   common.fill = stroke.fill;
   common.edge = stroke.edge;
   std::array<Vec2, 4> positions, places;
@@ -91,19 +92,16 @@ void Mesh::add(const Stroke& stroke, const Fit& fit) {
 }
 
 // Neighbouring pieces share the corners between them, so that no pixel is missed or drawn twice. On
-// the outer side of an arc they lie further out, where the chord between them clears the arc; on
-// the inner side they stop at its centre.
+// the outer side of an arc they lie further out, where the chord between them clears the arc.
 void Mesh::find_sides(double reach) {
   sides_.assign(pieces_.size() + 1, {reach, reach});
-  for (const bool inner : {false, true}) {  // the inner side's limit is the stricter one
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const Piece& piece = pieces_[i];
-      if (piece.radius == 0.0) continue;
-      const double outside = (piece.radius + reach) / std::cos(0.5 * piece.turn) - piece.radius;
-      for (Side* side : {&sides_[i], &sides_[i + 1]}) {
-        double& extent = (piece.turn > 0.0) == inner ? side->left : side->right;
-        extent = inner ? std::min(extent, piece.radius) : std::max(extent, outside);
-      }
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Piece& piece = pieces_[i];
+    if (piece.radius == 0.0) continue;
+    const double outside = (piece.radius + reach) / std::cos(0.5 * piece.turn) - piece.radius;
+    for (Side* side : {&sides_[i], &sides_[i + 1]}) {
+      double& extent = piece.turn > 0.0 ? side->right : side->left;
+      extent = std::max(extent, outside);
     }
   }
 }
@@ -121,7 +119,7 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
 
   begin(Program::strip);
   Vertex common{};
-  common.shape = {narrow(half), narrow(half - fit.scale * strip.edge_width),
+  common.shape = {narrow(half), narrow(std::max(0.0, half - fit.scale * strip.edge_width)),
                   narrow(fit.scale * strip.mark_spacing),
                   narrow(0.5 * fit.scale * strip.mark_length)};
   common.fill = strip.fill;
@@ -133,15 +131,18 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
     // The piece's own frame: x outwards from the arc's centre (to the right of a straight piece,
     // from its middle), y along it.
     const Vec2 right(-piece.along.y(), piece.along.x());
-    const bool to_left = piece.radius > 0.0 && piece.turn < 0.0;
-    const Vec2 outwards = to_left ? Vec2(-right) : right;
+    const bool turns_right = piece.radius > 0.0 && piece.turn < 0.0;
+    const Vec2 outwards = turns_right ? Vec2(-right) : right;
     const Vec2 origin = piece.middle - piece.radius * std::cos(0.5 * piece.turn) * outwards;
     std::array<Vec2, 4> positions, places;
     for (std::size_t k = 0; k < 4; ++k) {
       const StripPoint& point = first[i + k / 2];
       const Side& side = sides_[i + k / 2];
       const Vec2 tangent = Fit::vector(point.tangent);
-      const double offset = k % 2 == 0 ? -side.left : side.right;
+      // A bend tighter than the strip is wide must not reach beyond its centre.
+      const double most = piece.radius > 0.0 ? piece.radius : infinity;
+      const double offset = k % 2 == 0 ? -(turns_right ? side.left : std::min(side.left, most))
+                                       : (turns_right ? std::min(side.right, most) : side.right);
       positions[k] = fit.point(point.position) + offset * Vec2(-tangent.y(), tangent.x());
       places[k] = {(positions[k] - origin).dot(outwards), (positions[k] - origin).dot(piece.along)};
     }

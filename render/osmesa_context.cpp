@@ -9,6 +9,13 @@
 
 #include "render/gl_context.h"
 
+#if defined(__SANITIZE_ADDRESS__)
+// OSMesa keeps a few bytes a context for ever.
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
+  return "leak:libOSMesa";
+}
+#endif
+
 namespace pinchlab {
 
 struct GlContext::State {
@@ -21,6 +28,8 @@ GlContext::GlContext() : state_(std::make_unique<State>()) {
   // The driver's own threads cost more than they give at these sizes: whole clips run side by side
   // instead.
   setenv("LP_NUM_THREADS", "0", 0);
+  // Mesa 22.3 corrupts its memory where this is not what the processor has.
+  unsetenv("LP_NATIVE_VECTOR_WIDTH");
   constexpr std::array<int, 9> attributes = {OSMESA_FORMAT,
                                              OSMESA_RGBA,
                                              OSMESA_PROFILE,

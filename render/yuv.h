@@ -17,7 +17,7 @@ struct YuvPlanes {
 
 /// RGBA (8 bits each, top row first, `width` * 4 bytes a row) to Y'CbCr of ITU-R BT.709, limited
 /// range, each chroma sample the mean of its 2 x 2 pixels (sited at their centre); only within
-/// `part`, whose sides and place are even. Every sample is within 0.51 of the exact value before
+/// `part`, whose sides and place are even. Every sample is within 0.52 of the exact value before
 /// rounding.
 void rgba_to_yuv420(const std::uint8_t* rgba, int width, const PixelRect& part,
                     const YuvPlanes& to);

@@ -34,7 +34,7 @@ void bound_friction(World& world) {
       const bool slack = !rows[index(run.row_in)].on && !rows[index(run.row_out)].on;
       if (slack) row.bound = std::min(row.friction, row.wrapped_friction);
     }
-    if (row.bound == 0.0) row.on = false;
+    if (row.bound == 0.0 || row.dropped) row.on = false;
     if (row.bound == infinity) row.slip = Slip::stick;
   }
 }
@@ -44,20 +44,23 @@ struct Tolerances {
   double impulse;  // N s
 };
 
-/// Round-off of the quantities that the checks compare.
+/// Round-off of the quantities that the checks compare: of speeds, and of positions and lengths,
+/// which the rows' biases divide by the step.
 Tolerances tolerances(const World& world) {
   const Scratch& s = world.scratch;
-  double speed = 0.0, impulse = 0.0, stiffest = 0.0;
+  double speed = 0.0, extent = 0.0, impulse = 0.0, stiffest = 0.0;
   for (std::size_t b = 0; b < world.velocity.size(); ++b) {
+    extent = std::max(extent, world.position[b].cwiseAbs().maxCoeff());
     speed = std::max(
         {speed, world.velocity[b].cwiseAbs().maxCoeff(), s.velocity_free[b].cwiseAbs().maxCoeff()});
   }
+  for (const CableState& cable : world.cables) extent = std::max(extent, cable.length);
   for (const Row& row : s.rows) {
     impulse = std::max(impulse, std::abs(row.impulse));
     stiffest = std::max(stiffest, row.diagonal);
     if (row.on) speed = std::max(speed, std::abs(row.bias));
   }
-  const double tolerance = 1e-12 * speed + 1e-15;
+  const double tolerance = 1e-12 * speed + 1e-15 * extent / world.step_length;
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
@@ -128,6 +131,15 @@ const Flip& choose_flip(const ActiveSet& set, int solve) {
   return set.flips[(hop >> 8) % set.flips.size()];
 }
 
+/// Friction of bare surfaces that has changed in this step is left out of it: sticking may
+/// contradict what cables and contacts ask of the same bodies, but frictionless they can always be
+/// met.
+void drop_friction(World& world) {
+  for (Row& row : world.scratch.rows) {
+    if (row.kind == RowKind::tangent && row.frozen) row.dropped = true;
+  }
+}
+
 /// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
 /// makes energy nor moves material; only the bound on its force is exceeded, for one step.
 void freeze_friction(World& world) {
@@ -161,7 +173,7 @@ void sweep(World& world) {
       double least = 0.0, most = infinity;
       if (is_friction(row)) {
         const double force = row.normal >= 0 ? s.rows[index(row.normal)].impulse : infinity;
-        most = row.bound == 0.0 || force == 0.0 ? 0.0 : row.bound * force;
+        most = row.bound == 0.0 || row.dropped || force == 0.0 ? 0.0 : row.bound * force;
         least = -most;
       }
       const double before = row.impulse;
@@ -235,7 +247,7 @@ void solve(const Scene& scene, World& world, double kick) {
   order_rows(world);
   find_runs(scene, world);
   // All contradicted states flip while that makes progress, then one at a time.
-  constexpr int patience = 3, before_freezing = 40, most_solves = 150;
+  constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
   int left = patience;
   bool settled = false;
@@ -244,6 +256,7 @@ void solve(const Scene& scene, World& world, double kick) {
       freeze_friction(world);
       ++world.diagnostics.fallbacks;
     }
+    if (solves == before_dropping) drop_friction(world);
     bound_friction(world);
     solve_for_states(world);
     world.diagnostics.active_set_solves = solves;

@@ -96,8 +96,9 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
     contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
   }
-  for (double arc = arc_of_direction(cable, i, u); arc <= link.wrap + arc_tolerance;
-       arc += 2.0 * std::numbers::pi) {
+  const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
+  for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
+    const double arc = least + k * turn;
     if (is_other(before) && arc < near_end) continue;
     if (is_other(after) && link.wrap - arc < near_end) continue;
     if (world.method == Method::pinch) contact.target = std::max(contact.target, width);

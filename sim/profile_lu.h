@@ -23,9 +23,9 @@ class ProfileLu {
   /// Adds to entry (u, v); |u - v| must lie inside the profile.
   void add(int u, int v, double value) {
     if (v < u) {
-      lower_[static_cast<std::size_t>(offset_[static_cast<std::size_t>(u)] + v)] += value;
+      lower_.data()[offset_[static_cast<std::size_t>(u)] + v] += value;
     } else {
-      upper_[static_cast<std::size_t>(offset_[static_cast<std::size_t>(v)] + u)] += value;
+      upper_.data()[offset_[static_cast<std::size_t>(v)] + u] += value;
     }
   }
 

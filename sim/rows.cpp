@@ -37,7 +37,11 @@ Row segment_row(const World& world, const Link& from, const Link& to, const Segm
   const Vec2& e = segment.direction;
   row.ja = {e.x(), e.y(), lever(world, from, e)};
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
-  row.bias = -(segment.length - segment.rest_length) / world.step_length;
+  // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
+  // what is left of a segment is then at least nothing.
+  const double rest =
+      world.method == Method::cable ? std::max(segment.rest_length, 0.0) : segment.rest_length;
+  row.bias = -(segment.length - rest) / world.step_length;
   return row;
 }
 
@@ -53,7 +57,7 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   row.ja = {-u.x(), -u.y(), 0.0};
   row.jb = {u.x(), u.y(), 0.0};
   const double overlap = from.radius + to.radius - distance;
-  row.bias = -(overlap - segment.rest_length) / world.step_length;
+  row.bias = -(overlap - std::max(segment.rest_length, 0.0)) / world.step_length;
 }
 
 /// What presses the middle body of a non-transitional pinch, and how much of it this cable gets.
@@ -118,8 +122,8 @@ void make_segment_rows(const Scene& scene, World& world, double kick) {
       const Link& to = cable.links[s];
       const Link& from =
           cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
-      if (from.pinch_middle)
-        continue;  // the opposite of the row before: one signed row serves both
+      // After a middle link comes the opposite of the row before it: one signed row serves both.
+      if (from.pinch_middle || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
       Row row = segment_row(world, from, to, segment);
       row.index = static_cast<int>(c);

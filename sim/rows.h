@@ -49,9 +49,10 @@ struct Row {
   int normal = -1;                     // friction rows: the row whose force bounds them, or -1
   double friction = 0.0;               // friction rows: coefficient of the row's own body or pair
   double wrapped_friction = infinity;  // pinch_middle: that of the wrapped body
-  double bound = 0.0;   // friction rows: |impulse| <= bound * impulse of `normal`, in force
-  int flipped = 0;      // solve of this step at which `on` or `slip` last changed
-  bool frozen = false;  // friction rows: sticks for this step, whatever its bound
+  double bound = 0.0;    // friction rows: |impulse| <= bound * impulse of `normal`, in force
+  int flipped = 0;       // solve of this step at which `on` or `slip` last changed
+  bool dropped = false;  // friction rows: bears nothing in this step
+  bool frozen = false;   // friction rows: keeps its state for this step, whatever its bound
 };
 
 /// Mobilities for a velocity kick of `kick` seconds.

@@ -2,6 +2,7 @@
 #include "sim/step.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "sim/active_set.h"
 #include "sim/cable.h"
@@ -64,6 +65,27 @@ void move_bodies(World& world) {
   }
 }
 
+/// Below this nothing moves (m/s, and rad/s times radius): far above round-off, and a nanometre a
+/// second.
+constexpr double rest_speed = 1e-9;
+/// After this long (s) at rest a scene stays at rest: all its forces are constant.
+constexpr double rest_time = 0.5;
+
+bool is_resting(const World& world) {
+  return static_cast<double>(world.resting_steps) * world.step_length >= rest_time;
+}
+
+void note_rest(const Scene& scene, World& world) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (world.velocity[b].cwiseAbs().maxCoeff() > rest_speed ||
+        std::abs(world.angular_velocity[b]) * scene.bodies[b].radius > rest_speed) {
+      world.resting_steps = 0;
+      return;
+    }
+  }
+  ++world.resting_steps;
+}
+
 class Stopwatch {
  public:
   explicit Stopwatch(StageTimes* times) : times_(times) {
@@ -103,6 +125,10 @@ void detect(const Scene& scene, World& world, StageTimes* times) {
 }
 
 StepStatus step(const Scene& scene, World& world, StageTimes* times) {
+  if (is_resting(world)) {
+    ++world.step;
+    return StepStatus::ok;
+  }
   Stopwatch watch(times);
   apply_forces(scene, world);
   watch.lap(Stage::apply_forces);
@@ -114,6 +140,7 @@ StepStatus step(const Scene& scene, World& world, StageTimes* times) {
   solve(scene, world, kick_length(world));
   watch.lap(Stage::solve);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
+  note_rest(scene, world);
   measure_energy(scene, world);
   watch.lap(Stage::diagnose);
   move_bodies(world);

@@ -92,6 +92,9 @@ struct World {
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;
 
+  std::int64_t resting_steps =
+      0;  // steps for which nothing has moved faster than step.cpp's rest_speed
+
   std::vector<Contact> contacts;  // sorted by (a, b, wall)
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite

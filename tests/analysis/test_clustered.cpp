@@ -52,6 +52,7 @@ TEST(SignFlip, AgreesWithCountingEveryPattern) {
 // Where the exact sum is out of reach, random flips come close to what it would have been.
 TEST(SignFlip, MonteCarloAgreesWithTheNormalLimit) {
   std::vector<std::int64_t> scores;
+  scores.reserve(60000);
   for (int i = 0; i < 60000; ++i) scores.push_back(i % 2 == 0 ? 3 : -2);
   for (int i = 0; i < 250; ++i) scores[static_cast<size_t>(i)] = -3;
   scores.resize(59000);

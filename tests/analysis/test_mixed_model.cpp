@@ -28,19 +28,20 @@ TEST(Laplace, IsTheBinomialDevianceWithoutRandomEffects) {
 TEST(Laplace, ApproachesTheIntegralAsAnswersGrow) {
   double error_before = 0.0;
   for (int answers : {100, 1000, 10000}) {
+    const int pinch = answers * 7 / 10;
     MixedData data;
     data.demonstrations = 1;
     data.patterns.push_back(
-        {{{0, static_cast<std::uint16_t>(answers), static_cast<std::uint16_t>(answers * 7 / 10)}},
-         1.0});
+        {{{0, static_cast<std::uint16_t>(answers), static_cast<std::uint16_t>(pinch)}}, 1.0});
     const MixedParameters parameters{0.4, 0.7, 0.5};
     // Only s = 0.7 u + 0.5 v enters the likelihood, and it is normal with this standard deviation.
     const double sd = std::hypot(0.7, 0.5);
-    const double peak = minus_two_log_likelihood(answers, answers * 7 / 10, std::log(0.7 / 0.3));
+    const double peak = minus_two_log_likelihood(answers, pinch, std::log(0.7 / 0.3));
     double integral = 0.0;
     const double h = 1e-4;
-    for (double z = -8.0; z <= 8.0; z += h) {
-      const double d = minus_two_log_likelihood(answers, answers * 7 / 10, 0.4 + sd * z);
+    for (int i = -80000; i <= 80000; ++i) {
+      const double z = h * i;
+      const double d = minus_two_log_likelihood(answers, pinch, 0.4 + sd * z);
       integral += h * std::exp(-0.5 * (d - peak) - 0.5 * z * z) / std::sqrt(2.0 * M_PI);
     }
     const double exact = peak - 2.0 * std::log(integral);
@@ -75,6 +76,7 @@ TEST(MixedModel, RecoversWhatItWasSimulatedWith) {
   constexpr int participants = 300;
   constexpr int demonstrations = 20;
   std::vector<double> v;
+  v.reserve(demonstrations);
   for (int j = 0; j < demonstrations; ++j) v.push_back(gsl_ran_gaussian(rng.get(), 0.7));
   MixedData data;
   data.demonstrations = demonstrations;

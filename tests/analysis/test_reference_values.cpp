@@ -66,6 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Multiplicity, HolmAndBenjaminiHochbergOfTheThesis) {
   std::vector<double> p;
+  p.reserve(test::thesis_cable.size());
   for (int cable : test::thesis_cable)
     p.push_back(make_row("x", {16 - cable, cable}, 0.05).p_chi_square);
   const std::vector<double> by_holm = holm(p);
@@ -95,6 +96,7 @@ TEST(Multiplicity, AdjustmentNeverLowersAPValueNorPassesOne) {
 
 TEST(Heterogeneity, OfTheThesis) {
   std::vector<Counts> counts;
+  counts.reserve(test::thesis_cable.size());
   for (int cable : test::thesis_cable) counts.push_back({16 - cable, cable});
   const Heterogeneity all = heterogeneity(counts);
   expect_digits(all.chi_square.value, 56.0 / 3.0);

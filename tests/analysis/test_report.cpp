@@ -29,6 +29,7 @@ const TableBlock& table_named(const Document& document, const std::string& capti
 
 std::vector<std::string> texts(const std::vector<TextCell>& row) {
   std::vector<std::string> result;
+  result.reserve(row.size());
   for (const TextCell& cell : row) result.push_back(cell.text);
   return result;
 }
@@ -100,7 +101,7 @@ TEST(ReportJson, HoldsTheDocumentedKeys) {
       }
     }
   }
-  const auto holds = [&](const char* object, std::vector<const char*> keys) {
+  const auto holds = [&](const char* object, const std::vector<const char*>& keys) {
     for (const char* key : keys)
       EXPECT_TRUE(document[object].contains(key)) << object << " " << key;
   };
@@ -124,7 +125,7 @@ void check_nulls(const json& value, const std::string& place) {
                   !value[key + "_reason"].get<std::string>().empty())
           << place << "/" << key;
     }
-    check_nulls(child, place + "/" + key);
+    check_nulls(child, fmt::format("{}/{}", place, key));
   }
 }
 

@@ -147,6 +147,21 @@ TEST_P(EveryCodec, OnlyChangesMayBeConverted) {
   EXPECT_EQ(testing::bytes_of(folder.file("patched")), testing::bytes_of(folder.file("whole")));
 }
 
+TEST_P(EveryCodec, TheFirstFrameIsConvertedWhole) {
+  // A canvas that has drawn before names only what it changed; a new clip knows nothing of that.
+  const Folder folder;
+  for (const bool nothing : {false, true}) {
+    VideoWriter writer(folder.file(nothing ? "nothing" : "whole"), settings(GetParam()));
+    if (nothing) {
+      writer.add(drawn()[0].data(), {});
+    } else {
+      writer.add(drawn()[0].data());
+    }
+    writer.finish();
+  }
+  EXPECT_EQ(testing::bytes_of(folder.file("nothing")), testing::bytes_of(folder.file("whole")));
+}
+
 INSTANTIATE_TEST_SUITE_P(Video, EveryCodec, ::testing::Values(Codec::h264, Codec::vp9, Codec::ffv1),
                          [](const auto& codec) { return std::string(to_string(codec.param)); });
 

@@ -26,7 +26,7 @@ inline Body body(const std::string& name, BodyKind kind, double x, double y, dou
 }
 
 /// A cable from the world (or the centre of a body, where index >= 0) over wraps to the like.
-inline Cable cable(Attachment start, std::vector<Wrap> wraps, Attachment end,
+inline Cable cable(const Attachment& start, std::vector<Wrap> wraps, const Attachment& end,
                    double half_width = 0.05) {
   Cable c;
   c.name = "cable";
@@ -53,6 +53,7 @@ inline Scene load_chain(int pulleys, double m1, double m2, double pulley_mass,
   scene.bodies.push_back(body("left", BodyKind::free, -R, -3.0, 0.2, m1));
   const double x_last = spacing * (pulleys - 1);
   std::vector<Wrap> wraps;
+  wraps.reserve(static_cast<std::size_t>(pulleys));
   for (int i = 0; i < pulleys; ++i) {
     // The first and last wrap over the top; those between alternate, which needs an odd number.
     wraps.push_back({2 + i, i % 2 == 0 ? -1 : 1, 0});

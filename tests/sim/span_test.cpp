@@ -43,7 +43,8 @@ INSTANTIATE_TEST_SUITE_P(Speeds, Bullet,
                                             ::testing::Values(0.0, 0.7, -1.3),
                                             ::testing::Values(0.0, 0.05, 0.5)));
 
-// Far faster than a step can follow (417 m a step, 4167 times the body's size): the cable still catches it.
+// Far faster than a step can follow (417 m a step, 4167 times the body's size): the cable still
+// catches it.
 TEST(Spans, CatchesWhatCrossesWithinOneStep) {
   for (const double speed : {1e3, 1e4, 1e5}) {
     Scene scene = shot(speed, 0.3, 0.05, 0.1);

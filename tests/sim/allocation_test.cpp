@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A warm step allocates nothing. (The sanitizers bring allocators of their own, so they skip this.)
+
+#include "tests/sim/scenes.h"
+
+#ifndef __SANITIZE_ADDRESS__
+
+#include <cstdlib>
+#include <new>
+
+namespace {
+long allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace pinchlab::testing {
+namespace {
+
+long allocations_of_warm_steps(const Scene& scene) {
+  World world = make_world(scene, Method::pinch);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+  const long before = allocations;
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+  return allocations - before;
+}
+
+TEST(Allocation, NoneOnceWarmWithRollingCables) {
+  EXPECT_EQ(allocations_of_warm_steps(load_chain(21, 3.0, 2.0, 1.0)), 0);
+}
+
+TEST(Allocation, NoneOnceWarmWithSlippingCables) {
+  EXPECT_EQ(allocations_of_warm_steps(load_chain(21, 3.0, 2.0, 1.0, 0.05)), 0);
+}
+
+TEST(Allocation, NoneOnceWarmWithPinches) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 5.0));
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, 0.85, 0.25, 2.0));
+  scene.bodies.push_back(body("left", BodyKind::free, -0.55, -2.0, 0.2, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, 0.55, -2.0, 0.2, 1.0));
+  scene.bodies[1].driven_angular_velocity = -1.0;
+  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
+  EXPECT_EQ(allocations_of_warm_steps(scene), 0);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
+
+#endif
