@@ -87,7 +87,8 @@ class StopOnSignal {
     });
   }
   ~StopOnSignal() {
-    ::pthread_kill(waiter_.native_handle(), SIGTERM);
+    // The waiter has SIGTERM blocked and takes it by sigwait.
+    ::pthread_kill(waiter_.native_handle(), SIGTERM);  // NOLINT(bugprone-bad-signal-to-kill-thread)
     waiter_.join();
   }
   StopOnSignal(const StopOnSignal&) = delete;

@@ -95,6 +95,7 @@ std::map<std::string, std::string> read_texts(const json& document, const std::s
   std::map<std::string, std::string> texts = delivered_texts(language);
   const std::map<std::string, std::string> english = delivered_texts("en");
   std::vector<std::string> known;
+  known.reserve(english.size());
   for (const auto& [key, text] : english) {
     known.push_back(key);
   }

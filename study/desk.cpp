@@ -448,7 +448,7 @@ std::string Desk::save(const std::string& token,
   try {
     entry = find(token);
   } catch (const Refused&) {
-    const std::string code = saved_code(id, secret);
+    std::string code = saved_code(id, secret);
     if (code.empty()) {
       throw;
     }
