@@ -107,7 +107,7 @@ TEST(Spans, ChatterIsHarmless) {
     }
     ASSERT_LT(world.diagnostics.cable_length_error, 1e-12);
   }
-  SUCCEED() << changes << " changes";
+  EXPECT_GT(changes, 10) << "the link does come and go";
 }
 
 TEST(Spans, WallsHoldBodiesFromBothSides) {
