@@ -27,7 +27,7 @@ bool check_finite(const Scene& scene, World& world) {
     }
     world.failure = fmt::format(
         "step {} (t = {} s): velocity of body '{}' is not finite{}; method {}", world.step,
-        world.time(), scene.bodies[b].name, cables, to_string(world.method));
+        world.time(), scene.bodies[b].name, cables, to_string(world.configuration.method));
     return false;
   }
   return true;

@@ -18,7 +18,7 @@ bool can_move(const Scene& scene, int body) {
 
 double full_width(const World& world) {
   double width = 0.0;
-  if (world.method != Method::cable) {
+  if (world.configuration.method != Method::cable) {
     for (const CableState& cable : world.cables) width = std::max(width, 2.0 * cable.half_width);
   }
   return width;
@@ -44,7 +44,7 @@ double normal_speed(const World& world, const Contact& contact) {
 
 /// Whether the bodies press what lies between them: they did in the last step, or will in the next.
 bool presses(const World& world, const Contact& contact, double gap) {
-  if (world.method == Method::pinch_no_contact) return contact.gap <= gap;
+  if (world.configuration.method == Method::pinch_no_contact) return contact.gap <= gap;
   return contact.touching || contact.gap <= gap * (1.0 + 1e-12) ||
          contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
 }
@@ -92,7 +92,7 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
   };
   constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
   const double width = 2.0 * cable.half_width;
-  if (world.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
+  if (world.configuration.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
     contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
   }
@@ -101,7 +101,8 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
     const double arc = least + k * turn;
     if (is_other(before) && arc < near_end) continue;
     if (is_other(after) && link.wrap - arc < near_end) continue;
-    if (world.method == Method::pinch) contact.target = std::max(contact.target, width);
+    if (world.configuration.method == Method::pinch)
+      contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
     if (arc >= 0.0 && arc <= link.wrap && presses(world, contact, width)) {
       found.push_back({cable_index, static_cast<int>(i), arc, other});
@@ -142,7 +143,8 @@ void assign_contacts(World& world) {
       to.contact = -1;
       Contact* contact = find_contact(world, from.body, to.body);
       if (contact == nullptr) continue;
-      if (world.method == Method::pinch) contact->target = std::max(contact->target, width);
+      if (world.configuration.method == Method::pinch)
+        contact->target = std::max(contact->target, width);
       contact->pinch_linked = true;
       const int index = static_cast<int>(contact - world.contacts.data());
       ++contact->pinch_points;
@@ -217,7 +219,7 @@ void find_contacts(const Scene& scene, World& world) {
 }
 
 void configure_pinches(const Scene& scene, World& world) {
-  if (world.method == Method::cable) return;
+  if (world.configuration.method == Method::cable) return;
   remove_open_pinches(world);
   if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
 

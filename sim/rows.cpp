@@ -39,8 +39,9 @@ Row segment_row(const World& world, const Link& from, const Link& to, const Segm
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
   // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
   // what is left of a segment is then at least nothing.
-  const double rest =
-      world.method == Method::cable ? std::max(segment.rest_length, 0.0) : segment.rest_length;
+  const double rest = world.configuration.method == Method::cable
+                          ? std::max(segment.rest_length, 0.0)
+                          : segment.rest_length;
   row.bias = -(segment.length - rest) / world.step_length;
   return row;
 }
@@ -70,7 +71,8 @@ void bound_pinch_friction(const Scene& scene, const World& world, Row& row) {
       contact ? world.scratch.normal_row_of_contact[static_cast<std::size_t>(middle.contact)] : -1;
   const bool clamped =
       normal >= 0 && world.scratch.rows[static_cast<std::size_t>(normal)].diagonal == 0.0;
-  if (row.friction == infinity && (clamped || world.method == Method::pinch_no_contact)) {
+  if (row.friction == infinity &&
+      (clamped || world.configuration.method == Method::pinch_no_contact)) {
     row.on = true;  // held by axles that do not give way, or (thesis) by the joint alone
     row.slip = Slip::stick;
     return;
@@ -134,7 +136,7 @@ void make_segment_rows(const Scene& scene, World& world, double kick) {
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
       }
-      if (world.method == Method::cable && segment.pinched) {
+      if (world.configuration.method == Method::cable && segment.pinched) {
         turn_to_centre_line(world, from, to, segment, row);
       }
       // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.

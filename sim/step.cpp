@@ -141,14 +141,14 @@ StepStatus step(const Scene& scene, World& world, StageTimes* times) {
   watch.lap(Stage::solve);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
   note_rest(scene, world);
-  measure_energy(scene, world);
+  if (world.configuration.diagnostics) measure_energy(scene, world);
   watch.lap(Stage::diagnose);
   move_bodies(world);
   ++world.step;
   watch.lap(Stage::move_bodies);
   detect(scene, world, times);
   watch = Stopwatch(times);
-  measure_cables(scene, world);
+  if (world.configuration.diagnostics) measure_cables(scene, world);
   watch.lap(Stage::diagnose);
   return StepStatus::ok;
 }

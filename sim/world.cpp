@@ -250,9 +250,10 @@ const char* to_string(Method method) {
   return "unknown";
 }
 
-World make_world(const Scene& scene, Method method) {
+World make_world(const Scene& scene, Configuration configuration) {
   World world;
-  world.method = Method::pinch;  // a scene is judged by the full model, whatever it is run with
+  // A scene is judged by the full model, whatever it is run with.
+  world.configuration = Method::pinch;
   world.step_length = step_length(scene);
   for (const Body& body : scene.bodies) {
     world.position.push_back(body.position);
@@ -277,8 +278,8 @@ World make_world(const Scene& scene, Method method) {
   find_contacts(scene, world);
   configure_pinches(scene, world);
   refuse_squeezed_wraps(scene, world);
-  if (method != Method::pinch) {
-    world.method = method;
+  world.configuration = configuration;
+  if (configuration.method != Method::pinch) {
     world.cables.clear();
     for (std::size_t c = 0; c < scene.cables.size(); ++c) {
       world.cables.push_back(make_cable(scene, world, c));

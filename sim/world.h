@@ -4,9 +4,11 @@
 // go.
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "sim/configuration.h"
 #include "sim/contact.h"
 #include "sim/scene.h"
 #include "sim/scratch.h"
@@ -70,19 +72,23 @@ double head_material(const CableState& cable, std::size_t link, double body_angl
 
 enum class StepStatus { ok, not_finite };
 
-/// What the last step was like. Lengths in m, at the positions that the step ended with.
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// What the last step was like. Lengths in m, at the positions that the step ended with; they and
+/// the energy are not_measured unless Configuration::diagnostics asks for them.
 struct Diagnostics {
-  double largest_stretch = 0.0;  // m, of a segment beyond its rest length (and elastic strain)
-  double largest_gap_violation = 0.0;  // m, below a contact's target
-  double energy = 0.0;                 // J, kinetic + potential + elastic, at the step's start
-  double cable_length_error = 0.0;  // m, sum of wraps and rest lengths against the cables' lengths
-  int active_set_solves = 0;        // in the last step
-  std::int64_t total_solves = 0;    // since the start
-  std::int64_t fallbacks = 0;       // steps whose active set did not settle, since the start
+  double largest_stretch = not_measured;  // m, of a segment beyond rest length and elastic strain
+  double largest_gap_violation = not_measured;  // m, below a contact's target
+  double energy = not_measured;  // J, kinetic + potential + elastic, at the step's start
+  double cable_length_error = not_measured;  // m, sum of wraps and rest lengths against the
+                                             // cables' lengths
+  int active_set_solves = 0;                 // in the last step
+  std::int64_t total_solves = 0;             // since the start
+  std::int64_t fallbacks = 0;  // steps whose active set did not settle, since the start
 };
 
 struct World {
-  Method method = Method::pinch;
+  Configuration configuration;
   double step_length = 0.0;  // s
   std::int64_t step = 0;     // steps done; the time is step * step_length
 
@@ -105,6 +111,6 @@ struct World {
 };
 
 /// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist.
-World make_world(const Scene& scene, Method method);
+World make_world(const Scene& scene, Configuration configuration);
 
 }  // namespace pinchlab

@@ -29,7 +29,9 @@ void add_to_hash(std::uint64_t& hash, double value, double unit) {
 }
 
 Motion play(const Scene& scene, Method method) {
-  World world = make_world(scene, method);
+  Configuration configuration = method;
+  configuration.diagnostics = true;
+  World world = make_world(scene, configuration);
   Motion motion;
   std::vector<std::vector<Vec2>> frames{world.position};
   for (int frame = 1; frame < scene.frame_count; ++frame) {

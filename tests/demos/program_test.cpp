@@ -236,7 +236,7 @@ TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
 TEST(Player, FailureSaysHowToSeeItAgain) {
   Scene scene;
   World world;
-  world.method = Method::cable;
+  world.configuration.method = Method::cable;
   world.failure = "step 1841, cable 3, segment 12: velocity not finite";
   EXPECT_EQ(
       failure_report("demos/03-drop.json", scene, world, 461),

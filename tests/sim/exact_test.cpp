@@ -23,7 +23,7 @@ TEST(Exact, AtwoodMachine) {
   for (const int steps_per_frame : {1, 4}) {
     Scene scene = load_chain(1, m1, m2, pulley);
     scene.steps_per_frame = steps_per_frame;
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     const double y1 = world.position[0].y(), y2 = world.position[1].y();
     run(scene, world, 60 * steps_per_frame);
     EXPECT_NEAR(world.position[0].y() - y1, 0.5 * a, 1e-12);
@@ -42,7 +42,7 @@ TEST(Exact, ChainOfPulleysAtOneStepAFrame) {
   for (const int pulleys : {1, 5, 21, 81}) {
     Scene scene = load_chain(pulleys, 1000.0, 999.0, 0.1);
     scene.steps_per_frame = 1;
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     const double y = world.position[0].y();
     run(scene, world, 60);
     const double inertia = 0.5 * 0.1 * 0.25;
@@ -56,7 +56,7 @@ TEST(Exact, MassRatiosUpToABillion) {
   for (int power = 0; power <= 9; ++power) {
     const double ratio = std::pow(10.0, power);
     Scene scene = load_chain(21, ratio, 0.5 * ratio, 1.0);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     const double y = world.position[0].y();
     run(scene, world, 240);
     const double a = 0.5 * ratio * g / (1.5 * ratio + 21 * 0.125 / (R * R));
@@ -72,7 +72,7 @@ TEST(Exact, CapstanSticksUpToItsRatio) {
       Scene scene =
           load_chain(1, left_heavier ? heavy : light, left_heavier ? light : heavy, 1.0, mu);
       scene.bodies[2].kind = BodyKind::fixed;
-      World world = make_world(scene, Method::pinch);
+      World world = make_world(scene, measured());
       const double y = world.position[0].y();
       run(scene, world, 240);
       const double a = (heavy - k * light) * g / (heavy + k * light) * (left_heavier ? -1.0 : 1.0);
@@ -93,7 +93,7 @@ TEST(Exact, SlippingAtwoodAtOneStepAFrame) {
   const double k = std::exp(mu * pi);
   Scene scene = load_chain(1, m1, m2, pulley, mu);
   scene.steps_per_frame = 1;
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const double y = world.position[1].y();
   run(scene, world, 60);
   const double a = g * (m2 - k * m1) / (m2 + k * m1), t1 = m1 * (g + a);
@@ -106,7 +106,7 @@ TEST(Exact, SlippingAtwoodAtOneStepAFrame) {
 
 TEST(Exact, FrictionlessPulleyDoesNotTurn) {
   Scene scene = load_chain(3, 1.0, 2.0, 1.0, 0.0);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const double y = world.position[1].y();
   run(scene, world, 240);
   EXPECT_NEAR(y - world.position[1].y(), 0.5 * g / 3.0, 1e-12);
@@ -126,7 +126,7 @@ Scene yo_yo() {
 
 TEST(Exact, YoYo) {
   Scene scene = yo_yo();
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   EXPECT_NEAR(world.cables[0].links[1].wrap, 3.25 * 2.0 * pi, 1e-9);
   const double y = world.position[0].y();
   run(scene, world, 240);
@@ -148,7 +148,7 @@ TEST(Exact, BlockAndTackleOfTwoFalls) {
   for (auto& b : scene.bodies) b.cable_friction = 0.0;
   // World anchor, down round the moving sheave (which is the load), up over the fixed one, down.
   scene.cables.push_back(cable(at(-R, 0.0), {{0, 1, 0}, {1, -1, 0}}, on(2)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const double y = world.position[0].y(), z = world.position[2].y();
   run(scene, world, 120);
   const double a = g * (n * counter - load) / (load + n * n * counter);
@@ -162,7 +162,7 @@ TEST(Exact, BlockAndTackleInBalance) {
   scene.bodies.push_back(body("top", BodyKind::fixed_axle, 2.0 * R, 0.0, 0.5, 1.0));
   scene.bodies.push_back(body("counterweight", BodyKind::free, 3.0 * R, -2.0, 0.3, 1.0));
   scene.cables.push_back(cable(at(-R, 0.0), {{0, 1, 0}, {1, -1, 0}}, on(2)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240);
   for (std::size_t s = 1; s <= 3; ++s) EXPECT_NEAR(tension(world, s), g, 1e-10);
   EXPECT_LT(world.velocity[0].norm(), 1e-12);
@@ -184,7 +184,7 @@ TEST(Exact, BeltTransmitsUpToItsTorqueLimit) {
     belt.axial_stiffness = 1e6;
     belt.slack = -2.0 * 3.0 * t0 / belt.axial_stiffness;
     scene.cables.push_back(belt);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     run(scene, world, 480);
     const double turned = world.angle[1];
     if (share < 1.0) {
@@ -206,7 +206,7 @@ TEST(Exact, BeltKeepsTheRatioOfSpeeds) {
   Cable belt = cable({}, {{0, 1, 0}, {1, 1, 0}}, {});
   belt.closed = true;
   scene.cables.push_back(belt);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 2400);
   EXPECT_NEAR(world.angular_velocity[1], 2.0 * 1.0 / 0.5, 1e-9);
   EXPECT_NEAR(world.angle[1], world.angle[0] * 2.0, 1e-9);
@@ -220,7 +220,7 @@ TEST(Exact, ElasticCableHangsByHookesLaw) {
   Cable c = cable(at(0.0, 0.0), {}, on(0));
   c.axial_stiffness = 500.0;
   scene.cables.push_back(c);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240 * 20);
   const double strain = 3.0 * g / 500.0;
   EXPECT_NEAR(-world.position[0].y(), 2.0 * (1.0 + strain), 1e-9);
@@ -235,7 +235,7 @@ TEST(Exact, RepeatedCablesShareTheLoad) {
   for (int i = 0; i < 3; ++i) {
     scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0)));
   }
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(tension(world, 1, c), g, 1e-6);
   EXPECT_NEAR(world.position[0].y(), -2.0, 1e-12);
@@ -249,7 +249,7 @@ TEST(Exact, PendulumOnAPegRisesToItsOldHeight) {
       body("bob", BodyKind::free, -length * std::sin(start), -length * std::cos(start), 0.05, 1.0));
   scene.bodies.push_back(body("peg", BodyKind::fixed, 0.02, -1.0, 0.01, 1.0));
   scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 1e-3));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const double height = world.position[0].y();
   double highest = -10.0;
   bool wrapped = false;
@@ -269,7 +269,7 @@ TEST(Exact, RollerRestsOnTheWrapAndLeavesExactlyTheCableBetween) {
   scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 1.0));
   scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, 0.5 + 0.25 + 0.1, 0.25, 2.0));
   scene.cables.push_back(cable(at(-1.0, -2.0), {{0, -1, 0}}, at(1.0, -2.0)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 2400);
   ASSERT_EQ(world.contacts.size(), 1u);
   EXPECT_NEAR(world.contacts[0].gap, 0.1, 1e-13);
@@ -288,7 +288,7 @@ TEST(Exact, ContactForceIsTheWeightsComponent) {
   roller.rail_axis = axis;
   scene.bodies.push_back(roller);
   scene.cables.push_back(cable(at(-1.0, -2.0), {{0, -1, 0}}, at(1.0, -2.0)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240);
   ASSERT_EQ(world.contacts.size(), 1u);
   EXPECT_NEAR(world.contacts[0].normal_force, 2.0 * g * std::cos(beta), 1e-9);

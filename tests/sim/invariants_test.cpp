@@ -28,7 +28,7 @@ Scene busy_scene(double friction) {
 TEST(Invariants, CableLengthOverAHundredThousandSteps) {
   for (const double friction : {infinity, 0.2, 0.0}) {
     Scene scene = busy_scene(friction);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     for (int i = 0; i < 100000; ++i) {
       ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
       ASSERT_LT(world.diagnostics.cable_length_error, 1e-12)
@@ -41,7 +41,7 @@ TEST(Invariants, CableLengthOverAHundredThousandSteps) {
 TEST(Invariants, SlipNeverCreatesEnergy) {
   for (const double friction : {0.0, 0.02, 0.05, 0.1, 0.2, 0.4}) {
     Scene scene = load_chain(3, 1.0, 3.0, 1.0, friction);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     run(scene, world, 1);
     double energy = world.diagnostics.energy;
     for (int i = 0; i < 240; ++i) {
@@ -58,7 +58,7 @@ TEST(Invariants, MoreFrictionNeverMeansMoreSlip) {
   for (int i = 0; i < 50; ++i) {
     const double friction = 0.01 * i;
     Scene scene = load_chain(1, 1.0, 3.0, 1.0, friction);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     const double y = world.position[1].y();
     run(scene, world, 120);
     const double slipped = (y - world.position[1].y()) + world.angle[2] * 0.55;
@@ -78,7 +78,7 @@ TEST(Invariants, EnergyNeverRisesWhereBodiesHitAndRest) {
         body(fmt::format("roller {}", i), BodyKind::rail, 0.0, 1.2 + i, 0.25, 1.0));
   }
   scene.cables.push_back(cable(at(-1.0, -2.0), {{0, -1, 0}}, at(1.0, -2.0)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 1);
   double energy = world.diagnostics.energy;
   for (int i = 0; i < 480; ++i) {
@@ -99,7 +99,7 @@ TEST(Invariants, ConservesMomentumWithoutForces) {
   scene.bodies[2].velocity = {-2.0, 0.4};
   scene.bodies[1].angular_velocity = 3.0;
   scene.cables.push_back(cable({0, {0.2, 0.3}}, {{1, 1, 0}}, {2, {-0.1, 0.2}}));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const auto momenta = [&] {
     Vec2 linear = Vec2::Zero();
     double angular = 0.0;
@@ -135,7 +135,7 @@ Scene mirrored(Scene scene) {
 
 TEST(Invariants, MirrorImageMovesAsTheMirrorImage) {
   const Scene scene = busy_scene(0.3), image = mirrored(scene);
-  World world = make_world(scene, Method::pinch), other = make_world(image, Method::pinch);
+  World world = make_world(scene, measured()), other = make_world(image, measured());
   for (int i = 0; i < 120; ++i) {
     run(scene, world, 1);
     run(image, other, 1);
@@ -149,7 +149,7 @@ TEST(Invariants, MirrorImageMovesAsTheMirrorImage) {
 
 TEST(Invariants, SameBitsEveryRun) {
   const Scene scene = busy_scene(0.3);
-  World first = make_world(scene, Method::pinch), second = make_world(scene, Method::pinch);
+  World first = make_world(scene, measured()), second = make_world(scene, measured());
   run(scene, first, 2400);
   run(scene, second, 2400);
   for (std::size_t b = 0; b < first.position.size(); ++b) {
@@ -160,7 +160,7 @@ TEST(Invariants, SameBitsEveryRun) {
 
 TEST(Invariants, ReportingVelocitiesDoesNotChangeTheRun) {
   const Scene scene = busy_scene(0.3);
-  World first = make_world(scene, Method::pinch), second = make_world(scene, Method::pinch);
+  World first = make_world(scene, measured()), second = make_world(scene, measured());
   for (int i = 0; i < 480; ++i) {
     run(scene, first, 1);
     run(scene, second, 1);
@@ -172,7 +172,7 @@ TEST(Invariants, ReportingVelocitiesDoesNotChangeTheRun) {
 
 TEST(Invariants, NotFiniteStopsWithPlaceAndTime) {
   Scene scene = load_chain(1, 1.0, 2.0, 1.0);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 10);
   world.velocity[1].x() = std::nan("");
   EXPECT_EQ(step(scene, world), StepStatus::not_finite);
@@ -217,7 +217,7 @@ Scene random_scene(int seed) {
 TEST_P(RandomScene, StaysSound) {
   for (const Method method : {Method::pinch, Method::pinch_no_contact, Method::cable}) {
     const Scene scene = random_scene(GetParam());
-    World world = make_world(scene, method);
+    World world = make_world(scene, measured(method));
     for (int i = 0; i < 240 * 4; ++i) {
       ASSERT_EQ(step(scene, world), StepStatus::ok) << to_string(method) << ": " << world.failure;
       if (method != Method::pinch) continue;
@@ -236,7 +236,7 @@ TEST(RandomScenes, FallBackRarely) {
   std::int64_t steps = 0, fallbacks = 0;
   for (int seed = 1; seed <= 60; ++seed) {
     const Scene scene = random_scene(seed);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     run(scene, world, 240 * 4);
     steps += world.step;
     fallbacks += world.diagnostics.fallbacks;

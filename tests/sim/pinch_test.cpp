@@ -47,7 +47,7 @@ TEST_P(Stack, OfTenPinchingBodiesComesToRest) {
   Scene scene = tower(10, true);
   scene.steps_per_frame = GetParam();
   scene.bodies.back().linear_drag = scene.bodies.back().angular_drag = 5.0;
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const int second = 60 * GetParam();
   for (int i = 0; i < 10 * second; ++i) {
     ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(StepsPerFrame, Stack, ::testing::Values(1, 2, 4, 8));
 
 TEST(Pinch, TowerOnAWrapPressesWithItsWholeWeight) {
   Scene scene = tower(10, false);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240 * 4);
   ASSERT_EQ(world.contacts.size(), 10u);
   for (const Contact& contact : world.contacts) {
@@ -87,7 +87,7 @@ TEST(Pinch, NeverSqueezesTheCableWhileFalling) {
     Scene scene = tower(1, false);
     scene.bodies[1].position.y() = 6.0;  // hits at 10 m/s
     scene.steps_per_frame = steps_per_frame;
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     for (int i = 0; i < 120 * steps_per_frame; ++i) {
       ASSERT_EQ(step(scene, world), StepStatus::ok);
       ASSERT_GE(least_gap(world, scene, 0, 1), 2.0 * w - 1e-12);
@@ -98,7 +98,7 @@ TEST(Pinch, NeverSqueezesTheCableWhileFalling) {
 
 TEST(Pinch, WithoutContactBodiesSinkIntoTheCableButNotIntoEachOther) {
   Scene scene = tower(1, false);
-  World world = make_world(scene, Method::pinch_no_contact);
+  World world = make_world(scene, measured(Method::pinch_no_contact));
   run(scene, world, 480);
   EXPECT_NEAR(least_gap(world, scene, 0, 1), 0.0, 1e-12);
   EXPECT_EQ(world.cables[0].links.size(), 5u);
@@ -106,7 +106,7 @@ TEST(Pinch, WithoutContactBodiesSinkIntoTheCableButNotIntoEachOther) {
 
 TEST(Pinch, PlainCableJointsDoNotSeeTheRoller) {
   Scene scene = tower(1, false);
-  World world = make_world(scene, Method::cable);
+  World world = make_world(scene, measured(Method::cable));
   run(scene, world, 480);
   EXPECT_NEAR(least_gap(world, scene, 0, 1), 0.0, 1e-12);
   EXPECT_EQ(world.cables[0].links.size(), 3u);
@@ -115,7 +115,7 @@ TEST(Pinch, PlainCableJointsDoNotSeeTheRoller) {
 TEST(Pinch, SeveralCablesShareOneContact) {
   for (const int cables : {2, 5, 10}) {
     Scene scene = tower(1, false, cables);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     run(scene, world, 480);
     ASSERT_EQ(world.contacts.size(), 1u);
     EXPECT_EQ(world.contacts[0].pinch_points, cables);
@@ -128,7 +128,7 @@ TEST(Pinch, SeveralCablesShareOneContact) {
 TEST(Pinch, OnEveryTurnOfAWindingAtOnce) {
   Scene scene = tower(1, false);
   scene.cables[0].wraps[0].extra_turns = 9;
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 480);
   // The cable lies over the drum's crown ten times: ten middle links, eleven arcs.
   EXPECT_EQ(world.cables[0].links.size(), 2u + 11u + 10u);
@@ -147,7 +147,7 @@ TEST(Pinch, BodyRestingOnTwoWrappedBodies) {
   scene.bodies.push_back(body("roller", BodyKind::free, 0.0, 1.2, 0.4, 2.0));
   scene.cables.push_back(cable(at(-2.5, -2.0), {{0, -1, 0}, {1, -1, 0}}, at(2.5, -2.0)));
   scene.cables[0].slack = 0.6;
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   for (int i = 0; i < 240 * 5; ++i) {
     run(scene, world, 1);
     ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-12) << i;
@@ -168,7 +168,7 @@ TEST(Pinch, BodyRestingOnTwoWrappedBodies) {
 
 TEST(Pinch, MiddleLinkDoesNotChangeTheCable) {
   Scene scene = tower(1, false);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   double before = 0.0;
   for (const Link& link : world.cables[0].links) before += link.radius * link.wrap;
   run(scene, world, 240);
@@ -189,7 +189,7 @@ TEST(Pinch, RollsOverAWrapThroughAllKindsOfPinch) {
   Body roller = body("roller", BodyKind::free, -1.7, 0.8, 0.164, 1.0);
   scene.bodies.push_back(roller);
   scene.cables.push_back(cable(at(-2.1, 0.95), {{1, 1, 0}, {0, -1, 0}}, at(2.0, -1.1)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   bool middle = false, before = false, behind = false;
   for (int i = 0; i < 60 * 16 * 2 && world.position[1].x() < 1.2; ++i) {
     ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
@@ -222,7 +222,7 @@ TEST(Pinch, DrivenRollerPullsWithItsFriction) {
   scene.bodies[1].cable_friction = mu;
   scene.bodies[1].driven_angular_velocity = -50.0;
   scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   const double y = world.position[2].y();
   run(scene, world, 240);
   // The drum is frictionless, so the roller's mu N moves the two loads alone: a = mu N / (2 m).
@@ -244,7 +244,7 @@ TEST(Pinch, SlippingCableUnderARollerTurnsTheDrum) {
   scene.bodies[1].cable_friction = 0.3;
   scene.bodies[1].driven_angular_velocity = -10.0;
   scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   double last = 0.0;
   for (int i = 0; i < 60; ++i) {
     run(scene, world, 1);

@@ -14,6 +14,13 @@ namespace pinchlab::testing {
 
 constexpr double g = 9.81;  // m/s^2, the default gravity
 
+/// The method, with lengths, gaps and energy measured at each step.
+inline Configuration measured(Method method = Method::pinch) {
+  Configuration configuration = method;
+  configuration.diagnostics = true;
+  return configuration;
+}
+
 inline Body body(const std::string& name, BodyKind kind, double x, double y, double radius,
                  double mass) {
   Body b;

@@ -23,7 +23,7 @@ class Bullet : public ::testing::TestWithParam<std::tuple<double, double, double
 TEST_P(Bullet, NeverPassesACable) {
   const auto [speed, offset, slack] = GetParam();
   Scene scene = shot(speed, offset, 0.05, slack);
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   // The cable reaches at most this far up: an ellipse about its ends.
   const double half = 0.5 * (4.0 + slack), highest = std::sqrt(half * half - 4.0) + 0.1;
   const double energy = 0.5 * 0.1 * speed * speed;
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, Bullet,
 TEST(Spans, CatchesWhatCrossesWithinOneStep) {
   for (const double speed : {1e3, 1e4, 1e5}) {
     Scene scene = shot(speed, 0.3, 0.05, 0.1);
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     for (int i = 0; i < 3 && world.position[0].y() < 0.0; ++i) run(scene, world, 1);
     ASSERT_GT(world.position[0].y(), 0.0);
     ASSERT_EQ(world.cables[0].links.size(), 3u);
@@ -61,7 +61,7 @@ TEST(Spans, TheCableGoesRoundTheSideThatTheBodyCameFrom) {
     Scene scene = shot(5.0, 0.3, 0.1, 0.1);
     scene.bodies[0].position.y() = side;
     scene.bodies[0].velocity.y() = -5.0 * side;
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     for (int i = 0; i < 240 && world.cables[0].links.size() == 2; ++i) run(scene, world, 1);
     ASSERT_EQ(world.cables[0].links.size(), 3u);
     EXPECT_EQ(world.cables[0].links[1].orientation, side > 0.0 ? 1 : -1);
@@ -73,7 +73,7 @@ TEST(Spans, ASpanThatSweepsOntoAFixedBodyWrapsIt) {
   scene.bodies.push_back(body("bob", BodyKind::free, -1.5, -1.0, 0.1, 1.0));
   scene.bodies.push_back(body("peg", BodyKind::fixed, 0.1, -0.8, 0.05, 1.0));
   scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.01));
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   bool wrapped = false, unwrapped = false;
   for (int i = 0; i < 240 * 3; ++i) {
     run(scene, world, 1);
@@ -94,7 +94,7 @@ TEST(Spans, ChatterIsHarmless) {
   scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 2.0, -0.52, 0.5, 1.0));
   scene.cables.push_back(cable(at(-2.0, 0.0), {{2, -1, 0}}, on(1), 0.02));
   scene.bodies[0].restitution = 0.9;
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   int changes = 0;
   std::size_t links = world.cables[0].links.size();
   for (int i = 0; i < 240 * 20; ++i) {
@@ -118,7 +118,7 @@ TEST(Spans, WallsHoldBodiesFromBothSides) {
     ball.velocity = {0.3, -200.0 * side};
     scene.bodies.push_back(ball);
     scene.walls.push_back({Vec2(-50.0, 0.0), Vec2(50.0, 0.0), 0.5, 0.0});
-    World world = make_world(scene, Method::pinch);
+    World world = make_world(scene, measured());
     for (int i = 0; i < 480; ++i) {
       run(scene, world, 1);
       ASSERT_GE(world.position[0].y() * side, 0.1 - 1e-12) << i;
@@ -136,7 +136,7 @@ TEST(Spans, BouncesByItsRestitution) {
   ball.restitution = 0.5;
   scene.bodies.push_back(ball);
   scene.walls.push_back({Vec2(-5.0, 0.0), Vec2(5.0, 0.0), 0.5, 0.0});
-  World world = make_world(scene, Method::pinch);
+  World world = make_world(scene, measured());
   run(scene, world, 240);
   EXPECT_NEAR(world.velocity[0].y(), 1.5, 1e-12);
 }
