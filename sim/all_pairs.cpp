@@ -8,10 +8,9 @@ namespace pinchlab {
 
 namespace {
 
-/// Whether two boxes meet, without a branch for each side.
 bool overlap(const Vec2& low_a, const Vec2& high_a, const Vec2& low_b, const Vec2& high_b) {
-  return (low_b.x() <= high_a.x()) & (low_a.x() <= high_b.x()) & (low_b.y() <= high_a.y()) &
-         (low_a.y() <= high_b.y());
+  return low_b.x() <= high_a.x() && low_a.x() <= high_b.x() && low_b.y() <= high_a.y() &&
+         low_a.y() <= high_b.y();
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ void set_impulse(SweepScratch& s, SweepRow& row, double impulse) {
 }
 
 double unclamped(const SweepScratch& s, const SweepRow& row) {
-  return row.stiffness > 0.0 ? row.impulse - speed(s, row) / row.stiffness : row.impulse;
+  return row.impulse - speed(s, row) / row.stiffness;
 }
 
 /// Most that a friction row may bear at the present force on it.
@@ -112,6 +112,7 @@ double most_friction(const SweepScratch& s, const SweepRow& row) {
 }
 
 void relax(SweepScratch& s, SweepRow& row) {
+  if (row.stiffness == 0.0) return;
   double least = 0.0, most = infinity;
   if (row.clamp == Clamp::friction) {
     most = most_friction(s, row);
