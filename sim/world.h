@@ -110,7 +110,8 @@ struct World {
   double time() const { return static_cast<double>(step) * step_length; }
 };
 
-/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist.
+/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist,
+/// std::invalid_argument where the configuration cannot.
 World make_world(const Scene& scene, Configuration configuration);
 
 }  // namespace pinchlab
