@@ -192,7 +192,8 @@ void sweep(World& world) {
   }
 }
 
-/// Keeps states for the next step, and reports forces.
+}  // namespace
+
 void store_states(World& world, double kick) {
   Scratch& s = world.scratch;
   for (const Row& row : s.rows) {
@@ -223,7 +224,7 @@ void store_states(World& world, double kick) {
     CableState& cable = world.cables[index(run.cable)];
     for (int i = run.first_link;; i = next_link(cable, i)) {
       Link& link = cable.links[index(i)];
-      if (!link.pinch_middle) {
+      if (!link.pinch_middle || run.first_link == run.last_link) {
         link.slip = run.slip;
         link.slip_speed = run.speed;
       }
@@ -238,9 +239,7 @@ void store_states(World& world, double kick) {
   }
 }
 
-}  // namespace
-
-void solve(const Scene& scene, World& world, int part, double kick) {
+void solve_direct(const Scene& scene, World& world, int part, double kick) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
   set.part = part;
@@ -250,9 +249,6 @@ void solve(const Scene& scene, World& world, int part, double kick) {
 
   order_rows(world, part);
   find_runs(scene, world, part_being_solved(world));
-  s.parts.list[index(part)].slides =
-      !set.capstan.runs.empty() ||
-      part_being_solved(world).contacts_begin != part_being_solved(world).contacts_end;
   // All contradicted states flip while that makes progress, then one at a time.
   constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;

@@ -19,13 +19,23 @@ std::size_t index(int i) {
 /// are few more than needed.
 constexpr double skin_share = 0.2;
 
+/// What all bodies of a scene reach beyond their radii.
+struct Margin {
+  double widest = 0.0;  // m, half width of the widest cable
+  double fall = 0.0;    // m, by gravity in one step
+
+  Margin(const Scene& scene, const World& world) {
+    for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
+    fall = scene.gravity.norm() * world.step_length * world.step_length;
+  }
+};
+
 /// How far from its centre a body and the cables round it may reach from the last step to the next.
-double reach_of_body(const Scene& scene, const World& world, double widest, double fall,
-                     std::size_t b) {
+double reach_of_body(const Scene& scene, const World& world, const Margin& margin, std::size_t b) {
   const double radius = scene.bodies[b].radius;
-  if (!can_move(scene.bodies[b])) return radius + widest;
+  if (!can_move(scene.bodies[b])) return radius + margin.widest;
   const double speed = world.velocity[b].cwiseAbs().sum();
-  return 1.02 * radius + widest + 2.0 * (speed * world.step_length + fall);
+  return 1.02 * radius + margin.widest + 2.0 * (speed * world.step_length + margin.fall);
 }
 
 bool holds(const Box& box, const Vec2& point, double reach) {
@@ -106,10 +116,9 @@ void list_span_pairs(const Scene& scene, const World& world, BroadPhase& broad) 
     const CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
-      const Vec2 skin = Vec2::Constant(broad.skin);
-      Box box{segment.tail.cwiseMin(segment.head), segment.tail.cwiseMax(segment.head)};
-      box.low = box.low.cwiseMin(segment.previous_tail).cwiseMin(segment.previous_head) - skin;
-      box.high = box.high.cwiseMax(segment.previous_tail).cwiseMax(segment.previous_head) + skin;
+      Box box = span_box(segment);
+      box.low -= Vec2::Constant(broad.skin);
+      box.high += Vec2::Constant(broad.skin);
       broad.span_boxes.push_back(box);
       const Link& to = cable.links[s];
       const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
@@ -153,31 +162,44 @@ bool spans_in_boxes(const World& world, const BroadPhase& broad) {
 
 }  // namespace
 
+void update_boxes(const Scene& scene, World& world, double skin) {
+  std::vector<Box>& boxes = world.scratch.broad_phase.boxes;
+  boxes.resize(scene.bodies.size());
+  const Margin margin(scene, world);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Vec2 reach = Vec2::Constant(reach_of_body(scene, world, margin, b) +
+                                      (can_move(scene.bodies[b]) ? skin : 0.0));
+    boxes[b] = {world.position[b] - reach, world.position[b] + reach};
+  }
+}
+
+Box span_box(const Segment& segment) {
+  return {segment.tail.cwiseMin(segment.head)
+              .cwiseMin(segment.previous_tail)
+              .cwiseMin(segment.previous_head),
+          segment.tail.cwiseMax(segment.head)
+              .cwiseMax(segment.previous_tail)
+              .cwiseMax(segment.previous_head)};
+}
+
 void find_body_pairs(const Scene& scene, World& world) {
   BroadPhase& broad = world.scratch.broad_phase;
   const std::size_t count = scene.bodies.size();
-  double widest = 0.0;
-  for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
-  const double fall = scene.gravity.norm() * world.step_length * world.step_length;
+  const Margin margin(scene, world);
   bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
   for (std::size_t b = 0; valid && b < count; ++b) {
     valid = !can_move(scene.bodies[b]) || is_still(world, static_cast<int>(b)) ||
-            holds(broad.boxes[b], world.position[b], reach_of_body(scene, world, widest, fall, b));
+            holds(broad.boxes[b], world.position[b], reach_of_body(scene, world, margin, b));
   }
   if (valid) return;
   broad.cables = world.cables.size();
   broad.bodies_changed = true;
   broad.body_pairs.clear();
-  broad.boxes.resize(count);
   if (count == 0) return;
   double radii = 0.0;
   for (const Body& body : scene.bodies) radii += body.radius;
   broad.skin = skin_share * radii / static_cast<double>(count);
-  for (std::size_t b = 0; b < count; ++b) {
-    const double skin = can_move(scene.bodies[b]) ? broad.skin : 0.0;
-    const Vec2 reach = Vec2::Constant(reach_of_body(scene, world, widest, fall, b) + skin);
-    broad.boxes[b] = {world.position[b] - reach, world.position[b] + reach};
-  }
+  update_boxes(scene, world, broad.skin);
   sort_bodies(broad);
   list_body_pairs(scene, broad);
 }

@@ -8,6 +8,8 @@
 
 namespace pinchlab {
 
+struct Segment;
+struct Segment;
 struct World;
 
 struct BodyPair {
@@ -36,6 +38,13 @@ struct BroadPhase {
   std::vector<BodyPair> body_pairs;  // sorted
   std::vector<SpanPair> span_pairs;  // sorted
 };
+
+/// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
+/// step, with `skin` (m) more round those that can move.
+void update_boxes(const Scene& scene, World& world, double skin);
+
+/// Box round a segment where it was a step ago, and is.
+Box span_box(const Segment& segment);
 
 /// The pairs of bodies that may touch within the next step: at least those, and they are kept until
 /// a body leaves its box (neighbour lists with a skin; Verlet 1967).

@@ -114,6 +114,7 @@ void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out)
 
 void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick) {
   Scratch& scratch = world.scratch;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
   scratch.rows.clear();
   scratch.segment_begin.resize(world.cables.size());
   scratch.row_of_segment.clear();
@@ -129,13 +130,13 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
       const Link& from =
           cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
       // After a middle link comes the opposite of the row before it: one signed row serves both.
-      if (from.pinch_middle || wound_end(from, to)) continue;
+      if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
       Row row = segment_row(world, from, to, segment);
       row.index = static_cast<int>(c);
       row.item = static_cast<int>(s);
       row.on = !segment.slack;
-      if (to.pinch_middle) {
+      if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
@@ -158,6 +159,7 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
 void make_contact_rows(const Scene& scene, World& world, const Part& part) {
   std::vector<int>& normal_row_of_contact = world.scratch.normal_row_of_contact;
   normal_row_of_contact.resize(world.contacts.size());
+  world.scratch.first_contact_row = static_cast<int>(world.scratch.rows.size());
   for (const int number : contacts_of(world.scratch.parts, part)) {
     const auto i = static_cast<std::size_t>(number);
     const Contact& contact = world.contacts[i];
@@ -188,6 +190,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
       const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
       if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
         row.bias = restitution * speed;
+        row.rebounds = true;
       }
     }
     row.diagonal = diagonal_of(row, world.scratch.mobility);

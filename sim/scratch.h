@@ -7,6 +7,7 @@
 #include "sim/broad_phase.h"
 #include "sim/capstan.h"
 #include "sim/contact.h"
+#include "sim/gauss_seidel.h"
 #include "sim/parts.h"
 #include "sim/profile_ldl.h"
 #include "sim/profile_lu.h"
@@ -82,7 +83,8 @@ struct Scratch {
   std::vector<Mobility> mobility;                  // one a body
   double mobility_kick = 0.0;                      // s, what they are for
   std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
-  std::vector<int> normal_row_of_contact;
+  std::vector<int> normal_row_of_contact;          // of the part's contacts; -1: none
+  int first_contact_row = 0;                       // those before are of cables
   Parts parts;
   std::vector<int> order;                  // of the rows, by order_rows
   std::vector<RowOrder> orders;            // one a part
@@ -91,6 +93,7 @@ struct Scratch {
 
   Lists<int> rows_of_body;  // rows that a mobile body of the part couples
   ActiveSet active_set;
+  SweepScratch sweeps;  // empty with the direct solver
 
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step
   std::vector<double> angular_velocity_before;

@@ -5,8 +5,10 @@
 #include <chrono>
 
 #include "sim/active_set.h"
+#include "sim/all_pairs.h"
 #include "sim/cable.h"
 #include "sim/diagnostics.h"
+#include "sim/gauss_seidel.h"
 #include "sim/pinch.h"
 #include "sim/span_hits.h"
 
@@ -81,6 +83,15 @@ bool all_asleep(const World& world) {
   return std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.asleep; });
 }
 
+void solve(const Scene& scene, World& world, int part, double kick) {
+  switch (world.configuration.solver) {
+    case Solver::direct:
+      return solve_direct(scene, world, part, kick);
+    case Solver::iterative:
+      return solve_iterative(scene, world, part, kick);
+  }
+}
+
 class Stopwatch {
  public:
   explicit Stopwatch(StageTimes* times) : times_(times) {
@@ -105,13 +116,15 @@ void solve_parts(const Scene& scene, World& world, Stopwatch& watch) {
   world.diagnostics.active_set_solves = 0;
   Parts& parts = world.scratch.parts;
   for (int p = 0; p < static_cast<int>(parts.list.size()); ++p) {
-    const Part& part = parts.list[static_cast<std::size_t>(p)];
+    Part& part = parts.list[static_cast<std::size_t>(p)];
     if (part.asleep) continue;
     make_segment_rows(scene, world, part, kick_length(world));
     watch.lap(Stage::init_segments);
     make_contact_rows(scene, world, part);
     watch.lap(Stage::init_contacts);
     solve(scene, world, p, kick_length(world));
+    part.slides =
+        !world.scratch.active_set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
     note_rest(scene, world, part);
     watch.lap(Stage::solve);
   }
@@ -126,9 +139,10 @@ void detect(const Scene& scene, World& world, StageTimes* times) {
   watch.lap(Stage::update_segments);
   remove_links(world);
   watch.lap(Stage::remove_links);
-  find_body_pairs(scene, world);
-  find_span_pairs(scene, world);
+  const bool sweep = world.configuration.detection == Detection::sweep;
+  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world);
   watch.lap(Stage::broad_phase);
+  (sweep ? find_span_pairs : find_all_span_pairs)(scene, world);
   add_hit_links(scene, world);
   watch.lap(Stage::intersect_segments);
   find_contacts(scene, world);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "sim/cable.h"
 #include "sim/pinch.h"
@@ -251,6 +252,10 @@ const char* to_string(Method method) {
 }
 
 World make_world(const Scene& scene, Configuration configuration) {
+  if (configuration.iterations < 1) {
+    throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
+                                            configuration.iterations));
+  }
   World world;
   // A scene is judged by the full model, whatever it is run with.
   world.configuration = Method::pinch;

@@ -87,7 +87,7 @@ struct Diagnostics {
                                              // cables' lengths
   int active_set_solves = 0;                 // in the last step
   std::int64_t total_solves = 0;             // since the start
-  std::int64_t fallbacks = 0;  // steps whose active set did not settle, since the start
+  std::int64_t fallbacks = 0;                // parts of steps whose active set did not settle
 };
 
 struct World {
@@ -112,7 +112,8 @@ struct World {
   double time() const { return static_cast<double>(step) * step_length; }
 };
 
-/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist.
+/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist,
+/// std::invalid_argument where the configuration cannot.
 World make_world(const Scene& scene, Configuration configuration);
 
 }  // namespace pinchlab
