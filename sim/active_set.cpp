@@ -188,7 +188,8 @@ void sweep(World& world) {
   }
 }
 
-/// Keeps states for the next step, and reports forces.
+}  // namespace
+
 void store_states(World& world, double kick) {
   Scratch& s = world.scratch;
   for (const Row& row : s.rows) {
@@ -219,7 +220,7 @@ void store_states(World& world, double kick) {
     CableState& cable = world.cables[index(run.cable)];
     for (int i = run.first_link;; i = next_link(cable, i)) {
       Link& link = cable.links[index(i)];
-      if (!link.pinch_middle) {
+      if (!link.pinch_middle || run.first_link == run.last_link) {
         link.slip = run.slip;
         link.slip_speed = run.speed;
       }
@@ -234,9 +235,7 @@ void store_states(World& world, double kick) {
   }
 }
 
-}  // namespace
-
-void solve(const Scene& scene, World& world, double kick) {
+void solve_direct(const Scene& scene, World& world, double kick) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
   world.diagnostics.active_set_solves = 0;

@@ -16,6 +16,9 @@ namespace pinchlab {
 /// one, the one that has kept its state longest first. If friction makes the states cycle, what has
 /// flipped sticks for the rest of the step, and diagnostics.fallbacks counts the step; projected
 /// sweeps are the last resort.
-void solve(const Scene& scene, World& world, double kick);
+void solve_direct(const Scene& scene, World& world, double kick);
+
+/// Keeps states of rows and runs for the next step, and reports forces.
+void store_states(World& world, double kick);
 
 }  // namespace pinchlab

@@ -15,25 +15,6 @@ bool can_move(BodyKind kind) {
   return kind == BodyKind::free || kind == BodyKind::rail;
 }
 
-/// Boxes round the body and its cables where it was a step ago, is, and may be after the next step.
-void update_boxes(const Scene& scene, World& world) {
-  BroadPhase& broad = world.scratch.broad_phase;
-  double widest = 0.0;
-  for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
-  const double fall = scene.gravity.norm() * world.step_length * world.step_length;
-  broad.low.resize(scene.bodies.size());
-  broad.high.resize(scene.bodies.size());
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const double radius = scene.bodies[b].radius;
-    double reach = radius + widest;
-    if (can_move(scene.bodies[b].kind)) {
-      reach += 0.02 * radius + 2.0 * (world.velocity[b].norm() * world.step_length + fall);
-    }
-    broad.low[b] = world.position[b] - Vec2::Constant(reach);
-    broad.high[b] = world.position[b] + Vec2::Constant(reach);
-  }
-}
-
 /// Sweeps along the axis in which the scene is longer; the order is nearly that of the last step.
 void sort_bodies(BroadPhase& broad) {
   const std::size_t count = broad.low.size();
@@ -71,6 +52,33 @@ void sort_bodies(BroadPhase& broad) {
 }
 
 }  // namespace
+
+void update_boxes(const Scene& scene, World& world) {
+  BroadPhase& broad = world.scratch.broad_phase;
+  double widest = 0.0;
+  for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
+  const double fall = scene.gravity.norm() * world.step_length * world.step_length;
+  broad.low.resize(scene.bodies.size());
+  broad.high.resize(scene.bodies.size());
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const double radius = scene.bodies[b].radius;
+    double reach = radius + widest;
+    if (can_move(scene.bodies[b].kind)) {
+      reach += 0.02 * radius + 2.0 * (world.velocity[b].norm() * world.step_length + fall);
+    }
+    broad.low[b] = world.position[b] - Vec2::Constant(reach);
+    broad.high[b] = world.position[b] + Vec2::Constant(reach);
+  }
+}
+
+SpanBox span_box(const Segment& segment) {
+  return {segment.tail.cwiseMin(segment.head)
+              .cwiseMin(segment.previous_tail)
+              .cwiseMin(segment.previous_head),
+          segment.tail.cwiseMax(segment.head)
+              .cwiseMax(segment.previous_tail)
+              .cwiseMax(segment.previous_head)};
+}
 
 void find_body_pairs(const Scene& scene, World& world) {
   BroadPhase& broad = world.scratch.broad_phase;
@@ -114,12 +122,7 @@ void find_span_pairs(const Scene& scene, World& world) {
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
       if (segment.pinched) continue;
-      const Vec2 low = segment.tail.cwiseMin(segment.head)
-                           .cwiseMin(segment.previous_tail)
-                           .cwiseMin(segment.previous_head);
-      const Vec2 high = segment.tail.cwiseMax(segment.head)
-                            .cwiseMax(segment.previous_tail)
-                            .cwiseMax(segment.previous_head);
+      const auto [low, high] = span_box(segment);
       auto it = std::lower_bound(broad.key.begin(), broad.key.end(), low[axis] - longest_box);
       for (; it != broad.key.end() && *it <= high[axis]; ++it) {
         const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];

@@ -8,6 +8,7 @@
 
 namespace pinchlab {
 
+struct Segment;
 struct World;
 
 struct BodyPair {
@@ -25,6 +26,16 @@ struct BroadPhase {
   std::vector<BodyPair> body_pairs;  // sorted
   std::vector<SpanPair> span_pairs;  // sorted
 };
+
+/// Boxes round each body and its cables where it was a step ago, is, and may be after the next
+/// step.
+void update_boxes(const Scene& scene, World& world);
+
+/// Box round a segment where it was a step ago, and is.
+struct SpanBox {
+  Vec2 low, high;  // m
+};
+SpanBox span_box(const Segment& segment);
 
 /// Boxes of the bodies at their present positions, and the pairs of bodies whose boxes overlap.
 void find_body_pairs(const Scene& scene, World& world);

@@ -44,6 +44,7 @@ Run make_run(const Scene& scene, World& world, int c, int first, int last) {
   const CableState& cable = world.cables[index(c)];
   const Link& link = cable.links[index(first)];
   const double mu = scene.bodies[index(link.body)].cable_friction;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
   Run run;
   run.cable = c;
   run.first_link = first;
@@ -52,6 +53,12 @@ Run make_run(const Scene& scene, World& world, int c, int first, int last) {
   run.slip = run.frictionless ? Slip::forward : mu == infinity ? Slip::stick : link.slip;
   run.passages_begin = run.passages_end = static_cast<int>(s.passages.size());
   if (mu == infinity) return run;
+  if (three) {
+    const double arc = link.pinch_middle ? middle_arc : std::max(link.wrap, 0.0);
+    s.passages.push_back({.factor = std::exp(std::min(mu * arc, largest_exponent))});
+    run.passages_end = static_cast<int>(s.passages.size());
+    return run;
+  }
   add_pressed_end(scratch, world, cable.segments[index(first)], mu, s.passages);
   for (int i = first;; i = next_link(cable, i)) {
     const Link& part = cable.links[index(i)];
@@ -143,6 +150,7 @@ double sliding_limit(const World& world, const Run& run, int s) {
 void find_runs(const Scene& scene, World& world) {
   Scratch& scratch = world.scratch;
   CapstanScratch& s = scratch.active_set.capstan;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
   s.runs.clear();
   s.passages.clear();
   s.segments.clear();
@@ -171,7 +179,7 @@ void find_runs(const Scene& scene, World& world) {
       const int first = segment;
       int last = first;
       if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
-      while (cable.links[index(next_link(cable, last))].pinch_middle) {
+      while (!three && cable.links[index(next_link(cable, last))].pinch_middle) {
         last = next_link(cable, next_link(cable, last));
         seen += 2;
       }

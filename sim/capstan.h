@@ -20,6 +20,11 @@ struct Passage {
   int middle = -1;        // non-transitional pinch: the middle body's row, or -1
 };
 
+/// With three rows a pinch each link is a run of its own, and friction is as in the thesis:
+/// contacts have no share in it, and the middle of a pinch holds like an arc of this much on its
+/// body (rad).
+constexpr double middle_arc = 1.0;
+
 /// All links of a cable on one body in succession: one link, or the parts into which pinches divide
 /// it. Material slides over the body at one speed everywhere in the run.
 struct Run {

@@ -34,6 +34,7 @@ struct Configuration {
   Solver solver = Solver::direct;
   Detection detection = Detection::sweep;
   PinchRows pinch_rows = PinchRows::one;
+  int iterations = 10;       ///< >= 1, sweeps of the iterative solver
   bool sleep = true;         ///< parts of the scene that have come to rest cost no more
   bool diagnostics = false;  ///< fills the measured lengths and energy of World::diagnostics
 

@@ -113,6 +113,7 @@ void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out)
 
 void make_segment_rows(const Scene& scene, World& world, double kick) {
   Scratch& scratch = world.scratch;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
   scratch.segment_begin.clear();
   scratch.row_of_segment.clear();
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
@@ -125,13 +126,13 @@ void make_segment_rows(const Scene& scene, World& world, double kick) {
       const Link& from =
           cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
       // After a middle link comes the opposite of the row before it: one signed row serves both.
-      if (from.pinch_middle || wound_end(from, to)) continue;
+      if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
       Row row = segment_row(world, from, to, segment);
       row.index = static_cast<int>(c);
       row.item = static_cast<int>(s);
       row.on = !segment.slack;
-      if (to.pinch_middle) {
+      if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
@@ -181,6 +182,7 @@ void make_contact_rows(const Scene& scene, World& world) {
       const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
       if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
         row.bias = restitution * speed;
+        row.rebounds = true;
       }
     }
     row.diagonal = diagonal_of(row, world.scratch.mobility);

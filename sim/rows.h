@@ -24,7 +24,8 @@ struct Mobility {
 
 enum class RowKind {
   segment,       // tension of a span or transitional pinch, >= 0
-  pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row
+  pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row,
+                 // or with PinchRows::three two of kind `segment`
   normal,        // contact force, >= 0
   tangent,       // Coulomb friction of bare surfaces, |.| <= mu * normal
 };
@@ -41,6 +42,7 @@ struct Row {
   double compliance = 0.0;                                                     // 1/kg
   double diagonal = 0.0;               // 1/kg, J * mobility * J^T
   double impulse = 0.0;                // N s
+  bool rebounds = false;               // normal: the bias is the speed of a rebound
   double speed = 0.0;                  // w, m/s, after the solve
   bool on = false;                     // active set: bears a force
   Slip slip = Slip::stick;             // active set: friction rows

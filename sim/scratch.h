@@ -7,6 +7,7 @@
 #include "sim/broad_phase.h"
 #include "sim/capstan.h"
 #include "sim/contact.h"
+#include "sim/gauss_seidel.h"
 #include "sim/profile_lu.h"
 #include "sim/rows.h"
 #include "sim/terms.h"
@@ -69,6 +70,7 @@ struct Scratch {
 
   Lists<int> rows_of_body;  // rows that a mobile body couples
   ActiveSet active_set;
+  SweepScratch sweeps;  // empty with the direct solver
 
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step
   std::vector<double> angular_velocity_before;

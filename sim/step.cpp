@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "sim/active_set.h"
+#include "sim/all_pairs.h"
 #include "sim/cable.h"
 #include "sim/diagnostics.h"
+#include "sim/gauss_seidel.h"
 #include "sim/pinch.h"
 #include "sim/span_hits.h"
 
@@ -86,6 +88,15 @@ void note_rest(const Scene& scene, World& world) {
   ++world.resting_steps;
 }
 
+void solve(const Scene& scene, World& world, double kick) {
+  switch (world.configuration.solver) {
+    case Solver::direct:
+      return solve_direct(scene, world, kick);
+    case Solver::iterative:
+      return solve_iterative(scene, world, kick);
+  }
+}
+
 class Stopwatch {
  public:
   explicit Stopwatch(StageTimes* times) : times_(times) {
@@ -113,9 +124,10 @@ void detect(const Scene& scene, World& world, StageTimes* times) {
   watch.lap(Stage::update_segments);
   remove_links(world);
   watch.lap(Stage::remove_links);
-  find_body_pairs(scene, world);
-  find_span_pairs(scene, world);
+  const bool sweep = world.configuration.detection == Detection::sweep;
+  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world);
   watch.lap(Stage::broad_phase);
+  (sweep ? find_span_pairs : find_all_span_pairs)(scene, world);
   add_hit_links(scene, world);
   watch.lap(Stage::intersect_segments);
   find_contacts(scene, world);
