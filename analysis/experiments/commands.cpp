@@ -10,6 +10,7 @@
 
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/stability/stability.h"
 #include "demos/command_line.h"
 
 namespace pinchlab::experiments {
@@ -24,7 +25,9 @@ struct Experiment {
 };
 
 /// All but render, which has options of its own.
-const std::vector<Experiment> experiments = {};
+const std::vector<Experiment> experiments = {
+    {"stability", "How far each method holds, and how it fails beyond", run_stability},
+};
 
 /// The options as they can be typed again, after the command's name.
 std::string typed(const Options& options, bool has_loads) {

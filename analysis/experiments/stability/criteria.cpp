@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 const char* to_string(Failure failure) {
   switch (failure) {
@@ -21,8 +21,10 @@ const char* to_string(Failure failure) {
       return "squeezed";
     case Failure::length:
       return "length lost";
-    case Failure::energy:
-      return "energy";
+    case Failure::energy_gained:
+      return "energy gained";
+    case Failure::energy_lost:
+      return "energy lost";
     case Failure::restless:
       return "restless";
     case Failure::wrong:
@@ -39,7 +41,8 @@ Verdict judge(const Measures& m, const Limits& limits) {
       {m.strain / limits.strain, Failure::strain},
       {m.squeeze / limits.squeeze, Failure::squeeze},
       {m.length / limits.length, Failure::length},
-      {m.energy / limits.energy, Failure::energy},
+      {m.energy_gained / limits.energy, Failure::energy_gained},
+      {m.energy_lost / limits.energy, Failure::energy_lost},
       {m.end_speed_m_s / limits.end_speed_m_s, Failure::restless},
       {m.error / limits.error, Failure::wrong},
   };
@@ -51,4 +54,4 @@ Verdict judge(const Measures& m, const Limits& limits) {
   return verdict;
 }
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 /// The worst that a run has shown. What a case does not ask for stays 0.
 struct Measures {
@@ -13,7 +13,8 @@ struct Measures {
   double strain = 0.0;          // cable in its spans beyond what it has, over its length
   double squeeze = 0.0;         // of the cable's full width, by a body that overlaps it
   double length = 0.0;          // wraps and spans against the cable's length, over its length
-  double energy = 0.0;          // gained (or, where nothing takes any, changed) of that at play
+  double energy_gained = 0.0;   // of the energy at play
+  double energy_lost = 0.0;     // likewise, where nothing may take any
   double end_speed_m_s = 0.0;   // of any body or rim in the last tenth of a run that ends at rest
   double error = 0.0;           // of the motion or force against the exact one
 };
@@ -35,7 +36,8 @@ enum class Failure {
   strain,
   squeeze,
   length,
-  energy,
+  energy_gained,
+  energy_lost,
   restless,
   wrong,
 };
@@ -53,4 +55,4 @@ struct Verdict {
 
 Verdict judge(const Measures& measures, const Limits& limits = {});
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -3,23 +3,23 @@
 // What is tested: one item a way in which cables may fail.
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analysis/experiments/stability/watch.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 /// An item: scenes along one parameter (or two), and what the page says of them.
 struct Item {
   std::string id;      ///< of its files and its section
   std::string title;   ///< of its section
   std::string x_name;  ///< axis, with unit
-  std::string y_name;  ///< of a map; empty: curves
+  std::string y_name;  ///< of a map; empty: curves. A map's border is in x times y
+  std::string border;  ///< what the border is given in
   bool log_x = true;
-  std::string scene;  ///< what is simulated and asked, in a few sentences
-  /// Why a method fails where it does, or why not, in one sentence each.
-  std::vector<std::pair<std::string, std::string>> why;
+  bool shows_speeds = false;  ///< one more panel: a stack of four against time
+  std::string scene;          ///< what is simulated and asked, in a few sentences
+  std::string why;            ///< why methods fail where they do
   std::vector<std::string> methods{"pinch", "thesis", "cable"};
   std::vector<Case> cases;
 };
@@ -49,4 +49,4 @@ std::vector<double> decades(double from, double to, int per_decade);
 /// Height times weight of all that moves, and its energy of motion at the start, J.
 double energy_at_play(const Scene& scene, double height_m);
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -7,7 +7,7 @@
 #include "analysis/experiments/stability/items.h"
 #include "analysis/experiments/stability/scenes.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 namespace {
 
@@ -102,7 +102,8 @@ Item mass_ratio(bool quick) {
       "compared with the closed form. Hanging: M kg on a cable below a body of 1 kg on another, "
       "1 mm out of line and damped. Stack: a roller of M kg falls on one of 1 kg that falls on a "
       "wrapped drum. The last two must come to rest.";
-  for (const double ratio : decades(0, 9, quick ? 1 : 2)) item.cases.push_back(along_a_cable(ratio));
+  for (const double ratio : decades(0, 9, quick ? 1 : 2))
+    item.cases.push_back(along_a_cable(ratio));
   for (const double ratio : decades(0, 9, quick ? 1 : 2)) {
     item.cases.push_back(hanging(ratio, quick));
   }
@@ -189,4 +190,4 @@ Item friction(bool quick) {
   return item;
 }
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -6,7 +6,7 @@
 #include "analysis/experiments/stability/items.h"
 #include "analysis/experiments/stability/scenes.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 namespace {
 
@@ -52,7 +52,8 @@ Item windings(bool quick) {
   item.x_name = "whole turns round the drum";
   item.log_x = false;
   item.scene =
-      "A roller of 1 kg falls 50 mm on a drum that a cable is wound on: it must come to rest on the "
+      "A roller of 1 kg falls 50 mm on a drum that a cable is wound on: it must come to rest on "
+      "the "
       "cable. With ten turns it makes ten pinches at once (left untested by the thesis, 6.2).";
   for (const int turns : {0, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50}) {
     if (quick && turns > 10) continue;
@@ -144,6 +145,7 @@ Item plain_joints_under_pinch(bool quick) {
       "The stack again, under plain cable joints and under pinch joints without contact rows, "
       "which the thesis had to show in their place.";
   item.methods = {"pinch", "thesis", "pinch_no_contact", "cable"};
+  item.shows_speeds = true;
   for (const int count : {1, 2, 3, 4, 5, 6, 8, 10}) {
     if (quick && count > 4) continue;
     item.cases.push_back(comes_to_rest("zig-zag", count, zigzag_stack(count), 10.0));
@@ -151,4 +153,4 @@ Item plain_joints_under_pinch(bool quick) {
   return item;
 }
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 namespace {
 
@@ -120,8 +120,7 @@ Scene zigzag_stack(int count, double half_width) {
     wraps.push_back({1 + i, i % 2 == 0 ? 1 : -1, 0});
   }
   const double end_x = count % 2 == 1 ? -3.0 : 3.0, end_y = scene.bodies.back().position.y();
-  scene.bodies.push_back(
-      body("weight", BodyKind::free, -(pulley_radius + w), -3.0, 0.2, 1.0));
+  scene.bodies.push_back(body("weight", BodyKind::free, -(pulley_radius + w), -3.0, 0.2, 1.0));
   scene.bodies.back().linear_drag = scene.bodies.back().angular_drag = 5.0;
   add_cable(scene, on(count + 1), wraps, at(end_x, end_y), w);
   return scene;
@@ -130,21 +129,21 @@ Scene zigzag_stack(int count, double half_width) {
 Scene driven_loop(int wheels, bool roller) {
   constexpr double turn = 2.0 * std::numbers::pi;
   Scene scene;
-  const double ring = std::max(1.0, 0.2 * wheels);
+  const double ring = std::max(1.0, 0.2 * wheels);  // where all rims lie, m
   Cable loop;
   loop.name = "loop";
   loop.closed = true;
   loop.half_width = 0.02;
   for (int i = 0; i < wheels; ++i) {
     const double angle = turn * (0.25 + static_cast<double>(i) / wheels);
+    const double radius = i % 2 == 0 ? 0.3 : 0.2, out = ring - radius;
     scene.bodies.push_back(body(fmt::format("wheel {}", i), BodyKind::fixed_axle,
-                                ring * std::cos(angle), ring * std::sin(angle),
-                                i % 2 == 0 ? 0.3 : 0.2, 1.0));
+                                out * std::cos(angle), out * std::sin(angle), radius, 1.0));
     loop.wraps.push_back({i, 1, 0});
   }
   scene.bodies[0].driven_angular_velocity = 5.0;
   if (roller) {
-    const double y = ring + 0.3 + 0.25 + 2.0 * loop.half_width;
+    const double y = ring + 0.25 + 2.0 * loop.half_width;
     scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, y, 0.25, 1.0));
   }
   scene.cables.push_back(loop);
@@ -215,4 +214,4 @@ Scene roll_over() {
   return scene;
 }
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -4,10 +4,10 @@
 
 #include "sim/scene.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
-constexpr double g = 9.81;               // m/s^2
-constexpr double pulley_radius = 0.5;    // m
+constexpr double g = 9.81;                 // m/s^2
+constexpr double pulley_radius = 0.5;      // m
 constexpr double cable_half_width = 0.05;  // m
 
 /// Two loads on one cable over a row of equal pulleys, wrapped over and under in turn (an odd
@@ -54,4 +54,4 @@ Scene roller_in_bight();
 /// A free roller that rolls down a cable, over the drum (which pinches it) and down the far side.
 Scene roll_over();
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -8,7 +8,7 @@
 #include "sim/cable.h"
 #include "sim/step.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 namespace {
 
@@ -93,7 +93,8 @@ std::int64_t link_count(const World& world) {
 void note_energy(const Case& test, const World& world, double start, Measures& m) {
   if (test.energy == EnergyLaw::unchecked) return;
   const double gain = (world.diagnostics.energy - start) / test.energy_at_play_j;
-  m.energy = std::max(m.energy, test.energy == EnergyLaw::keeps ? std::abs(gain) : gain);
+  m.energy_gained = std::max(m.energy_gained, gain);
+  if (test.energy == EnergyLaw::keeps) m.energy_lost = std::max(m.energy_lost, -gain);
 }
 
 void note_positions(const Scene& scene, const World& world, Measures& m) {
@@ -178,4 +179,4 @@ Result watch(const Case& test, const std::string& method, const Configuration& c
   return result;
 }
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability

@@ -12,7 +12,7 @@
 #include "sim/scene.h"
 #include "sim/world.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab::experiments::stability {
 
 enum class EnergyLaw {
   unchecked,  ///< something drives the scene
@@ -22,9 +22,9 @@ enum class EnergyLaw {
 
 /// A scene and what must hold in it.
 struct Case {
-  std::string series;    ///< cases of one series differ in x (and y) only
-  double x = 0.0;        ///< the parameter, on the item's axis
-  double y = 0.0;        ///< the other parameter of a map
+  std::string series;  ///< cases of one series differ in x (and y) only
+  double x = 0.0;      ///< the parameter, on the item's axis
+  double y = 0.0;      ///< the other parameter of a map
   Scene scene;
   double seconds = 1.0;  ///< simulated
   EnergyLaw energy = EnergyLaw::unchecked;
@@ -62,4 +62,4 @@ double squeeze(const Scene& scene, const World& world);
 /// Cable in the spans beyond what is there, over the cable's length: the largest of all cables.
 double strain(const Scene& scene, const World& world);
 
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab::experiments::stability
