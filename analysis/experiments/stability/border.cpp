@@ -33,7 +33,7 @@ std::string value_text(double x) {
     const double power = std::floor(std::log10(std::abs(x)) + 1e-9);
     return fmt::format("{:.2g}e{:.0f}", x / std::pow(10.0, power), power);
   }
-  return fmt::format("{:.3g}", x);
+  return std::abs(x) >= 1000.0 ? fmt::format("{:.0f}", x) : fmt::format("{:.3g}", x);
 }
 
 std::string border_text(std::vector<Result> results) {

@@ -40,14 +40,30 @@ std::vector<std::string> series_of(const Item& item) {
   return names;
 }
 
-std::string panel_margins(int panel, int panels, int keys_px, int height_px) {
+/// Places the plot of panel number `panel`, `apart_px` from the next, under `keys_px` of legend.
+std::string panel_margins(int panel, int panels, double apart_px, int keys_px, int height_px) {
   const double left = 64.0, right = 12.0, width = 64.0 + panels * panel_px;
-  const double inner = (width - left - right - 22.0 * (panels - 1)) / panels;
-  const double x = left + panel * (inner + 22.0);
+  const double inner = (width - left - right - apart_px * (panels - 1)) / panels;
+  const double x = left + panel * (inner + apart_px);
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n"
       "set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n",
       x / width, (x + inner) / width, 58.0 / height_px, 1.0 - (30.0 + keys_px) / height_px);
+}
+
+/// The methods of an item in their colours, in a row on top.
+std::string legend(const Item& item, int width_px, int height_px) {
+  std::string text;
+  double x = 74.0;  // px
+  for (std::size_t m = 0; m < item.methods.size(); ++m) {
+    const std::string title = method_title(item.methods[m]);
+    text += fmt::format(
+        "set label {} '{}' at screen {:.4f}, screen {:.4f} left noenhanced point ls {} offset "
+        "0.8,0\n",
+        m + 10, title, x / width_px, 1.0 - 14.0 / height_px, line_style(item.methods[m]));
+    x += 36.0 + 8.0 * static_cast<double>(title.size());
+  }
+  return text;
 }
 
 /// Values that a logarithmic axis cannot show are drawn at its ends.
@@ -68,14 +84,15 @@ std::pair<double, double> drawn_range(const Item& item) {
 
 std::string speeds_panel(const ItemResults& done, const std::string& table) {
   std::string text =
-      "unset object\nunset label\nunset logscale x\nset yrange [1e-16:10]\nset ytics auto\n"
-      "set logscale y\nset format y '10^{%L}'\nset xrange [*:*]\nset format x '%g'\n"
-      "set xtics auto\nset xlabel 'time, s'\nset title 'fastest roller of four, m/s'\nplot ";
+      "unset object\nunset label\nunset logscale x\nset yrange [1e-5:100]\nset ytics auto\n"
+      "set logscale y\nset format y '10^{%L}'\nset ytics 1e-5,10\nset ylabel 'm/s'\nset xrange "
+      "[*:*]\nset format x '%g'\n"
+      "set xtics auto\nset xlabel 'time, s'\nset title 'fastest roller of four'\nplot ";
   for (std::size_t m = 0; m < done.item.methods.size(); ++m) {
     const std::string& method = done.item.methods[m];
     text += fmt::format(
         "{}'{}-speeds.csv' using (column('time_s')):(strcol('method') eq '{}' ? "
-        "column('speed_m_s') + 1e-16 : NaN) with lines lw 1.2 lc rgb word(colours, {}) notitle",
+        "column('speed_m_s') + 1e-9 : NaN) with lines lw 1.5 lc rgb word(colours, {}) notitle",
         m == 0 ? "" : ", \\\n  ", table, method, line_style(method));
   }
   return text + "\n";
@@ -88,10 +105,12 @@ Drawing draw_curves(const ItemResults& done) {
   const int panels = static_cast<int>(series.size()) + (item.shows_speeds ? 1 : 0);
   const int height_px = 340;
   Drawing drawing{64 + panels * panel_px, height_px, ""};
+  const double apart_px = item.shows_speeds ? 70.0 : 22.0;
   const auto [low, high] = drawn_range(item);
   std::string& text = drawing.commands;
   text += fmt::format(
-      "set termoption enhanced\ncolours = '#0072B2 #D55E00 #009E73 #CC79A7'\n"
+      "set termoption enhanced\nset style line 3 lc rgb '#009E73' lw 1.5 pt 8 ps 1.0\ncolours = "
+      "'#0072B2 #D55E00 #009E73 #CC79A7'\n"
       "shown(s) = s > {1} ? {1} : s < {0} ? {0} : s\n"
       "place(x) = x < {2} ? {2} : x > {3} ? {3} : x\n"
       "set multiplot\nset logscale y\nset yrange [{4}:{5}]\nset ytics 1e-9,1e3\n"
@@ -108,14 +127,13 @@ Drawing draw_curves(const ItemResults& done) {
     text +=
         fmt::format("set xrange [{}:{}]\n", low - 0.03 * (high - low), high + 0.03 * (high - low));
   }
-  text += "set ylabel 'worst measure / its limit' offset 1,0\n";
+  text += "set ylabel 'worst measure / its limit' offset 1,0\nunset key\n" +
+          legend(item, drawing.width_px, height_px);
   for (std::size_t s = 0; s < series.size(); ++s) {
-    text += panel_margins(static_cast<int>(s), panels, 24, height_px);
+    text += panel_margins(static_cast<int>(s), panels, apart_px, 24, height_px);
     text += fmt::format("set title {} noenhanced offset 0,-0.6\nset xlabel {} noenhanced\n",
                         analysis::gnuplot_quote(series[s]), analysis::gnuplot_quote(item.x_name));
-    text += s == 0 ? "set key at screen 0.02, screen 0.975 left top horizontal noenhanced "
-                     "width 2\n"
-                   : "unset key\nunset ylabel\nset format y ''\n";
+    if (s == 1) text += "unset ylabel\nset format y ''\n";
     text += "plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle";
     // Ours last, on top.
     for (std::size_t m = item.methods.size(); m-- > 0;) {
@@ -123,13 +141,13 @@ Drawing draw_curves(const ItemResults& done) {
       text += fmt::format(
           ", \\\n  '{}.csv' using (place(column('x'))):(strcol('method') eq '{}' && "
           "strcol('series') eq '{}' ? shown(column('severity')) : NaN) with linespoints ls {} "
-          "title '{}'",
-          table, method, series[s], line_style(method), method_title(method));
+          "notitle",
+          table, method, series[s], line_style(method));
     }
     text += "\n";
   }
   if (item.shows_speeds) {
-    text += panel_margins(panels - 1, panels, 24, height_px) + speeds_panel(done, table);
+    text += panel_margins(panels - 1, panels, apart_px, 24, height_px) + speeds_panel(done, table);
   }
   text += "unset multiplot\n";
   return drawing;
@@ -170,6 +188,15 @@ std::string tics(const std::vector<double>& values) {
   return "(" + text + ")";
 }
 
+/// The same tics without their numbers.
+std::string bare_tics(const std::vector<double>& values) {
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += fmt::format("{}'' {}", i == 0 ? "" : ", ", i);
+  }
+  return "set ytics (" + text + ")\n";
+}
+
 /// gnuplot's conditional chain from a value of `column` to its number.
 std::string number_of(const std::string& column, const std::vector<double>& values) {
   std::string text;
@@ -193,7 +220,8 @@ Drawing draw_map(const ItemResults& done) {
   text += fmt::format(
       "set termoption enhanced\nset multiplot\nunset grid\nunset key\nset border 15\n"
       "shown(s) = s > {1} ? {1} : s < {0} ? {0} : s\n"
-      "label(s) = s > 1e4 ? '>10^4' : s < 1e-3 ? '<10^{{-3}}' : sprintf('%.2g', s)\n"
+      "label(s) = s > 1e4 ? '>10^4' : s < 1e-3 ? '<0.001' : s < 10 ? sprintf('%.2g', s) : "
+      "sprintf('%.0f', s)\n"
       // Blue below 1, orange above, lighter towards 1: tells failure apart without red and green.
       "set palette defined (-3 '#0072B2', -0.001 '#d6e8f2', 0 '#fbe3d2', 4 '#D55E00')\n"
       "set cbrange [-3:4]\nunset colorbox\nset xtics {2}\nset ytics {3}\n"
@@ -203,9 +231,9 @@ Drawing draw_map(const ItemResults& done) {
   const std::string x = number_of("x", xs), y = number_of("y", ys);
   for (int m = 0; m < panels; ++m) {
     const std::string& method = item.methods[static_cast<std::size_t>(m)];
-    text += panel_margins(m, panels, 0, height_px) + map_border(done, method, xs, ys);
-    text += fmt::format("set title '{}'\n", method_title(method));
-    if (m == 1) text += "unset ylabel\nset format y ''\n";
+    text += panel_margins(m, panels, 22.0, 0, height_px) + map_border(done, method, xs, ys);
+    text += fmt::format("set title '{}' offset 0,-0.6\n", method_title(method));
+    if (m == 1) text += "unset ylabel\n" + bare_tics(ys);
     const std::string mine = fmt::format("strcol('method') eq '{}'", method);
     text += fmt::format(
         "plot 'stability-{0}-map.csv' using ({1} ? {2} : NaN):{3}:(0.5):(0.5):"

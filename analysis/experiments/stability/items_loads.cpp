@@ -97,6 +97,12 @@ Item mass_ratio(bool quick) {
   item.id = "mass-ratio";
   item.title = "Mass ratio";
   item.x_name = "mass ratio";
+  item.why =
+      "Ten sweeps carry a force over ten links only a little at a time, so that heavy loads on "
+      "light pulleys stretch the cable; one elimination carries it exactly. A taut span is a "
+      "spring T/L across itself, which the leapfrog treats explicitly: the light body is thrown "
+      "off once T h^2/L exceeds half its mass, which T = M g and h = 1/240 s make M = 1.2e4 kg "
+      "here, under every method.";
   item.scene =
       "Along a cable: M and M/2 on one cable over 21 pulleys of 1 kg; the motion after 1 s is "
       "compared with the closed form. Hanging: M kg on a cable below a body of 1 kg on another, "
@@ -116,6 +122,9 @@ Item pulleys(bool quick) {
   item.id = "pulleys";
   item.title = "Number of pulleys";
   item.x_name = "pulleys";
+  item.why =
+      "The direct solve takes the cable's force over any number of pulleys in one elimination; a "
+      "sweep takes it a pulley further, and the sweeps are counted.";
   item.scene =
       "1000 kg and 999 kg, or 2 kg and 1 kg, on one cable over a row of pulleys of 0.1 kg; the "
       "motion after 1 s is compared with the closed form.";
@@ -142,6 +151,9 @@ Item caught_loads(bool quick) {
   item.id = "catch";
   item.title = "Dropped loads";
   item.x_name = "free fall before the cable is taut, m";
+  item.why =
+      "The direct solve stops the load in the step in which its cable gets taut; sweeps let the "
+      "cable stretch first and then turn the stretch into speed, so that the load bounces.";
   item.scene =
       "10 kg fall until their cable, led over five pulleys of 0.1 kg to an anchor, gets taut and "
       "stops them; then they must hang still. At four steps a frame and at one.";
@@ -167,6 +179,10 @@ Item friction(bool quick) {
   item.id = "friction";
   item.title = "Friction across the slip border";
   item.x_name = "capstan coefficient";
+  item.why =
+      "Sticking or slipping is found with the tensions, in one solve, for all pulleys at once; "
+      "sweeps decide it for each pulley from its neighbours alone, and no tension gets past "
+      "several fixed ones.";
   item.scene =
       "1 kg and 3 kg on a cable over one fixed pulley, one that turns, and nine fixed ones in a "
       "row; the motion after 1 s is compared with the closed form. Infinite friction is drawn at "

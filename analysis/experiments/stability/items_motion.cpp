@@ -50,6 +50,9 @@ Item chatter(bool quick) {
   item.id = "chatter";
   item.title = "Links added and removed thousands of times";
   item.x_name = "swing (rad) or fall (m)";
+  item.why =
+      "A link is made and removed at the step's end instead of at the touch, which takes a "
+      "second-order share of the energy each time; it never gives any.";
   item.scene =
       "A bob on a cable of 50 mm swings against a peg that the cable touches when it hangs, so "
       "that a link comes and goes with every swing; its energy must stay. A ball bounces on a "
@@ -79,6 +82,10 @@ Item fast_bodies(bool quick) {
   item.id = "fast";
   item.title = "Fast bodies against spans";
   item.x_name = "body sizes a step";
+  item.why =
+      "A body is found to have hit a span after the step in which it did: it is always caught and "
+      "never gains energy, but for one step the cable is stretched by as much as the body has gone "
+      "too far.";
   item.scene =
       "A ball of 0.2 m flies at a cable of 4 m held at both ends, taut or with 0.2 m of slack; it "
       "may not pass, nor leave with more energy than it came with.";
@@ -96,6 +103,12 @@ Item frames_and_steps(bool quick) {
   item.title = "Frames and steps";
   item.x_name = "frames a second";
   item.y_name = "steps a frame";
+  item.border = "steps a second";
+  item.why =
+      "On a curved path the step's chord leaves the circle by (v h)^2/(2 L), which is the "
+      "pendulum's stretch; a pinch that opens by a gap d frees a span of the order of sqrt(d), "
+      "which no linear row foresees, and which is the roll-over's. Both are gone at the next step "
+      "and vanish with h.";
   item.scene =
       "Five scenes: a stack of five, a roller that falls on a drum, a roller that rolls over one, "
       "a load caught after 2 m, a load that swings and unwinds. The map shows the worst of them.";
@@ -132,6 +145,9 @@ Item long_swing(bool quick) {
   item.id = "long";
   item.title = "A million steps";
   item.x_name = "steps";
+  item.why =
+      "The leapfrog is symplectic as long as its constraints are met exactly: its energy swings "
+      "about a constant; sweeps leave some of the constraint's speed in, and damp.";
   item.scene =
       "A load swings on a cable that winds and unwinds on a drum, and a roller runs to and fro in "
       "the bight of a cable: after up to a million steps their energy must be the same.";

@@ -51,6 +51,9 @@ Item windings(bool quick) {
   item.title = "A wound body that is pinched";
   item.x_name = "whole turns round the drum";
   item.log_x = false;
+  item.why =
+      "All turns share one contact and one force, so that more of them change nothing; plain cable "
+      "joints do not see the roller, which sinks through the cable on to the drum.";
   item.scene =
       "A roller of 1 kg falls 50 mm on a drum that a cable is wound on: it must come to rest on "
       "the "
@@ -68,6 +71,10 @@ Item stacks(bool quick) {
   item.title = "Stacks";
   item.x_name = "rollers on top of one another";
   item.log_x = false;
+  item.why =
+      "Contacts and cables are solved together and exactly; sweeps leave each contact a part of "
+      "the weight above it, the more the higher the stack, and plain cable joints have no tangent "
+      "where bodies pinch the cable.";
   item.scene =
       "Rollers of 1 kg fall on one another and on a drum, with a cable in a zig-zag between them "
       "and 1 kg at its end: all must come to rest. At four steps a frame and at one.";
@@ -89,6 +96,9 @@ Item cables_under_a_pinch(bool quick) {
   item.title = "Several cables under one pinch";
   item.x_name = "cables under the roller";
   item.log_x = false;
+  item.why =
+      "One contact a pair of bodies holds them apart, however many cables lie between; plain cable "
+      "joints have none there.";
   item.scene =
       "A roller of 1 kg falls on a drum with several cables over it: it must come to rest on them.";
   for (const int count : {1, 2, 5, 10, 20, 50}) {
@@ -103,6 +113,7 @@ Item closed_loop(bool quick) {
   item.id = "loop";
   item.title = "Closed loops";
   item.x_name = "wheels in the loop";
+  item.why = "The loop's rows are solved as one ring; sweeps let the jerk of the start stretch it.";
   item.scene =
       "A closed cable without slip runs round a ring of wheels, each second one smaller; one is "
       "driven at 5 rad/s, the others start at rest. All rims must run at the cable's speed, and "
@@ -121,6 +132,10 @@ Item thin_cables(bool quick) {
   item.id = "thin";
   item.title = "Thin and thick cables";
   item.x_name = "half width over the rollers' radius";
+  item.why =
+      "The contact's distance is a number like any other to the direct solve; sweeps leave an "
+      "overlap that the height of the stack sets, not the cable, and that is many times a thin "
+      "cable's width.";
   item.scene =
       "A roller on a wrapped drum, and a stack of four in a zig-zag, both with r = 0.25 m, for "
       "cables of all widths: squeeze is measured by the cable's width.";
@@ -141,6 +156,10 @@ Item plain_joints_under_pinch(bool quick) {
   item.title = "Plain cable joints under pinching";
   item.x_name = "rollers on top of one another";
   item.log_x = false;
+  item.why =
+      "Where the tangent has vanished, plain cable joints act along the centre line: they push the "
+      "bodies apart but leave their rolling alone, and the stack tumbles until it has lost its "
+      "energy. Without contact rows it is calm, but squeezed flat.";
   item.scene =
       "The stack again, under plain cable joints and under pinch joints without contact rows, "
       "which the thesis had to show in their place.";
