@@ -20,10 +20,11 @@ double full_width(const World& world) {
   return width;
 }
 
-/// How much nearer two things with relative velocity v may come within the next step, generously.
-double reach(const Scene& scene, const World& world, const Vec2& v, double radius) {
+/// How much nearer two things whose speeds add up to `speed` may come within the next step,
+/// generously.
+double reach(const Scene& scene, const World& world, double speed, double radius) {
   const double h = world.step_length;
-  return 2.0 * h * (v.norm() + scene.gravity.norm() * h) + 0.01 * radius;
+  return 2.0 * h * (speed + scene.gravity.norm() * h) + 0.01 * radius;
 }
 
 Vec2 nearest_point(const Wall& wall, const Vec2& x) {
@@ -171,8 +172,9 @@ void find_contacts(const Scene& scene, World& world) {
     const double distance = d.norm();
     const double radii = scene.bodies[a].radius + scene.bodies[b].radius;
     const double least = std::min(scene.bodies[a].radius, scene.bodies[b].radius);
-    const Vec2 v = world.velocity[b] - world.velocity[a];
-    if (distance - radii > width + reach(scene, world, v, least)) continue;
+    // Bodies that move together have no speed between them until one is stopped within the step.
+    const double speed = world.velocity[a].norm() + world.velocity[b].norm();
+    if (distance - radii > width + reach(scene, world, speed, least)) continue;
     Contact contact;
     contact.a = pair.a;
     contact.b = pair.b;
@@ -189,7 +191,7 @@ void find_contacts(const Scene& scene, World& world) {
       }
       const Vec2 d = nearest_point(scene.walls[w], world.position[b]) - world.position[b];
       const double distance = d.norm(), radius = scene.bodies[b].radius;
-      if (distance - radius > reach(scene, world, world.velocity[b], radius)) continue;
+      if (distance - radius > reach(scene, world, world.velocity[b].norm(), radius)) continue;
       Contact contact;
       contact.a = static_cast<int>(b);
       contact.wall = static_cast<int>(w);
