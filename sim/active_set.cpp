@@ -26,7 +26,7 @@ bool is_friction(const Row& row) {
 void bound_friction(World& world) {
   std::vector<Row>& rows = world.scratch.rows;
   for (Row& row : rows) {
-    if (!is_friction(row)) continue;
+    if (!is_friction(row) || row.repeats >= 0) continue;
     if (row.normal >= 0) row.on = rows[index(row.normal)].on;
     row.bound = row.friction;
     if (row.run >= 0) {
@@ -253,6 +253,13 @@ void sweep(World& world) {
 
 void store_states(World& world, double kick) {
   Scratch& s = world.scratch;
+  for (Row& row : s.rows) {
+    if (row.repeated > 0) row.impulse /= 1 + row.repeated;
+    if (row.repeats < 0) continue;
+    const Row& first = s.rows[index(row.repeats)];  // comes before, and has its share by now
+    row.impulse =
+        row.ja.dot(row.a == first.a ? first.ja : first.jb) > 0.0 ? first.impulse : -first.impulse;
+  }
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
       CableState& cable = world.cables[index(row.index)];
