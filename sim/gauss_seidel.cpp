@@ -138,12 +138,14 @@ void relax_sticking(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled
   const double w_in = speed(s, in), w_out = speed(s, out);
   double p_in = in.impulse - (out.stiffness * w_in - coupled * w_out) / determinant;
   double p_out = out.impulse - (in.stiffness * w_out - coupled * w_in) / determinant;
-  if (p_in < 0.0) {
+  if (p_in < 0.0 || p_out < 0.0) {  // one of them, at least, is slack
     p_in = 0.0;
     p_out = std::max(0.0, out.impulse - (w_out - coupled * in.impulse) / out.stiffness);
-  } else if (p_out < 0.0) {
-    p_out = 0.0;
-    p_in = std::max(0.0, in.impulse - (w_in - coupled * out.impulse) / in.stiffness);
+    const double w = w_in - in.stiffness * in.impulse + coupled * (p_out - out.impulse);
+    if (w < 0.0) {
+      p_in = std::max(0.0, in.impulse - (w_in - coupled * out.impulse) / in.stiffness);
+      p_out = 0.0;
+    }
   }
   set_impulse(s, in, p_in);
   set_impulse(s, out, p_out);
