@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What no scene may break: length, energy, symmetry, repeatability, finite numbers.
 
-#include <gsl/gsl_rng.h>
-
-#include <memory>
-
 #include "tests/sim/random_scene.h"
 #include "tests/sim/scenes.h"
 

@@ -10,8 +10,8 @@
 
 namespace pinchlab::testing {
 
-/// Two to six free rollers of 0.1 to 10 kg that fall on three to five wrapped pulleys. No cable slips
-/// where `seed` is a multiple of 3.
+/// Two to six free rollers of 0.1 to 10 kg that fall on three to five wrapped pulleys. No cable
+/// slips where `seed` is a multiple of 3.
 inline Scene random_scene(int seed) {
   const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> rng(gsl_rng_alloc(gsl_rng_mt19937),
                                                               &gsl_rng_free);
