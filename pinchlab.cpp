@@ -13,65 +13,20 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiments/commands.h"
 #include "analysis/input_error.h"
 #include "analysis/power.h"
 #include "analysis/report.h"
 #include "analysis/text_checks.h"
 #include "demos/batch.h"
+#include "demos/command_line.h"
 #include "demos/still.h"
 #include "demos/trajectory.h"
 #include "demos/version.h"
-#include "render/bench.h"
-#include "render/canvas.h"
 #include "study/commands.h"
 
 namespace pinchlab {
 namespace {
-
-struct Size {
-  int width = 0, height = 0;  // px
-};
-
-// "960x540" to a size. Returns what is wrong with it, or nothing.
-std::string read_size(const std::string& text, Size& size) {
-  char rest = 0;
-  const int found = std::sscanf(text.c_str(), "%5dx%5d%c", &size.width, &size.height, &rest);
-  if (found == 2 && std::min(size.width, size.height) >= smallest_frame &&
-      std::max(size.width, size.height) <= largest_frame) {
-    return "";
-  }
-  return fmt::format("{} is not WIDTHxHEIGHT in pixels, each {} to {}, such as 960x960", text,
-                     smallest_frame, largest_frame);
-}
-
-void add_size(CLI::App& command, Size& size, const std::string& help) {
-  command
-      .add_option_function<std::string>(
-          "--size", [&size](const std::string& text) { read_size(text, size); }, help)
-      ->type_name("WxH")
-      ->check([](const std::string& text) {
-        Size ignored;
-        return read_size(text, ignored);
-      });
-}
-
-// What render and bench take when no scene is named.
-std::filesystem::path demos_folder() {
-  if (!std::filesystem::is_directory("demos")) {
-    throw std::runtime_error(
-        "demos: there is no such folder here; go to the project's folder, or name scene files");
-  }
-  return "demos";
-}
-
-template <class Text>
-void add_method(CLI::App& command, Text& method, const std::string& help,
-                std::vector<std::string> names = {"pinch", "pinch_no_contact", "cable",
-                                                  "baseline"}) {
-  command.add_option("--method", method, help)
-      ->type_name("M")
-      ->check(CLI::IsMember(std::move(names)));
-}
 
 void add_scene(CLI::App& command, std::string& scene) {
   command.add_option("scene", scene, "Scene file; demos/README.md documents the format")
@@ -212,39 +167,6 @@ void add_simulate(CLI::App& app) {
     options->configuration =
         configuration_from_string(options->method).value_or(Configuration(file.scene.baseline));
     write_trajectory(file, *options);
-  });
-}
-
-void add_bench(CLI::App& app) {
-  struct Options {
-    std::string scene, method = "pinch";
-    int frames = 0;
-    Size size{960, 960};
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* bench = app.add_subcommand("bench", "Measure what things cost")->require_subcommand(1);
-  CLI::App* command = bench->add_subcommand(
-      "render", "What simulating, drawing, converting and encoding a frame cost");
-  command->add_option("scene", options->scene, "Scene file [all of demos, and their mean]")
-      ->type_name("SCENE");
-  add_method(*command, options->method,
-             "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
-  add_size(*command, options->size, "Pixels of a frame, even [960x960]");
-  command->add_option("--frames", options->frames, "Frames to measure [all of the clip]")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
-  command->callback([options] {
-    std::vector<std::filesystem::path> scenes{options->scene};
-    if (options->scene.empty()) scenes = find_scenes({demos_folder()});
-    std::vector<RenderCost> costs;
-    for (const std::filesystem::path& path : scenes) {
-      const Scene scene = read_scene_file(path).scene;
-      costs.push_back(measure_render(scene, method_of(scene, options->method), options->size.width,
-                                     options->size.height, options->frames));
-      fmt::print("{}\n", table(scene.name, costs.back()));
-      std::fflush(stdout);
-    }
-    if (costs.size() > 1) fmt::print("{}", table("mean of all", mean_cost(costs)));
   });
 }
 
@@ -435,7 +357,7 @@ int run(int argc, char** argv) {
   add_render(app);
   add_still(app);
   add_simulate(app);
-  add_bench(app);
+  experiments::add_bench_commands(app);
   add_analyse(app);
   add_power(app);
   add_study(app);

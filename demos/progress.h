@@ -12,6 +12,7 @@ namespace pinchlab {
 class Progress {
  public:
   /// "rendering: 41 % of 9600 frames, 0:52 left": `what` is rendering, `unit` frames, `total` 9600.
+  /// With an empty unit "rendering: 41 %, 0:52 left".
   Progress(std::string what, std::string unit, std::int64_t total);
   ~Progress();  ///< clears the terminal's line
   Progress(const Progress&) = delete;

@@ -153,7 +153,7 @@ double sliding_limit(const World& world, const Run& run, int s) {
 
 }  // namespace
 
-void find_runs(const Scene& scene, World& world) {
+void find_runs(const Scene& scene, World& world, const Part& part) {
   Scratch& scratch = world.scratch;
   CapstanScratch& s = scratch.active_set.capstan;
   const bool link_by_link = world.configuration.pinch_rows == PinchRows::three &&
@@ -163,7 +163,8 @@ void find_runs(const Scene& scene, World& world) {
   s.segments.clear();
   s.run_before.clear();
   s.cable_begin.assign(1, 0);
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+  for (const int number : cables_of(scratch.parts, part)) {
+    const std::size_t c = index(number);
     const CableState& cable = world.cables[c];
     if (!slides_somewhere(scene, cable)) continue;
     const auto row_of = [&](int segment) {
@@ -224,7 +225,7 @@ void part_slack_segments(World& world, int begin, int count, int start) {
     if (world.scratch.rows[index(s.segments[index(position)])].on) continue;
     if (slack_before && oldest >= 0) {
       s.runs[index(oldest)].slip = Slip::stick;
-      s.runs[index(oldest)].flipped = world.diagnostics.active_set_solves + 1;
+      s.runs[index(oldest)].flipped = world.scratch.active_set.solves + 1;
     }
     slack_before = true;
     oldest = -1;

@@ -10,6 +10,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// Something on a cable's way over a body that changes its tension: an arc, or a pinch.
@@ -61,8 +62,8 @@ struct CapstanScratch {
   std::vector<int> sums_begin, borders;
 };
 
-/// Lists the runs of all cables that touch a body of finite friction; empty if none do.
-void find_runs(const Scene& scene, World& world);
+/// Lists the runs of a part's cables that touch a body of finite friction; empty if none do.
+void find_runs(const Scene& scene, World& world, const Part& part);
 
 /// Joins segments into groups for the present states of runs and segments.
 ///

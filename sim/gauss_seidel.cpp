@@ -55,11 +55,11 @@ SweepRow sweep_row(const World& world, const Row& row) {
 void load(World& world) {
   SweepScratch& s = world.scratch.sweeps;
   const std::size_t bodies = world.velocity.size();
-  s.velocity.resize(bodies + 1);
-  for (std::size_t b = 0; b < bodies; ++b) {
+  s.velocity.resize(bodies + 1, Eigen::Vector3d::Zero());
+  for (const int number : bodies_of(world.scratch.parts, part_being_solved(world))) {
+    const std::size_t b = index(number);
     s.velocity[b] << world.velocity[b], world.angular_velocity[b];
   }
-  s.velocity[bodies].setZero();
   s.rows.clear();
   for (const Row& row : world.scratch.rows) s.rows.push_back(sweep_row(world, row));
   CapstanScratch& capstan = world.scratch.active_set.capstan;
@@ -231,9 +231,7 @@ void sweep(World& world) {
   SweepScratch& s = world.scratch.sweeps;
   std::vector<Run>& runs = world.scratch.active_set.capstan.runs;
   for (const Run& run : runs) bound_middles(world, run);
-  const std::size_t contacts = world.scratch.normal_row_of_contact.empty()
-                                   ? s.rows.size()
-                                   : index(world.scratch.normal_row_of_contact.front());
+  const std::size_t contacts = index(world.scratch.first_contact_row);
   for (std::size_t r = 0; r < contacts; ++r) {
     if (!s.rows[r].by_run) relax(s, s.rows[r]);
   }
@@ -263,7 +261,8 @@ void stop_driven_runs(World& world) {
 /// Velocities, impulses and states. The rows' speeds are those that the unsteered rows see.
 void unload(World& world) {
   const SweepScratch& s = world.scratch.sweeps;
-  for (std::size_t b = 0; b < world.velocity.size(); ++b) {
+  for (const int number : bodies_of(world.scratch.parts, part_being_solved(world))) {
+    const std::size_t b = index(number);
     world.velocity[b] = s.velocity[b].head<2>();
     world.angular_velocity[b] = s.velocity[b].z();
   }
@@ -306,12 +305,11 @@ void store_middles(World& world) {
 
 }  // namespace
 
-void solve_iterative(const Scene& scene, World& world, double kick) {
-  world.diagnostics.active_set_solves = 0;
-  world.velocity = world.scratch.velocity_free;
-  world.angular_velocity = world.scratch.angular_velocity_free;
+void solve_iterative(const Scene& scene, World& world, int part, double kick) {
+  world.scratch.active_set.part = part;
+  release_bodies(world);
   if (world.scratch.rows.empty()) return;
-  find_runs(scene, world);
+  find_runs(scene, world, part_being_solved(world));
   load(world);
   for (int k = 0; k < world.configuration.iterations; ++k) sweep(world);
   stop_driven_runs(world);

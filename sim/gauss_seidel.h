@@ -46,6 +46,6 @@ struct SweepScratch {
 /// until the tensions before and after obey the capstan law. The more sweeps, the nearer to
 /// solve_direct. With a few, tensions are too low and cables give; nothing is kept from step to
 /// step.
-void solve_iterative(const Scene& scene, World& world, double kick);
+void solve_iterative(const Scene& scene, World& world, int part, double kick);
 
 }  // namespace pinchlab

@@ -9,6 +9,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// Inverse mass and inertia of a body in this step, drag included: dv = linear * impulse.
@@ -60,10 +61,12 @@ struct Row {
 /// Mobilities for a velocity kick of `kick` seconds.
 void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out);
 
-/// Rows of all cables at the present positions (thesis: SegmentsInit).
-void make_segment_rows(const Scene& scene, World& world, double kick);
+/// Begins world.scratch.rows with the rows of a part's cables at the present positions (thesis:
+/// SegmentsInit).
+void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick);
 
-/// Rows of all contacts (thesis: ContactsInit).
-void make_contact_rows(const Scene& scene, World& world);
+/// Adds the rows of a part's contacts (thesis: ContactsInit). Bodies that cannot give way to one
+/// another get none.
+void make_contact_rows(const Scene& scene, World& world, const Part& part);
 
 }  // namespace pinchlab

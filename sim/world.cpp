@@ -263,6 +263,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   for (const Body& body : scene.bodies) {
     world.position.push_back(body.position);
     world.angle.push_back(body.angle);
+    world.still_steps.push_back(0);
     const bool moves = body.kind == BodyKind::free || body.kind == BodyKind::rail;
     Vec2 v = moves ? body.velocity : Vec2::Zero();
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
@@ -282,6 +283,8 @@ World make_world(const Scene& scene, Configuration configuration) {
   refuse_cables_through_bodies(scene, world);
   find_contacts(scene, world);
   configure_pinches(scene, world);
+  find_parts(scene, world);
+  assign_contacts(world);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
   if (configuration.method != Method::pinch) {

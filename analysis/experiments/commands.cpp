@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/commands.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/experiments/experiment.h"
+#include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/stability/stability.h"
+#include "demos/command_line.h"
+
+namespace pinchlab::experiments {
+
+namespace {
+
+struct Experiment {
+  const char* name;
+  const char* help;
+  void (*run)(const Options& options);
+  bool has_loads = false;
+};
+
+/// All but render, which has options of its own.
+const std::vector<Experiment> experiments = {
+    {"stability", "How far each method holds, and how it fails beyond", run_stability},
+};
+
+/// The options as they can be typed again, after the command's name.
+std::string typed(const Options& options, bool has_loads) {
+  std::string text;
+  if (options.quick) text += " --quick";
+  if (has_loads && options.loads != Options().loads) {
+    text += fmt::format(" --loads {}", fmt::join(options.loads, ","));
+  }
+  return text + " --out " + options.out.string();
+}
+
+void add_options(CLI::App& command, Options& options) {
+  command.add_option("--out", options.out, "Folder for tables, figures and page [results]")
+      ->type_name("DIR");
+  command.add_flag("--quick", options.quick, "The same from fewer points, in a tenth of the time");
+}
+
+void add_loads(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "--loads", options.loads,
+          fmt::format("How often the scene is repeated [{}]", fmt::join(options.loads, ",")))
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 100000));
+}
+
+void add_experiment(CLI::App& bench, const Experiment& experiment) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = bench.add_subcommand(experiment.name, experiment.help);
+  add_options(*command, *options);
+  if (experiment.has_loads) add_loads(*command, *options);
+  command->callback([options, &experiment] {
+    options->command =
+        fmt::format("pinchlab bench {}{}", experiment.name, typed(*options, experiment.has_loads));
+    experiment.run(*options);
+  });
+}
+
+void add_render(CLI::App& bench) {
+  auto run = std::make_shared<RenderRun>();
+  auto scene = std::make_shared<std::string>();
+  auto size = std::make_shared<Size>(Size{run->width, run->height});
+  CLI::App* command = bench.add_subcommand(
+      "render", "What simulating, drawing, converting and encoding a frame cost");
+  command->add_option("scene", *scene, "Scene file [all of demos, and their mean]")
+      ->type_name("SCENE");
+  add_method(*command, run->method,
+             "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
+  add_size(*command, *size, "Pixels of a frame, even [960x960]");
+  command->add_option("--frames", run->frames, "Frames to measure [all of the clip]")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--out", run->out, "Folder for a table and a page as well")->type_name("DIR");
+  command->callback([run, scene, size] {
+    run->scene = *scene;
+    run->width = size->width;
+    run->height = size->height;
+    run->command = fmt::format(
+        "pinchlab bench render{}{} --method {} --size {}x{}{} --out {}", scene->empty() ? "" : " ",
+        *scene, run->method, run->width, run->height,
+        run->frames > 0 ? fmt::format(" --frames {}", run->frames) : "", run->out.string());
+    run_render(*run);
+  });
+}
+
+void add_all(CLI::App& bench) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = bench.add_subcommand("all", "All experiments, one after another");
+  add_options(*command, *options);
+  command->footer("The published results are made by: pinchlab bench all --out analysis/results");
+  command->callback([options] {
+    for (const Experiment& experiment : experiments) {
+      options->command = fmt::format("pinchlab bench {}{}", experiment.name,
+                                     typed(*options, experiment.has_loads));
+      experiment.run(*options);
+    }
+    RenderRun render;
+    render.out = options->out;
+    if (options->quick) render.frames = 60;
+    render.command = "pinchlab bench render";
+    run_render(render);
+  });
+}
+
+}  // namespace
+
+void add_bench_commands(CLI::App& app) {
+  CLI::App* bench = app.add_subcommand("bench", "Experiments on speed, accuracy and stability")
+                        ->require_subcommand(1);
+  for (const Experiment& experiment : experiments) add_experiment(*bench, experiment);
+  add_render(*bench);
+  add_all(*bench);
+  bench->footer(
+      "Each writes raw tables (CSV), figures (SVG and PDF, by gnuplot) and a page that says in "
+      "words what\nthey show.\n\n"
+      "Examples:\n"
+      "  pinchlab bench all --quick                        everything, in less than two minutes\n"
+      "  pinchlab bench all --out analysis/results         the published results\n"
+      "  pinchlab bench render demos/03-drop.json          what a frame of one clip costs");
+}
+
+}  // namespace pinchlab::experiments

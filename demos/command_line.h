@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Options that several commands share.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+namespace pinchlab {
+
+struct Size {
+  int width = 0, height = 0;  // px
+};
+
+/// --size WxH.
+void add_size(CLI::App& command, Size& size, const std::string& help);
+
+/// What commands take when no scene is named. Throws std::runtime_error where the current folder
+/// has no demos.
+std::filesystem::path demos_folder();
+
+/// --method: a std::string, or a std::optional of one.
+template <class Text>
+void add_method(CLI::App& command, Text& method, const std::string& help,
+                std::vector<std::string> names = {"pinch", "pinch_no_contact", "cable",
+                                                  "baseline"}) {
+  command.add_option("--method", method, help)
+      ->type_name("M")
+      ->check(CLI::IsMember(std::move(names)));
+}
+
+}  // namespace pinchlab
