@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/cable.h"
+#include "sim/light_bodies.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
 
@@ -113,6 +114,7 @@ void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out)
 
 void make_segment_rows(const Scene& scene, World& world, double kick) {
   Scratch& scratch = world.scratch;
+  steady_light_bodies(scene, world);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   scratch.segment_begin.clear();
   scratch.row_of_segment.clear();

@@ -53,6 +53,13 @@ struct Release {
   int cable, body;
 };
 
+/// What taut spans do to a body across themselves: h^2 times their stiffness, and that times their
+/// other ends' velocities. By steady_light_bodies.
+struct SpanMass {
+  Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();  // kg
+  Vec2 momentum = Vec2::Zero();                    // kg m/s
+};
+
 struct Scratch {
   std::vector<Release> released;  // since update_segments
   BroadPhase broad_phase;
@@ -61,6 +68,7 @@ struct Scratch {
   std::vector<int> fill;  // cursors while Lists are made
   std::vector<Row> rows;
   std::vector<Mobility> mobility;                  // one a body
+  std::vector<SpanMass> span_masses;               // likewise; empty where no body is too light
   std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
   std::vector<int> normal_row_of_contact;
   std::vector<int> order;  // of the rows, by order_rows
