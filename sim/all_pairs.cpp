@@ -8,10 +8,9 @@ namespace pinchlab {
 
 namespace {
 
-/// Whether two boxes meet, without a branch for each side.
-bool overlap(const Vec2& low_a, const Vec2& high_a, const Vec2& low_b, const Vec2& high_b) {
-  return (low_b.x() <= high_a.x()) & (low_a.x() <= high_b.x()) & (low_b.y() <= high_a.y()) &
-         (low_a.y() <= high_b.y());
+bool overlap(const Box& a, const Box& b) {
+  return b.low.x() <= a.high.x() && a.low.x() <= b.high.x() && b.low.y() <= a.high.y() &&
+         a.low.y() <= b.high.y();
 }
 
 }  // namespace
@@ -19,15 +18,15 @@ bool overlap(const Vec2& low_a, const Vec2& high_a, const Vec2& low_b, const Vec
 void find_all_body_pairs(const Scene& scene, World& world) {
   BroadPhase& broad = world.scratch.broad_phase;
   broad.body_pairs.clear();
-  update_boxes(scene, world);
+  update_boxes(scene, world, 0.0);
   const int count = static_cast<int>(scene.bodies.size());
   for (int a = 0; a < count; ++a) {
     const auto i = static_cast<std::size_t>(a);
     const bool fixed = scene.bodies[i].kind == BodyKind::fixed;
-    const Vec2 low = broad.low[i], high = broad.high[i];
+    const Box box = broad.boxes[i];
     for (int b = a + 1; b < count; ++b) {
       const auto j = static_cast<std::size_t>(b);
-      if (!overlap(low, high, broad.low[j], broad.high[j])) continue;
+      if (!overlap(box, broad.boxes[j])) continue;
       if (fixed && scene.bodies[j].kind == BodyKind::fixed) continue;
       broad.body_pairs.push_back({a, b});
     }
@@ -41,10 +40,10 @@ void find_all_span_pairs(const Scene& scene, World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
-      const auto [low, high] = span_box(cable.segments[s]);
+      const Box box = span_box(cable.segments[s]);
       for (int b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        if (!overlap(low, high, broad.low[i], broad.high[i])) continue;
+        if (!overlap(box, broad.boxes[i])) continue;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), b});
       }
     }

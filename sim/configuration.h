@@ -40,6 +40,7 @@ struct Configuration {
 
   Configuration() = default;
   Configuration(Method m) : method(m) {}  // NOLINT: a method alone is a configuration
+  bool operator==(const Configuration&) const = default;
 };
 
 /// The whole of what the thesis describes: cables solved by projected Gauss-Seidel sweeps,
@@ -48,6 +49,9 @@ Configuration thesis_configuration();
 
 /// "thesis", or the name of a method with our own choices for the rest; nothing for other names.
 std::optional<Configuration> configuration_from_string(std::string_view name);
+
+/// The name that configuration_from_string knows it by; of any other one its method's.
+const char* to_string(const Configuration& configuration);
 
 const char* to_string(Solver solver);
 const char* to_string(Detection detection);

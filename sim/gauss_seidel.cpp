@@ -38,9 +38,9 @@ SweepRow sweep_row(const World& world, const Row& row) {
   const int ground = static_cast<int>(mobility.size());
   r.a = row.a >= 0 ? row.a : ground;
   r.b = row.b >= 0 ? row.b : ground;
-  r.normal = row.normal;
+  r.other = row.normal;
+  r.clamp = is_friction(row) ? Clamp::friction : Clamp::tension;
   r.by_run = false;
-  r.friction = is_friction(row);
   r.ja = r.jb = r.response_a = r.response_b = Eigen::Vector3d::Zero();
   if (row.a >= 0) r.ja = row.ja, r.response_a = mobility[index(row.a)] * row.ja;
   if (row.b >= 0) r.jb = row.jb, r.response_b = mobility[index(row.b)] * row.jb;
@@ -65,19 +65,27 @@ double coupling(const SweepRow& p, const SweepRow& q) {
 void load(World& world) {
   SweepScratch& s = world.scratch.sweeps;
   const std::size_t bodies = world.velocity.size();
-  s.velocity.resize(bodies + 1);
-  for (std::size_t b = 0; b < bodies; ++b) {
+  s.velocity.resize(bodies + 1, Eigen::Vector3d::Zero());
+  for (const int number : bodies_of(world.scratch.parts, part_being_solved(world))) {
+    const std::size_t b = index(number);
     s.velocity[b] << world.velocity[b], world.angular_velocity[b];
   }
-  s.velocity[bodies].setZero();
   s.rows.clear();
   for (const Row& row : world.scratch.rows) s.rows.push_back(sweep_row(world, row));
   s.coupling.clear();
-  for (Run& run : world.scratch.active_set.capstan.runs) {
+  CapstanScratch& capstan = world.scratch.active_set.capstan;
+  for (Run& run : capstan.runs) {
     SweepRow &in = s.rows[index(run.row_in)], &out = s.rows[index(run.row_out)];
     in.by_run = out.by_run = true;
     s.coupling.push_back(coupling(in, out));
     run.speed = 0.0;
+    for (int k = run.passages_begin; k < run.passages_end; ++k) {
+      const Passage& p = capstan.passages[index(k)];
+      if (p.middle_out < 0) continue;
+      s.rows[index(p.middle)].clamp = s.rows[index(p.middle_out)].clamp = Clamp::middle;
+      s.rows[index(p.middle)].other = p.middle_out;
+      s.rows[index(p.middle_out)].other = p.middle;
+    }
   }
 }
 
@@ -94,30 +102,37 @@ void set_impulse(SweepScratch& s, SweepRow& row, double impulse) {
 }
 
 double unclamped(const SweepScratch& s, const SweepRow& row) {
-  return row.stiffness > 0.0 ? row.impulse - speed(s, row) / row.stiffness : row.impulse;
+  return row.impulse - speed(s, row) / row.stiffness;
 }
 
 /// Most that a friction row may bear at the present force on it.
 double most_friction(const SweepScratch& s, const SweepRow& row) {
-  const double force = row.normal >= 0 ? s.rows[index(row.normal)].impulse : infinity;
+  const double force = row.other >= 0 ? s.rows[index(row.other)].impulse : infinity;
   return row.bound == 0.0 || force == 0.0 ? 0.0 : row.bound * force;
 }
 
 void relax(SweepScratch& s, SweepRow& row) {
-  if (row.friction) {
-    const double most = most_friction(s, row);
-    set_impulse(s, row, std::clamp(unclamped(s, row), -most, most));
-  } else {
-    set_impulse(s, row, std::max(unclamped(s, row), 0.0));
+  if (row.stiffness == 0.0) return;
+  double least = 0.0, most = infinity;
+  if (row.clamp == Clamp::friction) {
+    most = most_friction(s, row);
+    least = -most;
+  } else if (row.clamp == Clamp::middle) {
+    most = s.rows[index(row.other)].impulse + row.bound;
   }
+  set_impulse(s, row, std::clamp(unclamped(s, row), least, most));
 }
 
 /// The two segments of a run with the material at rest on the body, solved exactly, each >= 0.
 void relax_sticking(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled) {
   const double determinant = in.stiffness * out.stiffness - coupled * coupled;
-  if (determinant <= 1e-12 * in.stiffness * out.stiffness) {  // one repeats the other
-    relax(s, in);
-    relax(s, out);
+  if (determinant <= 1e-12 * in.stiffness * out.stiffness) {
+    // One repeats the other (or cannot move anything): both take half.
+    const double most = std::max(in.stiffness, out.stiffness);
+    if (most == 0.0) return;
+    const double w_in = speed(s, in), w_out = speed(s, out);
+    set_impulse(s, in, std::max(0.0, in.impulse - 0.5 * w_in / most));
+    set_impulse(s, out, std::max(0.0, out.impulse - 0.5 * w_out / most));
     return;
   }
   const double w_in = speed(s, in), w_out = speed(s, out);
@@ -132,6 +147,25 @@ void relax_sticking(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled
   }
   set_impulse(s, in, p_in);
   set_impulse(s, out, p_out);
+}
+
+/// What the middle body of a pinch takes from the tension.
+double middle_impulse(const SweepScratch& s, const Passage& p) {
+  const double out = p.middle_out >= 0 ? s.rows[index(p.middle_out)].impulse : 0.0;
+  return s.rows[index(p.middle)].impulse - out;
+}
+
+/// Lets the material slide over the run's body at another speed, and with it through the pinches.
+void slide(SweepScratch& s, const CapstanScratch& capstan, Run& run, double speed) {
+  const double change = speed - run.speed;
+  run.speed = speed;
+  s.rows[index(run.row_in)].bias -= change;
+  s.rows[index(run.row_out)].bias += change;
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const Passage& p = capstan.passages[index(k)];
+    if (p.middle >= 0) s.rows[index(p.middle)].bias += change;
+    if (p.middle_out >= 0) s.rows[index(p.middle_out)].bias -= change;
+  }
 }
 
 /// p_out = factor * p_in + offset where the material slides `way` (1 forward, -1 backward).
@@ -149,18 +183,19 @@ SlidingLaw sliding_law(const SweepScratch& s, const CapstanScratch& capstan, con
     law.factor = std::clamp(law.factor * factor, 1.0 / largest, largest);
     law.offset = std::clamp(law.offset * factor, -largest, largest);
     if (p.normal >= 0) law.offset += way * p.friction * s.rows[index(p.normal)].impulse;
-    if (p.middle >= 0) law.offset -= s.rows[index(p.middle)].impulse;
+    if (p.middle >= 0) law.offset -= middle_impulse(s, p);
   }
   return law;
 }
 
 /// Sliding: tensions on the law, one unknown p_in, such that the two segments together have the
-/// material that they need, w_in + w_out = 0. What the one lacks then slides over from the other.
-void relax_sliding(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled,
-                   const SlidingLaw& law, Run& run) {
+/// material that they need, w_in + w_out = 0. Returns the speed at which what the one lacks slides
+/// over from the other.
+double relax_sliding(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled,
+                     const SlidingLaw& law) {
   const double by_in = in.stiffness + coupled, by_out = out.stiffness + coupled;
   const double by_both = by_in + law.factor * by_out;
-  double p_in = in.impulse;
+  double p_in = (in.impulse + out.impulse - law.offset) / (1.0 + law.factor);
   if (by_both > 1e-12 * (in.stiffness + law.factor * out.stiffness)) {
     p_in =
         (by_in * in.impulse + by_out * (out.impulse - law.offset) - speed(s, in) - speed(s, out)) /
@@ -169,42 +204,63 @@ void relax_sliding(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled,
   p_in = std::max({p_in, 0.0, -law.offset / law.factor});
   set_impulse(s, in, p_in);
   set_impulse(s, out, std::max(0.0, law.factor * p_in + law.offset));
-  run.speed = std::max(-speed(s, out), std::min(speed(s, in), 0.0));
-  in.bias -= run.speed;
-  out.bias += run.speed;
+  return std::max(-speed(s, out), std::min(speed(s, in), 0.0));
 }
 
 void relax_run(World& world, Run& run, double coupled) {
   SweepScratch& s = world.scratch.sweeps;
+  const CapstanScratch& capstan = world.scratch.active_set.capstan;
   SweepRow &in = s.rows[index(run.row_in)], &out = s.rows[index(run.row_out)];
-  in.bias += run.speed;
-  out.bias -= run.speed;
-  run.speed = 0.0;
+  slide(s, capstan, run, 0.0);
   run.slip = Slip::stick;
   relax_sticking(s, in, out, coupled);
   if (run.passages_begin == run.passages_end) return;
   for (const Slip slip : {Slip::forward, Slip::backward}) {
     const int way = static_cast<int>(slip);
-    const SlidingLaw law = sliding_law(s, world.scratch.active_set.capstan, run, way);
+    const SlidingLaw law = sliding_law(s, capstan, run, way);
     if (!(way * (out.impulse - law.factor * in.impulse - law.offset) > 0.0)) continue;
     run.slip = slip;
-    relax_sliding(s, in, out, coupled, law, run);
+    slide(s, capstan, run, relax_sliding(s, in, out, coupled, law));
     return;
   }
 }
 
-/// A pinch on a cable that is slack on both sides passes friction from body to body, as much as the
-/// smoother of the two allows.
-void bound_slack_pinches(World& world) {
+/// What the middle bodies of pinches can hold while the tensions before and after the run are what
+/// they are.
+///
+/// One row: friction of the contact's force; on a cable that is slack on both sides friction passes
+/// from body to body, as much as the smoother of the two allows. Three rows: tensions t1 before
+/// and t2 after the middle body within t1 / f <= t2 <= f t1. With u1 and u2 the largest that they
+/// can be, all arcs holding as much as they can, t1 - t2 is at most both u1 (1 - 1/f) and
+/// u2 (f - 1), and t2 - t1 the like.
+void bound_middles(World& world, const Run& run) {
   SweepScratch& s = world.scratch.sweeps;
-  const std::vector<Run>& runs = world.scratch.active_set.capstan.runs;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const Row& row = world.scratch.rows[r];
-    if (row.run < 0) continue;
-    const Run& run = runs[index(row.run)];
-    const bool slack =
-        s.rows[index(run.row_in)].impulse == 0.0 && s.rows[index(run.row_out)].impulse == 0.0;
-    s.rows[r].bound = slack ? std::min(row.friction, row.wrapped_friction) : row.friction;
+  const CapstanScratch& capstan = world.scratch.active_set.capstan;
+  double tension = s.rows[index(run.row_in)].impulse;
+  const bool slack = tension == 0.0 && s.rows[index(run.row_out)].impulse == 0.0;
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const Passage& p = capstan.passages[index(k)];
+    tension *= p.factor;
+    if (p.middle < 0) continue;
+    if (p.middle_out >= 0) {
+      s.rows[index(p.middle)].bound = tension * (1.0 - 1.0 / p.middle_factor);
+      s.rows[index(p.middle_out)].bound = tension * (p.middle_factor - 1.0);
+    } else {
+      const Row& row = world.scratch.rows[index(p.middle)];
+      s.rows[index(p.middle)].bound =
+          slack ? std::min(row.friction, row.wrapped_friction) : row.friction;
+    }
+    tension = std::max(0.0, tension - middle_impulse(s, p));
+  }
+  tension = s.rows[index(run.row_out)].impulse;
+  for (int k = run.passages_end - 1; k >= run.passages_begin; --k) {
+    const Passage& p = capstan.passages[index(k)];
+    tension *= p.factor;
+    if (p.middle_out < 0) continue;
+    SweepRow &middle = s.rows[index(p.middle)], &middle_out = s.rows[index(p.middle_out)];
+    middle.bound = std::min(middle.bound, tension * (p.middle_factor - 1.0));
+    middle_out.bound = std::min(middle_out.bound, tension * (1.0 - 1.0 / p.middle_factor));
+    tension = std::max(0.0, tension + middle_impulse(s, p));
   }
 }
 
@@ -212,10 +268,8 @@ void bound_slack_pinches(World& world) {
 void sweep(World& world) {
   SweepScratch& s = world.scratch.sweeps;
   std::vector<Run>& runs = world.scratch.active_set.capstan.runs;
-  if (!runs.empty()) bound_slack_pinches(world);
-  const std::size_t contacts = world.scratch.normal_row_of_contact.empty()
-                                   ? s.rows.size()
-                                   : index(world.scratch.normal_row_of_contact.front());
+  for (const Run& run : runs) bound_middles(world, run);
+  const std::size_t contacts = index(world.scratch.first_contact_row);
   for (std::size_t r = 0; r < contacts; ++r) {
     if (!s.rows[r].by_run) relax(s, s.rows[r]);
   }
@@ -226,7 +280,8 @@ void sweep(World& world) {
 /// Velocities, impulses and states. The rows' speeds are those that the unsteered rows see.
 void unload(World& world) {
   const SweepScratch& s = world.scratch.sweeps;
-  for (std::size_t b = 0; b < world.velocity.size(); ++b) {
+  for (const int number : bodies_of(world.scratch.parts, part_being_solved(world))) {
+    const std::size_t b = index(number);
     world.velocity[b] = s.velocity[b].head<2>();
     world.angular_velocity[b] = s.velocity[b].z();
   }
@@ -244,18 +299,41 @@ void unload(World& world) {
   }
 }
 
+/// The middle bodies of pinches with three rows: which of them let the cable slide through.
+void store_middles(World& world) {
+  const SweepScratch& s = world.scratch.sweeps;
+  const CapstanScratch& capstan = world.scratch.active_set.capstan;
+  for (const Run& run : capstan.runs) {
+    for (int k = run.passages_begin; k < run.passages_end; ++k) {
+      const Passage& p = capstan.passages[index(k)];
+      if (p.middle_out < 0) continue;
+      const Row& row = world.scratch.rows[index(p.middle)];
+      Link& link = world.cables[index(row.index)].links[index(row.item)];
+      const double held = middle_impulse(s, p);
+      if (held >= s.rows[index(p.middle)].bound) {
+        link.slip = Slip::backward;
+      } else if (-held >= s.rows[index(p.middle_out)].bound) {
+        link.slip = Slip::forward;
+      } else {
+        link.slip = Slip::stick;
+      }
+      link.slip_speed = link.slip == Slip::stick ? 0.0 : row.speed + run.speed;
+    }
+  }
+}
+
 }  // namespace
 
-void solve_iterative(const Scene& scene, World& world, double kick) {
-  world.diagnostics.active_set_solves = 0;
-  world.velocity = world.scratch.velocity_free;
-  world.angular_velocity = world.scratch.angular_velocity_free;
+void solve_iterative(const Scene& scene, World& world, int part, double kick) {
+  world.scratch.active_set.part = part;
+  release_bodies(world);
   if (world.scratch.rows.empty()) return;
-  find_runs(scene, world);
+  find_runs(scene, world, part_being_solved(world));
   load(world);
   for (int k = 0; k < world.configuration.iterations; ++k) sweep(world);
   unload(world);
   store_states(world, kick);
+  store_middles(world);
 }
 
 }  // namespace pinchlab

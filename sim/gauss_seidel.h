@@ -10,19 +10,26 @@ namespace pinchlab {
 struct Scene;
 struct World;
 
+/// What the impulse of a row may be.
+enum class Clamp {
+  tension,   ///< >= 0
+  friction,  ///< |impulse| <= bound * impulse of the row `other`, or without one <= bound
+  middle,    ///< >= 0, and at most bound above the impulse of `other`, its opposite in a pinch
+};
+
 /// A row with all that a sweep reads of it, in one piece. The world is a body too, the last one,
 /// which nothing moves.
 struct SweepRow {
-  int a, b;                // bodies
-  int normal;              // friction: the row whose impulse bounds it, or -1
+  int a, b;        // bodies
+  int other = -1;  // see Clamp
+  Clamp clamp;
   bool by_run;             // relaxed together with its neighbour across a sliding body
-  bool friction;           // two-sided
   Eigen::Vector3d ja, jb;  // w = ja va + jb vb + bias + compliance * impulse
   Eigen::Vector3d response_a, response_b;  // velocity change of the bodies by a unit impulse
   double bias;                             // m/s
   double compliance;                       // 1/kg
   double stiffness;                        // 1/kg, dw / dimpulse; 0 where nothing can move
-  double bound;                            // friction: |impulse| <= bound * impulse of `normal`
+  double bound;                            // see Clamp
   double impulse;                          // N s
 };
 
@@ -39,6 +46,6 @@ struct SweepScratch {
 /// Two segments that meet on a body over which the cable may slide are relaxed together: sticking,
 /// or where their tensions then break the capstan law, sliding at the law's ratio with one speed of
 /// slip. The more sweeps, the nearer to solve_direct.
-void solve_iterative(const Scene& scene, World& world, double kick);
+void solve_iterative(const Scene& scene, World& world, int part, double kick);
 
 }  // namespace pinchlab

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "sim/cable.h"
+#include "sim/parts.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -14,20 +15,31 @@ namespace {
 /// Below this part of a body's mass a span's share is not worth adding up.
 constexpr double negligible = 0.05;
 
-void note_end(const Scene& scene, World& world, const Segment& segment, int body, int other) {
-  if (body < 0) return;
+/// Whether the segment counts for `body` at its one end; `other` is at its other end.
+bool note_end(const Scene& scene, World& world, const Segment& segment, int body, int other) {
+  if (body < 0) return false;
   const auto b = static_cast<std::size_t>(body);
   const BodyKind kind = scene.bodies[b].kind;
-  if (kind != BodyKind::free && kind != BodyKind::rail) return;
+  if (kind != BodyKind::free && kind != BodyKind::rail) return false;
   const double h = world.step_length;
   const double mass = 2.0 * h * h * segment.tension / segment.length;
-  if (!(mass > negligible * scene.bodies[b].mass)) return;
+  if (!(mass > negligible * scene.bodies[b].mass)) return false;
   std::vector<SpanMass>& masses = world.scratch.span_masses;
   if (masses.empty()) masses.resize(scene.bodies.size());
   const Vec2 n = left(segment.direction);
   masses[b].mass += mass * n * n.transpose();
   if (other >= 0) {
     masses[b].momentum += mass * n * n.dot(world.velocity[static_cast<std::size_t>(other)]);
+  }
+  return true;
+}
+
+/// Mobilities as they are without spans.
+void restore(const Scene& scene, std::span<const int> bodies, double kick, Scratch& scratch) {
+  for (const int number : bodies) {
+    const auto b = static_cast<std::size_t>(number);
+    if (scratch.span_masses[b].steadied) scratch.mobility[b] = mobility_of(scene.bodies[b], kick);
+    scratch.span_masses[b] = {};
   }
 }
 
@@ -40,8 +52,9 @@ double steady(const Body& body, const SpanMass& span, const Vec2& v, Vec2& veloc
   return share;
 }
 
-void steady(const Body& body, const SpanMass& span, Mobility& mobility, Vec2& velocity) {
+void steady(const Body& body, SpanMass& span, Mobility& mobility, Vec2& velocity) {
   if (span.mass.trace() <= body.mass) return;
+  span.steadied = true;
   if (body.kind == BodyKind::rail) {
     const double share = steady(body, span, body.rail_axis.normalized(), velocity);
     mobility.xx *= share;
@@ -63,21 +76,26 @@ void steady(const Body& body, const SpanMass& span, Mobility& mobility, Vec2& ve
 
 }  // namespace
 
-void steady_light_bodies(const Scene& scene, World& world) {
+void steady_light_bodies(const Scene& scene, World& world, const Part& part, double kick) {
   Scratch& scratch = world.scratch;
-  scratch.span_masses.clear();
-  for (const CableState& cable : world.cables) {
+  const std::span<const int> bodies = bodies_of(scratch.parts, part);
+  if (!scratch.span_masses.empty()) restore(scene, bodies, kick, scratch);
+  bool any = false;
+  for (const int c : cables_of(scratch.parts, part)) {
+    const CableState& cable = world.cables[static_cast<std::size_t>(c)];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
       if (!(segment.tension > 0.0) || segment.length <= 2.0 * cable.half_width) continue;
       const int head = cable.links[s].body;
       const int from = previous_link(cable, static_cast<int>(s));
       const int tail = cable.links[static_cast<std::size_t>(from)].body;
-      note_end(scene, world, segment, head, tail);
-      note_end(scene, world, segment, tail, head);
+      any = note_end(scene, world, segment, head, tail) || any;
+      any = note_end(scene, world, segment, tail, head) || any;
     }
   }
-  for (std::size_t b = 0; b < scratch.span_masses.size(); ++b) {
+  if (!any) return;
+  for (const int number : bodies) {
+    const auto b = static_cast<std::size_t>(number);
     steady(scene.bodies[b], scratch.span_masses[b], scratch.mobility[b], scratch.velocity_free[b]);
   }
 }

@@ -5,6 +5,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// A taut span of tension T and length L is a spring across itself: it pulls a body that leaves its
@@ -21,8 +22,8 @@ struct World;
 /// of T/L, since the other ends may move against the body. Spans shorter than the cable's width are
 /// left out: there the bodies' contact sets the distance.
 ///
-/// Changes mobilities and free velocities in world.scratch; a comparison an end of a span where no
-/// body is too light.
-void steady_light_bodies(const Scene& scene, World& world);
+/// Changes mobilities and free velocities of the part's bodies in world.scratch; a comparison an
+/// end of a span where no body is too light.
+void steady_light_bodies(const Scene& scene, World& world, const Part& part, double kick);
 
 }  // namespace pinchlab

@@ -9,6 +9,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// Inverse mass and inertia of a body in this step, drag included: dv = linear * impulse.
@@ -57,13 +58,16 @@ struct Row {
   bool frozen = false;   // friction rows: keeps its state for this step, whatever its bound
 };
 
-/// Mobilities for a velocity kick of `kick` seconds.
+/// Of a body by itself, for a velocity kick of `kick` seconds; and of all bodies.
+Mobility mobility_of(const Body& body, double kick);
 void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out);
 
-/// Rows of all cables at the present positions (thesis: SegmentsInit).
-void make_segment_rows(const Scene& scene, World& world, double kick);
+/// Begins world.scratch.rows with the rows of a part's cables at the present positions (thesis:
+/// SegmentsInit).
+void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick);
 
-/// Rows of all contacts (thesis: ContactsInit).
-void make_contact_rows(const Scene& scene, World& world);
+/// Adds the rows of a part's contacts (thesis: ContactsInit). Bodies that cannot give way to one
+/// another get none.
+void make_contact_rows(const Scene& scene, World& world, const Part& part);
 
 }  // namespace pinchlab

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "sim/cable.h"
 #include "sim/pinch.h"
@@ -244,7 +245,7 @@ void find_first_tensions(const Scene& scene, World& world) {
     World trial = world;
     trial.configuration.diagnostics = false;
     if (step(scene, trial) != StepStatus::ok) return;
-    if (i > 0 && trial.scratch.span_masses.empty()) return;  // no body is too light
+    if (i > 0 && trial.scratch.span_masses.empty()) return;  // no body is nearly too light
     for (std::size_t c = 0; c < world.cables.size(); ++c) {
       std::vector<Segment>& segments = world.cables[c].segments;
       if (segments.size() != trial.cables[c].segments.size()) continue;
@@ -270,6 +271,10 @@ const char* to_string(Method method) {
 }
 
 World make_world(const Scene& scene, Configuration configuration) {
+  if (configuration.iterations < 1) {
+    throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
+                                            configuration.iterations));
+  }
   World world;
   // A scene is judged by the full model, whatever it is run with.
   world.configuration = Method::pinch;
@@ -277,6 +282,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   for (const Body& body : scene.bodies) {
     world.position.push_back(body.position);
     world.angle.push_back(body.angle);
+    world.still_steps.push_back(0);
     const bool moves = body.kind == BodyKind::free || body.kind == BodyKind::rail;
     Vec2 v = moves ? body.velocity : Vec2::Zero();
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
@@ -296,6 +302,8 @@ World make_world(const Scene& scene, Configuration configuration) {
   refuse_cables_through_bodies(scene, world);
   find_contacts(scene, world);
   configure_pinches(scene, world);
+  find_parts(scene, world);
+  assign_contacts(world);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
   if (configuration.method != Method::pinch) {
