@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/cable.h"
+#include "sim/light_bodies.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
 
@@ -123,29 +124,32 @@ void find_repeated_middles(World& world) {
 
 }  // namespace
 
-void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out) {
-  out.assign(scene.bodies.size(), Mobility{});
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    Mobility& m = out[b];
-    // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what
-    // an impulse adds is divided by 1 + c k / 2.
-    const double linear = 1.0 / (body.mass * (1.0 + 0.5 * kick * body.linear_drag));
-    if (body.kind == BodyKind::free) m.xx = m.yy = linear;
-    if (body.kind == BodyKind::rail) {
-      const Vec2 n = body.rail_axis.normalized();
-      m.xx = linear * n.x() * n.x();
-      m.xy = linear * n.x() * n.y();
-      m.yy = linear * n.y() * n.y();
-    }
-    if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
-      m.angular = 1.0 / (disc_inertia(body) * (1.0 + 0.5 * kick * body.angular_drag));
-    }
+Mobility mobility_of(const Body& body, double kick) {
+  Mobility m;
+  // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what an
+  // impulse adds is divided by 1 + c k / 2.
+  const double linear = 1.0 / (body.mass * (1.0 + 0.5 * kick * body.linear_drag));
+  if (body.kind == BodyKind::free) m.xx = m.yy = linear;
+  if (body.kind == BodyKind::rail) {
+    const Vec2 n = body.rail_axis.normalized();
+    m.xx = linear * n.x() * n.x();
+    m.xy = linear * n.x() * n.y();
+    m.yy = linear * n.y() * n.y();
   }
+  if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    m.angular = 1.0 / (disc_inertia(body) * (1.0 + 0.5 * kick * body.angular_drag));
+  }
+  return m;
+}
+
+void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out) {
+  out.clear();
+  for (const Body& body : scene.bodies) out.push_back(mobility_of(body, kick));
 }
 
 void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick) {
   Scratch& scratch = world.scratch;
+  steady_light_bodies(scene, world, part, kick);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   scratch.rows.clear();
   scratch.segment_begin.resize(world.cables.size());

@@ -60,7 +60,8 @@ struct Row {
   bool frozen = false;   // friction rows: keeps its state for this step, whatever its bound
 };
 
-/// Mobilities for a velocity kick of `kick` seconds.
+/// Of a body by itself, for a velocity kick of `kick` seconds; and of all bodies.
+Mobility mobility_of(const Body& body, double kick);
 void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out);
 
 /// Begins world.scratch.rows with the rows of a part's cables at the present positions (thesis:

@@ -68,6 +68,14 @@ struct Release {
   int cable, body;
 };
 
+/// What taut spans do to a body across themselves: h^2 times their stiffness, and that times their
+/// other ends' velocities. By steady_light_bodies.
+struct SpanMass {
+  Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();  // kg
+  Vec2 momentum = Vec2::Zero();                    // kg m/s
+  bool steadied = false;                           // the body's mobility is not its own
+};
+
 /// The order of a part's rows, for the bodies that they couple.
 struct RowOrder {
   std::vector<int> structure, order;
@@ -82,6 +90,7 @@ struct Scratch {
   std::vector<Row> rows;                           // of the part being solved
   std::vector<Mobility> mobility;                  // one a body
   double mobility_kick = 0.0;                      // s, what they are for
+  std::vector<SpanMass> span_masses;               // one a body; empty until one is too light
   std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
   std::vector<int> normal_row_of_contact;          // of the part's contacts; -1: none
   std::vector<int> middle_row_of_contact;          // the first of its middle rows; -1: none

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies too light for the steps to follow how they vibrate on taut spans.
+
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+/// 1 kg at the middle of a hanging line of 2 m with `ratio` kg at its end, `aside` m out of line.
+Scene weighted_line(double ratio, double aside) {
+  Scene scene;
+  scene.bodies.push_back(body("light", BodyKind::free, aside, -1.0, 0.1, 1.0));
+  scene.bodies.push_back(body("heavy", BodyKind::free, 0.0, -2.0, 0.2, ratio));
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0)));
+  scene.cables.push_back(cable(on(0), {}, on(1)));
+  scene.cables[1].name = "lower";
+  return scene;
+}
+
+TEST(LightBodies, StayOnTheirLineWhateverItCarries) {
+  for (int power = 0; power <= 9; ++power) {
+    Scene scene = weighted_line(std::pow(10.0, power), 1e-3);
+    for (Body& b : scene.bodies) b.linear_drag = 4.0;
+    World world = make_world(scene, measured());
+    for (int i = 0; i < 240 * 5; ++i) {
+      run(scene, world, 1);
+      ASSERT_LT(std::abs(world.position[0].x()), 2e-3) << "ratio 1e" << power << ", step " << i;
+      ASSERT_LT(world.diagnostics.largest_stretch, 1e-4) << "ratio 1e" << power << ", step " << i;
+    }
+    EXPECT_LT(world.velocity[0].norm(), 1e-3) << power;
+  }
+}
+
+// The damping is against the line's own motion: a light body rides along with a swinging line.
+TEST(LightBodies, RideWithAMovingLine) {
+  for (const double ratio : {1e4, 1e6}) {
+    Scene scene = weighted_line(ratio, 0.0);
+    scene.bodies[0].position = {1.0 * std::sin(1.0), -std::cos(1.0)};
+    scene.bodies[1].position = {2.0 * std::sin(1.0), -2.0 * std::cos(1.0)};
+    World world = make_world(scene, measured());
+    for (int i = 0; i < 240 * 5; ++i) {
+      run(scene, world, 1);
+      const Vec2 middle = 0.5 * world.position[1];
+      ASSERT_LT((world.position[0] - middle).norm(), 2e-3) << ratio << ", step " << i;
+    }
+  }
+}
+
+TEST(LightBodies, NothingChangesWhereStepsCanFollow) {
+  const Scene scene = weighted_line(100.0, 0.05);
+  World world = make_world(scene, measured());
+  for (int i = 0; i < 240; ++i) {
+    run(scene, world, 1);
+    const Mobility& light = world.scratch.mobility[0];
+    ASSERT_EQ(light.xx, 1.0);
+    ASSERT_EQ(light.xy, 0.0);
+    ASSERT_EQ(light.yy, 1.0);
+  }
+}
+
+// A bead on a rail across a taut line: only the rail's direction is open to it.
+TEST(LightBodies, OnARailAcrossTheLine) {
+  Scene scene = weighted_line(1e6, 1e-3);
+  scene.bodies[0].kind = BodyKind::rail;
+  scene.bodies[0].rail_axis = Vec2(1.0, 0.0);
+  scene.bodies[1].kind = BodyKind::rail;
+  World world = make_world(scene, measured());
+  run(scene, world, 1200);
+  EXPECT_LT(std::abs(world.position[0].x()), 2e-3);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
