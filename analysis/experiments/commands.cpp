@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/stress.h"
 #include "demos/command_line.h"
 
 namespace pinchlab::experiments {
@@ -24,7 +24,10 @@ struct Experiment {
 };
 
 /// All but render, which has options of its own.
-const std::vector<Experiment> experiments = {};
+constexpr Experiment experiments[] = {
+    {"stress", "What a step costs as scenes grow, stage by stage, against the thesis' method",
+     run_stress, true},
+};
 
 /// The options as they can be typed again, after the command's name.
 std::string typed(const Options& options, bool has_loads) {

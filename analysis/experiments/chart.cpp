@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/gnuplot.h"
+
+namespace pinchlab::experiments {
+
+namespace {
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+struct Label {
+  std::string text;
+  int style;
+  double x, y;
+};
+
+/// Moves labels apart by at least `gap` decades, each as little as may be: from the middle of what
+/// overlaps.
+void spread_labels(std::vector<Label>& labels, double gap) {
+  std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+  std::vector<double> place;
+  place.reserve(labels.size());
+  for (const Label& label : labels) place.push_back(std::log10(label.y));
+  for (int round = 0; round < 200; ++round) {
+    for (std::size_t i = 1; i < place.size(); ++i) {
+      const double lacking = gap - (place[i] - place[i - 1]);
+      if (lacking <= 0.0) continue;
+      place[i - 1] -= 0.5 * lacking;
+      place[i] += 0.5 * lacking;
+    }
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) labels[i].y = std::pow(10.0, place[i]);
+}
+
+std::string data_block(const std::string& name, const Curve& curve) {
+  std::string text = fmt::format("{} << EOD\nx,y,low,high\n", name);
+  for (const CurvePoint& p : curve.points) {
+    if (p.y.median > 0.0) {
+      text += fmt::format("{},{},{},{}\n", p.x, p.y.median, std::max(p.y.low, p.y.median * 1e-3),
+                          p.y.high);
+    }
+  }
+  return text + "EOD\n";
+}
+
+std::string panel_commands(const Panel& panel, std::size_t number, int height_px) {
+  std::string data, plot;
+  std::vector<Label> labels;
+  Range x, y;
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const Curve& curve = panel.curves[c];
+    const CurvePoint* last = nullptr;
+    for (const CurvePoint& p : curve.points) {
+      if (!(p.y.median > 0.0)) continue;
+      x.add(p.x);
+      y.add(p.y.median);
+      last = &p;
+    }
+    if (last == nullptr) continue;
+    labels.push_back({curve.label, curve.style, last->x, last->y.median});
+    const std::string name = fmt::format("$p{}c{}", number, c);
+    data += data_block(name, curve);
+    const std::string dash = curve.dashed ? " dt (6,4)" : "";
+    plot += fmt::format("{}{} using 1:2 with linespoints ls {}{} notitle",
+                        plot.empty() ? "plot " : ", \\\n  ", name, curve.style, dash);
+    if (curve.spread) {
+      plot += fmt::format(", \\\n  {} using 1:2:3:4 with yerrorbars ls {} lw 1 ps 0 notitle", name,
+                          curve.style);
+    }
+  }
+  if (labels.empty()) return "";
+  const double decades = std::log10(y.high / y.low) + 0.2;
+  const double line_share = 19.0 / (height_px - 110.0);  // of the plot's height
+  spread_labels(labels, decades * line_share);
+  for (const Label& label : labels) y.add(label.y);
+  std::string text = data;
+  text += fmt::format(
+      "unset label\nset title {} offset 0,-0.5\nset xlabel {}\nset ylabel {}\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\n",
+      analysis::gnuplot_quote(panel.title), analysis::gnuplot_quote(panel.x_label),
+      analysis::gnuplot_quote(panel.y_label), x.low / 1.25, x.high * panel.label_room,
+      y.low * std::pow(10.0, -0.1), y.high * std::pow(10.0, 0.1));
+  for (const Label& label : labels) {
+    text += fmt::format("set label {} at first {}, first {} left tc ls {}\n",
+                        analysis::gnuplot_quote(label.text), label.x * 1.25, label.y, label.style);
+  }
+  return text + plot + '\n';
+}
+
+}  // namespace
+
+std::string charts(const std::vector<Panel>& panels, int height_px) {
+  // Powers of ten as SI prefixes suit times; gnuplot's %h suits the rest.
+  std::string text =
+      "set logscale xy\nset format x '%g'\nset key off\nset mxtics 1\nset mytics 1\n"
+      "set xtics (1, 10, 100, 1000, 10000)\n";
+  if (panels.size() > 1) text += fmt::format("set multiplot layout 1,{}\n", panels.size());
+  for (std::size_t i = 0; i < panels.size(); ++i) text += panel_commands(panels[i], i, height_px);
+  return text + (panels.size() > 1 ? "unset multiplot\n" : "");
+}
+
+}  // namespace pinchlab::experiments
