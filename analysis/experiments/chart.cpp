@@ -77,7 +77,7 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
     plot += fmt::format("{}{} using 1:2 with linespoints ls {}{} notitle",
                         plot.empty() ? "plot " : ", \\\n  ", name, curve.style, dash);
     if (curve.spread) {
-      plot += fmt::format(", \\\n  {} using 1:2:3:4 with yerrorbars ls {} lw 1 ps 0 notitle", name,
+      plot += fmt::format(", \\\n  {} using 1:2:3:4 with yerrorbars ls {} lw 1 pt 0 notitle", name,
                           curve.style);
     }
   }
@@ -89,10 +89,10 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
   std::string text = data;
   text += fmt::format(
       "unset label\nset title {} offset 0,-0.5\nset xlabel {}\nset ylabel {}\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\n",
+      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xtics 1,10,{}\n",
       analysis::gnuplot_quote(panel.title), analysis::gnuplot_quote(panel.x_label),
       analysis::gnuplot_quote(panel.y_label), x.low / 1.25, x.high * panel.label_room,
-      y.low * std::pow(10.0, -0.1), y.high * std::pow(10.0, 0.1));
+      y.low * std::pow(10.0, -0.1), y.high * std::pow(10.0, 0.1), x.high);
   for (const Label& label : labels) {
     text += fmt::format("set label {} at first {}, first {} left tc ls {}\n",
                         analysis::gnuplot_quote(label.text), label.x * 1.25, label.y, label.style);
@@ -103,10 +103,7 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
 }  // namespace
 
 std::string charts(const std::vector<Panel>& panels, int height_px) {
-  // Powers of ten as SI prefixes suit times; gnuplot's %h suits the rest.
-  std::string text =
-      "set logscale xy\nset format x '%g'\nset key off\nset mxtics 1\nset mytics 1\n"
-      "set xtics (1, 10, 100, 1000, 10000)\n";
+  std::string text = "set logscale xy\nset format '%g'\nset key off\nset mxtics 1\nset mytics 1\n";
   if (panels.size() > 1) text += fmt::format("set multiplot layout 1,{}\n", panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) text += panel_commands(panels[i], i, height_px);
   return text + (panels.size() > 1 ? "unset multiplot\n" : "");

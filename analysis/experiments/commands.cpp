@@ -8,6 +8,8 @@
 #include <string>
 
 #include "analysis/experiments/experiment.h"
+#include "analysis/experiments/features.h"
+#include "analysis/experiments/pinch_detection.h"
 #include "analysis/experiments/render_cost.h"
 #include "analysis/experiments/stress.h"
 #include "demos/command_line.h"
@@ -27,6 +29,9 @@ struct Experiment {
 constexpr Experiment experiments[] = {
     {"stress", "What a step costs as scenes grow, stage by stage, against the thesis' method",
      run_stress, true},
+    {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection, true},
+    {"features", "What features cost scenes that do not use them, and what sleep saves",
+     run_features},
 };
 
 /// The options as they can be typed again, after the command's name.

@@ -108,6 +108,22 @@ Scene chain_scene(int pulleys) {
   return scene;
 }
 
+Scene swinging_scene(int pulleys) {
+  Scene scene = named("swinging");
+  const double reach = pulley_radius + half_width, spacing = 1.5;
+  const int weight =
+      add_body(scene, "weight", BodyKind::free, spacing * (pulleys - 1) + reach, -3.0, 0.2);
+  scene.bodies.back().velocity = {0.5, 0.0};
+  Cable cable = cable_between({-1, {-reach, -3.0}}, {weight, {0.0, 0.0}});
+  for (int i = 0; i < pulleys; ++i) {
+    const int pulley =
+        add_body(scene, "pulley", BodyKind::fixed_axle, spacing * i, 0.0, pulley_radius);
+    cable.wraps.push_back({pulley, i % 2 == 0 ? -1 : 1, 0});
+  }
+  scene.cables.push_back(cable);
+  return scene;
+}
+
 Scene disconnected_scene(int count, int moving) {
   Scene scene = named("disconnected");
   constexpr double spacing = 4.0, swing_speed = 0.5;  // m, m/s

@@ -34,6 +34,10 @@ Scene pinch_detection_scene(int load, bool pinching, bool other);
 /// wrapped over and under in turn: the mass ratio of 1e4 at which sweeps do not converge.
 Scene chain_scene(int pulleys);
 
+/// A weight that swings for ever on a cable over `pulleys` (odd) pulleys with fixed axles: never at
+/// rest, and without contacts, pinches, slip and loops.
+Scene swinging_scene(int pulleys);
+
 /// `count` cables apart from each other, each from an anchor over a pulley with a fixed axle to a
 /// hanging weight (thesis 7.1). The first `moving` weights swing, the others hang still.
 Scene disconnected_scene(int count, int moving);
