@@ -57,7 +57,7 @@ std::string data_block(const std::string& name, const Curve& curve) {
 }
 
 std::string panel_commands(const Panel& panel, std::size_t number, int height_px) {
-  std::string data, plot;
+  std::string data, bands, lines;
   std::vector<Label> labels;
   Range x, y;
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
@@ -74,11 +74,13 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
     const std::string name = fmt::format("$p{}c{}", number, c);
     data += data_block(name, curve);
     const std::string dash = curve.dashed ? " dt (6,4)" : "";
-    plot += fmt::format("{}{} using 1:2 with linespoints ls {}{} notitle",
-                        plot.empty() ? "plot " : ", \\\n  ", name, curve.style, dash);
+    lines += fmt::format(", \\\n  {} using 1:2 with linespoints ls {}{} notitle", name, curve.style,
+                         dash);
     if (curve.spread) {
-      plot += fmt::format(", \\\n  {} using 1:2:3:4 with yerrorbars ls {} lw 1 pt 0 notitle", name,
-                          curve.style);
+      bands += fmt::format(
+          ", \\\n  {} using 1:3:4 with filledcurves ls {} fs transparent solid "
+          "0.2 noborder notitle",
+          name, curve.style);
     }
   }
   if (labels.empty()) return "";
@@ -97,7 +99,7 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
     text += fmt::format("set label {} at first {}, first {} left tc ls {}\n",
                         analysis::gnuplot_quote(label.text), label.x * 1.25, label.y, label.style);
   }
-  return text + plot + '\n';
+  return text + "plot NaN notitle" + bands + lines + '\n';
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Curve {
   std::string label;  ///< written at the curve's right end
   int style = 1;      ///< line style of figure_preamble
   bool dashed = false;
-  bool spread = false;             ///< bars from decile to decile
+  bool spread = false;             ///< a band from the first to the ninth decile
   std::vector<CurvePoint> points;  ///< by x; what is not positive is left out
 };
 

@@ -12,6 +12,8 @@
 #include "sim/cable.h"
 #include "sim/capstan.h"
 #include "sim/diagnostics.h"
+#include "sim/pinch.h"
+#include "sim/rows.h"
 
 namespace pinchlab::experiments {
 
@@ -76,10 +78,12 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
   World world = make_world(scene, ours);
   const StepCost step_cost = measure_steps(scene, world, effort);
   const double step_s = step_cost.step_s.median;
-  const auto stage = [&](Stage s) { return step_cost.stage_s[static_cast<std::size_t>(s)].median; };
   const Effort little{0.3 * effort.seconds, effort.samples};
+  // Less the call itself, which is of this program and not of the step.
   const auto call = [&](const std::function<void()>& run) {
-    return measure_call(run, little).seconds.median;
+    const auto [with, empty] = measure_both(
+        run, [] {}, little);
+    return with.seconds.median - empty.seconds.median;
   };
   std::vector<FeatureCost> costs;
   const auto add = [&](const char* feature, const char* how, double seconds) {
@@ -88,11 +92,15 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
   add("slip", "`find_runs`", call([&] { find_runs(scene, world); }));
   add("pinch", "`pinch` less `cable`",
       difference(scene, ours, configured(Method::cable, false), effort));
-  add("contacts", "`init_contacts`, `find_contacts`, `configure_pinches`",
-      stage(Stage::init_contacts) + stage(Stage::find_contacts) + stage(Stage::configure_pinches));
+  add("contacts", "`make_contact_rows`, `find_contacts`, `configure_pinches`", call([&] {
+        make_contact_rows(scene, world);
+        find_contacts(scene, world);
+        configure_pinches(scene, world);
+      }));
   add("loops", "`previous_link`, `next_link`", loop_seconds(world, little));
   add("diagnostics", "`diagnose` less `check_finite`",
-      std::max(0.0, stage(Stage::diagnose) - call([&] { check_finite(scene, world); })));
+      step_cost.stage_s[static_cast<std::size_t>(Stage::diagnose)].median -
+          call([&] { check_finite(scene, world); }));
   add("sleep", "on less off", difference(scene, configured(Method::pinch, true), ours, effort));
   add("(nothing)", "the same less the same", difference(scene, ours, ours, effort));
   return costs;

@@ -27,7 +27,7 @@ Scene stress_scene(int load, double spacing);
 
 /// Figure 3.1c, repeated `load` times: two wrapped pulleys with fixed axles a unit, over and under
 /// in turn, and on rails above them small pulleys of 1 kg. `pinching` ones lie on the wrap of the
-/// first, `other` ones on the bare top of the second.
+/// first, `other` ones on the bare top of the second. The cable is strung as in stress_scene.
 Scene pinch_detection_scene(int load, bool pinching, bool other);
 
 /// 1000 kg and 999 kg on one cable over `pulleys` (odd) pulleys of 0.1 kg with fixed axles,

@@ -138,7 +138,7 @@ std::string how() {
       "scene with and without pinches; `thesis` and `thesis cable` are the thesis' methods (ten "
       "Gauss-Seidel sweeps, all pairs tested, three rows a pinch) on the same, in the same "
       "program. Steps are timed in processor time, in batches that make the clock's own cost "
-      "less than 1 %; figures are medians, bars go from the first to the ninth decile. Stages are "
+      "less than 1 %; figures are medians, bands go from the first to the ninth decile. Stages are "
       "timed by a clock that runs on inside of the step, whose own time is subtracted. Sleep is "
       "off: at rest, our own step would cost next to nothing.\n\n",
       pinched_spacing, free_spacing, stress_stiffness, 100.0 * stress_strain,
@@ -248,8 +248,9 @@ std::string choices(const StressResults& results) {
     const char* between = " ";
     for (const int load : {loads_in(results).front(), small_load, loads_in(results).back()}) {
       if (find(results, name, load) == nullptr) continue;
-      text += fmt::format("{}{:.2f} times our step at load {}", between,
-                          times_ours(results, name, load), load);
+      text += fmt::format("{}{:.2f} times our step at load {} ({:.1f} solves a step)", between,
+                          times_ours(results, name, load), load,
+                          find(results, name, load)->cost.solves);
       between = ", ";
     }
     text += ". ";
@@ -354,7 +355,7 @@ void draw_steps(const StressResults& results, Output& output) {
                {"... an attachment", "µs", us, by_attachment}};
   std::vector<Panel> panels;
   for (const auto& [title, unit, size, divisor] : kinds) {
-    Panel panel{title, "load", fmt::format("processor time, {}", unit), {}, 20.0};
+    Panel panel{title, "load", fmt::format("processor time, {}", unit), {}, 60.0};
     int style = 1;
     for (const char* name : {"pinch", "thesis", "cable", "thesis cable"}) {
       panel.curves.push_back(curve_of(results, name, std::nullopt, size, divisor, name, style++));
