@@ -14,6 +14,8 @@ BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.s
       const auto b = static_cast<std::size_t>(link.body);
       const pinchlab::Body& given = scene.bodies[b];
       body.position = world.position[b];
+      body.velocity = world.velocity[b];
+      body.angular_velocity = world.angular_velocity[b];
       body.inverse_inertia = 1.0 / disc_inertia(given);
       if (given.kind == BodyKind::free) body.inverse_mass = 1.0 / given.mass;
     }
