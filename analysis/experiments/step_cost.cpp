@@ -71,17 +71,22 @@ CallCost measure_call(const std::function<void()>& run, const Effort& effort) {
   return {spread(samples), batch * static_cast<std::int64_t>(samples.size())};
 }
 
-std::pair<CallCost, CallCost> measure_both(const std::function<void()>& first,
-                                           const std::function<void()>& second,
-                                           const Effort& effort) {
+BothCosts measure_both(const std::function<void()>& first, const std::function<void()>& second,
+                       const Effort& effort) {
   const std::int64_t batch_first = batch_size(first), batch_second = batch_size(second);
+  BothCosts both;
   std::vector<double> a, b;
   for (const double start = cpu_seconds(); !is_enough(effort, a.size(), start);) {
+    const bool swapped = a.size() % 2 == 1;
+    if (swapped) b.push_back(timed(second, batch_second));
     a.push_back(timed(first, batch_first));
-    b.push_back(timed(second, batch_second));
+    if (!swapped) b.push_back(timed(second, batch_second));
+    both.differences.push_back(a.back() - b.back());
   }
   const auto samples = static_cast<std::int64_t>(a.size());
-  return {{spread(a), batch_first * samples}, {spread(b), batch_second * samples}};
+  both.first = {spread(a), batch_first * samples};
+  both.second = {spread(b), batch_second * samples};
+  return both;
 }
 
 StepCost measure_steps(const Scene& scene, World& world, const Effort& effort) {

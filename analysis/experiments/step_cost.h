@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "analysis/experiments/experiment.h"
 #include "sim/step.h"
@@ -31,9 +32,12 @@ struct CallCost {
 CallCost measure_call(const std::function<void()>& run, const Effort& effort);
 
 /// Of two functions by turns, so that what disturbs the machine disturbs both.
-std::pair<CallCost, CallCost> measure_both(const std::function<void()>& first,
-                                           const std::function<void()>& second,
-                                           const Effort& effort);
+struct BothCosts {
+  CallCost first, second;
+  std::vector<double> differences;  // s, first less second, of neighbouring batches
+};
+BothCosts measure_both(const std::function<void()>& first, const std::function<void()>& second,
+                       const Effort& effort);
 
 struct StepCost {
   Spread step_s;                            // processor time of a whole step

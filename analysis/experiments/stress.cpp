@@ -50,8 +50,10 @@ BareResult measure_bare(const char* name, const Scene& scene, Method method, con
   World world = make_world(scene, awake(method));
   BarePass pass(scene, world);
   BareResult result{name, pass.rows.size(), {}, {}};
-  std::tie(result.bare, result.step) =
+  const BothCosts both =
       measure_both([&] { pass.step(); }, [&] { step_or_throw(scene, world); }, effort);
+  result.bare = both.first;
+  result.step = both.second;
   return result;
 }
 
