@@ -11,6 +11,7 @@
 #include "analysis/experiments/features.h"
 #include "analysis/experiments/pinch_detection.h"
 #include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/stability/stability.h"
 #include "analysis/experiments/stress.h"
 #include "demos/command_line.h"
 
@@ -32,6 +33,7 @@ constexpr Experiment experiments[] = {
     {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection, true},
     {"features", "What features cost scenes that do not use them, and what sleep saves",
      run_features},
+    {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 
 /// The options as they can be typed again, after the command's name.

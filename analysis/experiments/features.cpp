@@ -101,11 +101,13 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
   const auto add = [&](const char* feature, const char* how, double seconds) {
     costs.push_back({name, feature, how, seconds, step_s});
   };
-  add("slip", "`find_runs`", call([&] { find_runs(scene, world); }));
+  add("slip", "`find_runs`", call([&] {
+        for (const Part& part : world.scratch.parts.list) find_runs(scene, world, part);
+      }));
   add("pinch", "`pinch` less `cable`",
       difference(scene, ours, configured(Method::cable, false), effort));
   add("contacts", "`make_contact_rows`, `find_contacts`, `configure_pinches`", call([&] {
-        make_contact_rows(scene, world);
+        for (const Part& part : world.scratch.parts.list) make_contact_rows(scene, world, part);
         find_contacts(scene, world);
         configure_pinches(scene, world);
       }));
