@@ -56,18 +56,25 @@ std::string data_block(const std::string& name, const Curve& curve) {
   return text + "EOD\n";
 }
 
-std::string panel_commands(const Panel& panel, std::size_t number, int height_px) {
-  std::string data, bands, lines;
-  std::vector<Label> labels;
-  Range x, y;
-  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
-    const Curve& curve = panel.curves[c];
-    const CurvePoint* last = nullptr;
+void add_range(const Panel& panel, Range& x, Range& y) {
+  for (const Curve& curve : panel.curves) {
     for (const CurvePoint& p : curve.points) {
       if (!(p.y.median > 0.0)) continue;
       x.add(p.x);
       y.add(p.y.median);
-      last = &p;
+    }
+  }
+}
+
+std::string panel_commands(const Panel& panel, std::size_t number, int height_px, const Range& x,
+                           Range y) {
+  std::string data, bands, lines;
+  std::vector<Label> labels;
+  for (std::size_t c = 0; c < panel.curves.size(); ++c) {
+    const Curve& curve = panel.curves[c];
+    const CurvePoint* last = nullptr;
+    for (const CurvePoint& p : curve.points) {
+      if (p.y.median > 0.0) last = &p;
     }
     if (last == nullptr) continue;
     labels.push_back({curve.label, curve.style, last->x, last->y.median});
@@ -104,10 +111,16 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
 
 }  // namespace
 
-std::string charts(const std::vector<Panel>& panels, int height_px) {
+std::string charts(const std::vector<Panel>& panels, int height_px, Scale scale) {
+  Range all_x, all_y;
+  for (const Panel& panel : panels) add_range(panel, all_x, all_y);
   std::string text = "set logscale xy\nset format '%g'\nset key off\nset mxtics 1\nset mytics 1\n";
   if (panels.size() > 1) text += fmt::format("set multiplot layout 1,{}\n", panels.size());
-  for (std::size_t i = 0; i < panels.size(); ++i) text += panel_commands(panels[i], i, height_px);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    Range x, y = scale == Scale::common ? all_y : Range{};
+    add_range(panels[i], x, y);
+    text += panel_commands(panels[i], i, height_px, x, y);
+  }
   return text + (panels.size() > 1 ? "unset multiplot\n" : "");
 }
 

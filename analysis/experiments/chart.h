@@ -28,7 +28,9 @@ struct Panel {
   double label_room = 8.0;  ///< the x axis goes on by this factor to make room for the labels
 };
 
+enum class Scale { own, common };  ///< y axes of the panels
+
 /// Gnuplot commands for panels side by side in a figure of this height.
-std::string charts(const std::vector<Panel>& panels, int height_px);
+std::string charts(const std::vector<Panel>& panels, int height_px, Scale scale = Scale::own);
 
 }  // namespace pinchlab::experiments

@@ -119,7 +119,7 @@ void draw(const std::vector<Result>& results, bool per_load, Output& output) {
     panels.push_back(panel);
   }
   output.figure(per_load ? "pinch-detection-per-load" : "pinch-detection", 1280, 460,
-                charts(panels, 460));
+                charts(panels, 460, Scale::common));
 }
 
 /// What the four variants say of one method at the greatest load.

@@ -353,9 +353,9 @@ void draw_steps(const StressResults& results, Output& output) {
     double size;
     Divisor divisor;
   } kinds[] = {{"Whole step", "ms", ms, by_one},
-               {"... a load", "µs", us, by_load},
-               {"... a joint", "µs", us, by_joint},
-               {"... an attachment", "µs", us, by_attachment}};
+               {"Per load", "µs", us, by_load},
+               {"Per joint", "µs", us, by_joint},
+               {"Per attachment", "µs", us, by_attachment}};
   std::vector<Panel> panels;
   for (const auto& [title, unit, size, divisor] : kinds) {
     Panel panel{title, "load", fmt::format("processor time, {}", unit), {}, 60.0};
@@ -381,14 +381,14 @@ void draw_stages(const StressResults& results, Output& output) {
     }
     panels.push_back(panel);
   }
-  output.figure("stress-stages", 1100, 520, charts(panels, 520));
+  output.figure("stress-stages", 1100, 520, charts(panels, 520, Scale::common));
 }
 
 void draw_shared(const StressResults& results, Output& output) {
   const struct {
     const char* title;
     Divisor divisor;
-  } kinds[] = {{"A joint", by_joint}, {"An attachment", by_attachment}};
+  } kinds[] = {{"Per joint", by_joint}, {"Per attachment", by_attachment}};
   std::vector<Panel> panels;
   for (const auto& [title, divisor] : kinds) {
     Panel panel{title, "load", "time of the stage, ns", {}, 100.0};
@@ -404,7 +404,7 @@ void draw_shared(const StressResults& results, Output& output) {
     }
     panels.push_back(panel);
   }
-  output.figure("stress-shared", 1100, 420, charts(panels, 420));
+  output.figure("stress-shared", 1100, 420, charts(panels, 420, Scale::common));
 }
 
 void draw_choices(const StressResults& results, Output& output) {
