@@ -31,7 +31,7 @@ constexpr std::array<const char*, 3> phase_titles{"Broad phase", "Narrow phase",
 constexpr std::array<const char*, 2> methods{"pinch", "thesis"};
 
 /// Shorter than this a phase cannot be told from the clock.
-constexpr double least_s = 10e-9;
+constexpr double least_s = 20e-9;
 
 struct Result {
   std::string method, variant;
@@ -119,7 +119,7 @@ void draw(const std::vector<Result>& results, bool per_load, Output& output) {
     panels.push_back(panel);
   }
   output.figure(per_load ? "pinch-detection-per-load" : "pinch-detection", 1280, 460,
-                charts(panels, 460, Scale::common));
+                charts(panels, 460));
 }
 
 /// What the four variants say of one method at the greatest load.
