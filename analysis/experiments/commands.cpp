@@ -115,7 +115,8 @@ void add_all(CLI::App& bench) {
     RenderRun render;
     render.out = options->out;
     if (options->quick) render.frames = 60;
-    render.command = "pinchlab bench render";
+    render.command = fmt::format("pinchlab bench render{} --out {}",
+                                 options->quick ? " --frames 60" : "", render.out.string());
     run_render(render);
   });
 }

@@ -138,7 +138,8 @@ std::string how() {
       "scene with and without pinches; `thesis` and `thesis cable` are the thesis' methods (ten "
       "Gauss-Seidel sweeps, all pairs tested, three rows a pinch) on the same, in the same "
       "program. Steps are timed in processor time, in batches that make the clock's own cost "
-      "less than 1 %; figures are medians, bands go from the first to the ninth decile. Stages are "
+      "less than 1 %, hundreds of them, but fewer where they take tens of milliseconds: the tables "
+      "tell. Figures are medians, bands go from the first to the ninth decile. Stages are "
       "timed by a clock that runs on inside of the step, whose own time is subtracted. Sleep is "
       "off: at rest, our own step would cost next to nothing.\n\n",
       pinched_spacing, free_spacing, stress_stiffness, 100.0 * stress_strain,
