@@ -80,12 +80,19 @@ void steady_light_bodies(const Scene& scene, World& world, const Part& part, dou
   Scratch& scratch = world.scratch;
   const std::span<const int> bodies = bodies_of(scratch.parts, part);
   if (!scratch.span_masses.empty()) restore(scene, bodies, kick, scratch);
+  double lightest = infinity;
+  for (const int b : bodies) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(b)];
+    if (can_move(body)) lightest = std::min(lightest, body.mass);
+  }
+  const double least = negligible * lightest / (2.0 * world.step_length * world.step_length);
   bool any = false;
   for (const int c : cables_of(scratch.parts, part)) {
     const CableState& cable = world.cables[static_cast<std::size_t>(c)];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
-      if (!(segment.tension > 0.0) || segment.length <= 2.0 * cable.half_width) continue;
+      if (!(segment.tension > least * segment.length)) continue;
+      if (segment.length <= 2.0 * cable.half_width) continue;
       const int head = cable.links[s].body;
       const int from = previous_link(cable, static_cast<int>(s));
       const int tail = cable.links[static_cast<std::size_t>(from)].body;

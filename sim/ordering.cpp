@@ -89,19 +89,29 @@ void find_order(Scratch& s, std::size_t bodies) {
   std::reverse(s.order.begin(), s.order.end());
 }
 
+/// Whether these are the bodies that the rows couple.
+bool has_structure(const Scratch& s, const std::vector<int>& structure) {
+  if (structure.size() != 2 * s.rows.size()) return false;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    if (structure[2 * r] != mobile(s, s.rows[r].a)) return false;
+    if (structure[2 * r + 1] != mobile(s, s.rows[r].b)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void order_rows(World& world, int part) {
   Scratch& s = world.scratch;
   const auto p = static_cast<std::size_t>(part);
   if (s.orders.size() <= p) s.orders.resize(s.parts.list.size());
-  s.structure.clear();
-  for (const Row& row : s.rows) {
-    s.structure.push_back(mobile(s, row.a));
-    s.structure.push_back(mobile(s, row.b));
-  }
-  if (s.structure != s.orders[p].structure) {
-    s.orders[p].structure = s.structure;
+  if (!has_structure(s, s.orders[p].structure)) {
+    std::vector<int>& structure = s.orders[p].structure;
+    structure.clear();
+    for (const Row& row : s.rows) {
+      structure.push_back(mobile(s, row.a));
+      structure.push_back(mobile(s, row.b));
+    }
     find_order(s, bodies_of(s.parts, s.parts.list[p]).size());
     s.orders[p].order = s.order;
   } else {

@@ -286,6 +286,7 @@ void configure_pinches(const Scene& scene, World& world) {
 
 void assign_contacts(World& world) {
   if (world.configuration.method == Method::cable) return;
+  if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
   const Parts& parts = world.scratch.parts;
   for (const Part& part : parts.list) {
     if (part.kept) continue;

@@ -21,7 +21,7 @@ class ProfileLdl {
   void clear() {
     first_.clear();
     begin_.clear();
-    entries_.clear();
+    used_ = 0;
   }
 
   /// Appends row u = size(), of zeros, whose first entry stands in column `first` <= u. The row's
@@ -29,9 +29,12 @@ class ProfileLdl {
   double* append(int first) {
     const int u = static_cast<int>(first_.size());
     first_.push_back(first);
-    begin_.push_back(static_cast<int>(entries_.size()));
-    entries_.resize(entries_.size() + static_cast<std::size_t>(u - first + 1), 0.0);
-    return entries_.data() + begin_.back();
+    begin_.push_back(static_cast<int>(used_));
+    const std::size_t begin = used_;
+    used_ += static_cast<std::size_t>(u - first + 1);
+    if (entries_.size() < used_) entries_.resize(2 * used_);
+    for (std::size_t k = begin; k < used_; ++k) entries_[k] = 0.0;
+    return entries_.data() + begin;
   }
 
   int size() const { return static_cast<int>(first_.size()); }
@@ -46,6 +49,7 @@ class ProfileLdl {
  private:
   std::vector<int> first_;
   std::vector<int> begin_;          // of row u in entries_
+  std::size_t used_ = 0;            // of entries_
   std::vector<double> entries_;     // rows: L, unit diagonal not stored, then the pivot's place
   std::vector<double> reciprocal_;  // of the pivots (0: dependent)
 };

@@ -13,11 +13,17 @@ namespace pinchlab {
 
 namespace {
 
-double diagonal_of(const Row& row, const std::vector<Mobility>& mobility) {
-  double sum = 0.0;
-  if (row.a >= 0) sum += row.ja.dot(mobility[static_cast<std::size_t>(row.a)] * row.ja);
-  if (row.b >= 0) sum += row.jb.dot(mobility[static_cast<std::size_t>(row.b)] * row.jb);
-  return sum;
+/// What a unit impulse on the row does to its bodies, and to its own speed.
+void weigh(const std::vector<Mobility>& mobility, Row& row) {
+  row.diagonal = 0.0;
+  if (row.a >= 0) {
+    row.ra = mobility[static_cast<std::size_t>(row.a)] * row.ja;
+    row.diagonal += row.ja.dot(row.ra);
+  }
+  if (row.b >= 0) {
+    row.rb = mobility[static_cast<std::size_t>(row.b)] * row.jb;
+    row.diagonal += row.jb.dot(row.rb);
+  }
 }
 
 /// Body-fixed lever of a force along e at the link: torque = lever * force. For a rolling link it
@@ -30,8 +36,8 @@ double lever(const World& world, const Link& link, const Vec2& e) {
 
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
 /// tension (p >= 0) shortens the segment.
-Row segment_row(const World& world, const Link& from, const Link& to, const Segment& segment) {
-  Row row;
+void set_segment_row(const World& world, const Link& from, const Link& to, const Segment& segment,
+                     Row& row) {
   row.kind = RowKind::segment;
   row.a = from.body;
   row.b = to.body;
@@ -44,7 +50,6 @@ Row segment_row(const World& world, const Link& from, const Link& to, const Segm
                           ? std::max(segment.rest_length, 0.0)
                           : segment.rest_length;
   row.bias = -(segment.length - rest) / world.step_length;
-  return row;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
@@ -168,7 +173,8 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
       // After a middle link comes the opposite of the row before it: one signed row serves both.
       if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
-      Row row = segment_row(world, from, to, segment);
+      Row& row = scratch.rows.emplace_back();
+      set_segment_row(world, from, to, segment, row);
       row.index = static_cast<int>(c);
       row.item = static_cast<int>(s);
       row.on = !segment.slack;
@@ -185,9 +191,8 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
         row.compliance =
             std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
       }
-      row.diagonal = diagonal_of(row, scratch.mobility);
-      scratch.row_of_segment[begin + s] = static_cast<int>(scratch.rows.size());
-      scratch.rows.push_back(row);
+      weigh(scratch.mobility, row);
+      scratch.row_of_segment[begin + s] = static_cast<int>(scratch.rows.size()) - 1;
     }
   }
 }
@@ -204,7 +209,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     normal_row_of_contact[i] = -1;
     if (!can_move(scene.bodies[a]) && (contact.b < 0 || !can_move(scene.bodies[b]))) continue;
     normal_row_of_contact[i] = static_cast<int>(world.scratch.rows.size());
-    Row row;
+    Row& row = world.scratch.rows.emplace_back();
     row.kind = RowKind::normal;
     row.on = contact.touching;
     row.index = number;
@@ -229,8 +234,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
         row.rebounds = true;
       }
     }
-    row.diagonal = diagonal_of(row, world.scratch.mobility);
-    world.scratch.rows.push_back(row);
+    weigh(world.scratch.mobility, row);
 
     if (contact.pinch_linked) continue;
     const Body& body = scene.bodies[a];
@@ -240,7 +244,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     const double friction_coefficient = std::sqrt(body.contact_friction * other_friction);
     if (friction_coefficient == 0.0) continue;
     const Vec2 t = left(n);
-    Row friction;
+    Row& friction = world.scratch.rows.emplace_back();
     friction.kind = RowKind::tangent;
     friction.index = row.index;
     friction.friction = friction_coefficient;
@@ -254,8 +258,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     const double reach = (radii + contact.gap) / radii;
     friction.ja = {-t.x(), -t.y(), -body.radius * reach};
     friction.jb = {t.x(), t.y(), contact.b >= 0 ? -scene.bodies[b].radius * reach : 0.0};
-    friction.diagonal = diagonal_of(friction, world.scratch.mobility);
-    world.scratch.rows.push_back(friction);
+    weigh(world.scratch.mobility, friction);
   }
   bool middles = false;
   for (Row& row : world.scratch.rows) {

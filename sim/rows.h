@@ -39,6 +39,8 @@ struct Row {
   int item = -1;       // segment, or middle link
   int a = -1, b = -1;  // bodies, -1: none
   Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = Eigen::Vector3d::Zero();  // (x, y, angle)
+  Eigen::Vector3d ra = Eigen::Vector3d::Zero(), rb = Eigen::Vector3d::Zero();  // mobility * J^T, by
+                                                                               // weigh
   double bias = 0.0;                                                           // m/s
   double compliance = 0.0;                                                     // 1/kg
   double diagonal = 0.0;               // 1/kg, J * mobility * J^T

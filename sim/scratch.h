@@ -98,7 +98,6 @@ struct Scratch {
   Parts parts;
   std::vector<int> order;                  // of the rows, by order_rows
   std::vector<RowOrder> orders;            // one a part
-  std::vector<int> structure;              // bodies that the rows couple
   std::vector<int> row_stamp, body_stamp;  // marks of order_rows
 
   Lists<int> rows_of_body;  // rows that a mobile body of the part couples

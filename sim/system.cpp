@@ -14,17 +14,6 @@ std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-double body_speed(const World& world, int body, const Eigen::Vector3d& j) {
-  const Vec2& v = world.velocity[index(body)];
-  return j.x() * v.x() + j.y() * v.y() + j.z() * world.angular_velocity[index(body)];
-}
-
-void push_body(World& world, int body, const Eigen::Vector3d& j, double impulse) {
-  const Eigen::Vector3d dv = world.scratch.mobility[index(body)] * j;
-  world.velocity[index(body)] += impulse * dv.head<2>();
-  world.angular_velocity[index(body)] += impulse * dv.z();
-}
-
 /// A row has an unknown of its own unless it bears nothing, slips, or follows from its group's.
 bool has_unknown(const World& world, std::size_t r) {
   const Row& row = world.scratch.rows[r];
@@ -240,7 +229,7 @@ void assemble_symmetric(World& world) {
     for (int side = 0; side < 2; ++side) {
       if (bodies[side] < 0) continue;
       const Eigen::Vector3d& j = side == 0 ? row.ja : row.jb;
-      const Eigen::Vector3d seen = s.mobility[index(bodies[side])] * j;
+      const Eigen::Vector3d& seen = side == 0 ? row.ra : row.rb;
       int& last = set.last_end[index(s.parts.local[index(bodies[side])])];
       for (int e = last; e >= 0; e = set.ends[index(e)].previous) {
         const double value = seen.dot(set.ends[index(e)].j);
@@ -353,19 +342,6 @@ void spread_over_repeated_rows(World& world) {
 }
 
 }  // namespace
-
-double row_speed(const World& world, const Row& row) {
-  double w = row.bias;
-  if (row.a >= 0) w += body_speed(world, row.a, row.ja);
-  if (row.b >= 0) w += body_speed(world, row.b, row.jb);
-  return w;
-}
-
-void push(World& world, const Row& row, double impulse) {
-  if (impulse == 0.0) return;
-  if (row.a >= 0) push_body(world, row.a, row.ja, impulse);
-  if (row.b >= 0) push_body(world, row.b, row.jb, impulse);
-}
 
 void release_bodies(World& world) {
   const Scratch& s = world.scratch;

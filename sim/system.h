@@ -28,10 +28,32 @@ void release_bodies(World& world);
 /// Velocities of the part's bodies = free velocities + what the rows' impulses do.
 void apply_impulses(World& world);
 
+/// J v at the present velocity of one of the row's bodies (m/s).
+inline double body_speed(const World& world, int body, const Eigen::Vector3d& j) {
+  const Vec2& v = world.velocity[static_cast<std::size_t>(body)];
+  return j.x() * v.x() + j.y() * v.y() +
+         j.z() * world.angular_velocity[static_cast<std::size_t>(body)];
+}
+
 /// J v + bias at the present velocities (m/s).
-double row_speed(const World& world, const Row& row);
+inline double row_speed(const World& world, const Row& row) {
+  double w = row.bias;
+  if (row.a >= 0) w += body_speed(world, row.a, row.ja);
+  if (row.b >= 0) w += body_speed(world, row.b, row.jb);
+  return w;
+}
+
+inline void push_body(World& world, int body, const Eigen::Vector3d& response, double impulse) {
+  const auto b = static_cast<std::size_t>(body);
+  world.velocity[b] += impulse * response.head<2>();
+  world.angular_velocity[b] += impulse * response.z();
+}
 
 /// Changes the velocities of the row's bodies by an impulse on it (N s).
-void push(World& world, const Row& row, double impulse);
+inline void push(World& world, const Row& row, double impulse) {
+  if (impulse == 0.0) return;
+  if (row.a >= 0) push_body(world, row.a, row.ra, impulse);
+  if (row.b >= 0) push_body(world, row.b, row.rb, impulse);
+}
 
 }  // namespace pinchlab
