@@ -199,8 +199,8 @@ std::string features_text(const std::vector<FeatureCost>& costs) {
              "anyone can measure that again without another build of the simulator, and it is an "
              "upper bound, since such a call hides behind others inside of a step. (Of loops it "
              "counts two calls a link, which is about what a step makes.) The scenes swing for "
-             "ever, without "
-             "contacts, pinches, slip and loops; sleep is off unless it is what is measured. "
+             "ever, without contacts, pinches, slip and loops; sleep is off unless it is what is "
+             "measured. "
              "`(nothing)` compares a configuration with itself: the noise.\n\n",
              share_text(share_limit), beyond_limit(costs)) +
          markdown_table({"scene", "feature", "measured", "cost", "step", "share",
