@@ -236,8 +236,9 @@ std::string shared_stages(const StressResults& results) {
     between = ", ";
   }
   return text +
-         ". What differs there is due to the pinches: their contact rows in the solver, and "
-         "segments without length, which need no box and no hit test.\n";
+         ". The joints of a non-transitional pinch share one row of our solver and have no length "
+         "to "
+         "test for hits, which makes a joint cheaper there; the contacts' rows come on top.\n";
 }
 
 std::string choices(const StressResults& results) {
