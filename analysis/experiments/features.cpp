@@ -63,7 +63,7 @@ double difference(const Scene& scene, const Configuration& with, const Configura
   return median(differences);
 }
 
-/// Every call of the functions that know loops, twice a link: more than a step makes of them.
+/// The functions that know loops, called twice a link: about what a step makes of them.
 double loop_seconds(const World& world, const Effort& effort) {
   volatile int kept = 0;
   const auto ask_all = [&] {
@@ -198,8 +198,9 @@ std::string features_text(const std::vector<FeatureCost>& costs) {
              "functions that remain in a step of a scene without the feature, by themselves: "
              "anyone can measure that again without another build of the simulator, and it is an "
              "upper bound, since such a call hides behind others inside of a step. (Of loops it "
-             "counts two calls a link, more than a step makes.) The scenes swing for ever, without "
-             "contacts, pinches, slip and loops; sleep is off unless it is what is measured. "
+             "counts two calls a link, which is about what a step makes.) The scenes swing for "
+             "ever, without contacts, pinches, slip and loops; sleep is off unless it is what is "
+             "measured. "
              "`(nothing)` compares a configuration with itself: the noise.\n\n",
              share_text(share_limit), beyond_limit(costs)) +
          markdown_table({"scene", "feature", "measured", "cost", "step", "share",

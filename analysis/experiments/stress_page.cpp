@@ -135,7 +135,7 @@ std::string how() {
       "{:g} % stretched, so that all of its segments carry {:g} N and all rows are solved in every "
       "step.\n\n"
       "`pinch` and `cable` are ours (direct solver, sweep and prune, one row a pinch) on the "
-      "scene with and without pinches; `thesis` and `thesis cable` are the thesis' methods (ten "
+      "scene with and without pinches; `thesis` and `thesis cable` are the thesis' methods ({} "
       "Gauss-Seidel sweeps, all pairs tested, three rows a pinch) on the same, in the same "
       "program. Steps are timed in processor time, in batches that make the clock's own cost "
       "less than 1 %, hundreds of them, but fewer where they take tens of milliseconds: the tables "
@@ -143,7 +143,7 @@ std::string how() {
       "timed by a clock that runs on inside of the step, whose own time is subtracted. Sleep is "
       "off: at rest, our own step would cost next to nothing.\n\n",
       pinched_spacing, free_spacing, stress_stiffness, 100.0 * stress_strain,
-      stress_stiffness * stress_strain);
+      stress_stiffness * stress_strain, thesis_configuration().iterations);
 }
 
 std::string step_table_text(const StressResults& results) {
@@ -236,8 +236,9 @@ std::string shared_stages(const StressResults& results) {
     between = ", ";
   }
   return text +
-         ". What differs there is due to the pinches: their contact rows in the solver, and "
-         "segments without length, which need no box and no hit test.\n";
+         ". The joints of a non-transitional pinch share one row of our solver and have no length "
+         "to "
+         "test for hits, which makes a joint cheaper there; the contacts' rows come on top.\n";
 }
 
 std::string choices(const StressResults& results) {
@@ -259,7 +260,7 @@ std::string choices(const StressResults& results) {
   }
   return text +
          "What the iterative solver's answers are worth is told by the accuracy experiment; here "
-         "it does its ten sweeps whatever comes out. With three rows a pinch that bears nothing "
+         "it does its sweeps whatever comes out. With three rows a pinch that bears nothing "
          "drops out "
          "of the direct solver's system; it costs more where that guess has to be mended.\n";
 }

@@ -120,5 +120,28 @@ TEST(DisconnectedScene, SomeSwingAndOthersHangStill) {
   }
 }
 
+// Thesis 7.1: cables at rest cost nothing, and those that move do not notice.
+TEST(DisconnectedScene, SleepsWithoutDisturbingWhatMoves) {
+  const int moving = 3, count = 20;
+  const Scene scene = disconnected_scene(count, moving);
+  World with = make_world(scene, Method::pinch), without = make_world(scene, awake(Method::pinch));
+  for (int i = 0; i < 480; ++i) {
+    ASSERT_EQ(step(scene, with), StepStatus::ok) << with.failure;
+    ASSERT_EQ(step(scene, without), StepStatus::ok) << without.failure;
+  }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (b < 2 * moving) {
+      EXPECT_EQ(with.position[b], without.position[b]) << b;
+      EXPECT_EQ(with.velocity[b], without.velocity[b]) << b;
+      EXPECT_EQ(with.angle[b], without.angle[b]) << b;
+    } else {
+      EXPECT_LT((with.position[b] - without.position[b]).norm(), 1e-12) << b;
+    }
+  }
+  int asleep = 0;
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with, c);
+  EXPECT_EQ(asleep, count - moving);
+}
+
 }  // namespace
 }  // namespace pinchlab::experiments
