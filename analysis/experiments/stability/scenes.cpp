@@ -109,6 +109,17 @@ Scene roller_on_drum(int extra_turns, int cables, double half_width) {
   return scene;
 }
 
+Scene slipping_winding(int extra_turns) {
+  Scene scene = roller_on_drum(extra_turns);
+  scene.bodies[0].kind = BodyKind::fixed;
+  scene.bodies.push_back(body("left", BodyKind::free, -R, -3.0, 0.2, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, R, -3.0, 0.2, 2.0));
+  for (Body& b : scene.bodies) b.cable_friction = 0.02;
+  scene.cables[0].start = on(2);
+  scene.cables[0].end = on(3);
+  return scene;
+}
+
 Scene zigzag_stack(int count, double half_width) {
   const double w = half_width, r = 0.25, apart = 0.05;
   Scene scene;
