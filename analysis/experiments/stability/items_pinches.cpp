@@ -67,7 +67,7 @@ Item windings(bool quick) {
   }
   for (const int turns : {0, 1, 2, 3, 5, 7, 10, 15, 20, 30, 50}) {
     if (quick && turns > 10) continue;
-    Case test = comes_to_rest("slipping, with weights", turns, slipping_winding(turns), 1.0);
+    Case test = comes_to_rest("slipping with weights", turns, slipping_winding(turns), 1.0);
     test.rests = false;
     item.cases.push_back(test);
   }
