@@ -19,11 +19,11 @@ constexpr double negligible = 0.05;
 bool note_end(const Scene& scene, World& world, const Segment& segment, int body, int other) {
   if (body < 0) return false;
   const auto b = static_cast<std::size_t>(body);
-  const BodyKind kind = scene.bodies[b].kind;
-  if (kind != BodyKind::free && kind != BodyKind::rail) return false;
+  if (!can_move(scene.bodies[b])) return false;
   const double h = world.step_length;
-  const double mass = 2.0 * h * h * segment.tension / segment.length;
-  if (!(mass > negligible * scene.bodies[b].mass)) return false;
+  const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
+  if (!(twice > negligible * scene.bodies[b].mass * segment.length)) return false;
+  const double mass = twice / segment.length;
   std::vector<SpanMass>& masses = world.scratch.span_masses;
   if (masses.empty()) masses.resize(scene.bodies.size());
   const Vec2 n = left(segment.direction);

@@ -6,11 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "analysis/experiments/experiment.h"
+#include "analysis/experiments/features.h"
+#include "analysis/experiments/pinch_detection.h"
 #include "analysis/experiments/render_cost.h"
 #include "analysis/experiments/stability/stability.h"
+#include "analysis/experiments/stress.h"
 #include "demos/command_line.h"
 
 namespace pinchlab::experiments {
@@ -25,7 +27,12 @@ struct Experiment {
 };
 
 /// All but render, which has options of its own.
-const std::vector<Experiment> experiments = {
+constexpr Experiment experiments[] = {
+    {"stress", "What a step costs as scenes grow, stage by stage, against the thesis' method",
+     run_stress, true},
+    {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection, true},
+    {"features", "What features cost scenes that do not use them, and what sleep saves",
+     run_features},
     {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 
@@ -108,7 +115,8 @@ void add_all(CLI::App& bench) {
     RenderRun render;
     render.out = options->out;
     if (options->quick) render.frames = 60;
-    render.command = "pinchlab bench render";
+    render.command = fmt::format("pinchlab bench render{} --out {}",
+                                 options->quick ? " --frames 60" : "", render.out.string());
     run_render(render);
   });
 }

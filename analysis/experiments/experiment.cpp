@@ -20,6 +20,14 @@ namespace pinchlab::experiments {
 
 namespace fs = std::filesystem;
 
+std::vector<int> loads_of(const Options& options, std::vector<int> fewer) {
+  if (options.quick && options.loads == Options().loads) return fewer;
+  std::vector<int> loads = options.loads;
+  std::sort(loads.begin(), loads.end());
+  loads.erase(std::unique(loads.begin(), loads.end()), loads.end());
+  return loads;
+}
+
 double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -22,6 +22,9 @@ struct Options {
   std::vector<int> loads{1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000};  ///< of stress scenes
 };
 
+/// The loads to measure, in order and without doubles: with --quick and no --loads the fewer ones.
+std::vector<int> loads_of(const Options& options, std::vector<int> fewer);
+
 /// Processor time of the calling thread, s.
 double cpu_seconds();
 

@@ -35,13 +35,15 @@ Cable cable_between(const Attachment& start, const Attachment& end) {
   return cable;
 }
 
-/// Length of the cable's free spans, m, as make_world lays them.
-double free_length(const Scene& scene) {
+/// Makes the scene's cable elastic and puts it under tension. What lies on pulleys is not stretched
+/// (no slip): only free spans, as long as make_world lays them, pull.
+void string_cable(Scene& scene) {
+  double free_length = 0.0;  // m
   const World world = make_world(scene, Method::pinch);
-  double sum = 0.0;
   const CableState& cable = world.cables.front();
-  for (std::size_t s = 1; s < cable.segments.size(); ++s) sum += cable.segments[s].length;
-  return sum;
+  for (std::size_t s = 1; s < cable.segments.size(); ++s) free_length += cable.segments[s].length;
+  scene.cables.front().axial_stiffness = stress_stiffness;
+  scene.cables.front().slack = -stress_strain / (1.0 + stress_strain) * free_length;
 }
 
 }  // namespace
@@ -62,10 +64,8 @@ Scene stress_scene(int load, double spacing) {
     cable.wraps.push_back({pulley(x2, lower), counter_clockwise, 0});
     cable.wraps.push_back({pulley(x2, upper), clockwise, 0});
   }
-  cable.axial_stiffness = stress_stiffness;
   scene.cables.push_back(cable);
-  // What lies on the pulleys is not stretched (no slip): only free spans pull.
-  scene.cables.front().slack = -stress_strain / (1.0 + stress_strain) * free_length(scene);
+  string_cable(scene);
   return scene;
 }
 
@@ -86,6 +86,7 @@ Scene pinch_detection_scene(int load, bool pinching, bool other) {
     add_body(scene, "small pulley", BodyKind::rail, a * (i + 1), height, small_radius);
   }
   scene.cables.push_back(cable);
+  string_cable(scene);
   return scene;
 }
 
@@ -102,6 +103,22 @@ Scene chain_scene(int pulleys) {
     const int pulley =
         add_body(scene, "pulley", BodyKind::fixed_axle, spacing * i, 0.0, pulley_radius);
     scene.bodies[static_cast<std::size_t>(pulley)].mass = 0.1;
+    cable.wraps.push_back({pulley, i % 2 == 0 ? -1 : 1, 0});
+  }
+  scene.cables.push_back(cable);
+  return scene;
+}
+
+Scene swinging_scene(int pulleys) {
+  Scene scene = named("swinging");
+  const double reach = pulley_radius + half_width, spacing = 1.5;
+  const int weight =
+      add_body(scene, "weight", BodyKind::free, spacing * (pulleys - 1) + reach, -3.0, 0.2);
+  scene.bodies.back().velocity = {0.5, 0.0};
+  Cable cable = cable_between({-1, {-reach, -3.0}}, {weight, {0.0, 0.0}});
+  for (int i = 0; i < pulleys; ++i) {
+    const int pulley =
+        add_body(scene, "pulley", BodyKind::fixed_axle, spacing * i, 0.0, pulley_radius);
     cable.wraps.push_back({pulley, i % 2 == 0 ? -1 : 1, 0});
   }
   scene.cables.push_back(cable);

@@ -27,12 +27,16 @@ Scene stress_scene(int load, double spacing);
 
 /// Figure 3.1c, repeated `load` times: two wrapped pulleys with fixed axles a unit, over and under
 /// in turn, and on rails above them small pulleys of 1 kg. `pinching` ones lie on the wrap of the
-/// first, `other` ones on the bare top of the second.
+/// first, `other` ones on the bare top of the second. The cable is strung as in stress_scene.
 Scene pinch_detection_scene(int load, bool pinching, bool other);
 
 /// 1000 kg and 999 kg on one cable over `pulleys` (odd) pulleys of 0.1 kg with fixed axles,
 /// wrapped over and under in turn: the mass ratio of 1e4 at which sweeps do not converge.
 Scene chain_scene(int pulleys);
+
+/// A weight that swings for ever on a cable over `pulleys` (odd) pulleys with fixed axles: never at
+/// rest, and without contacts, pinches, slip and loops.
+Scene swinging_scene(int pulleys);
 
 /// `count` cables apart from each other, each from an anchor over a pulley with a fixed axle to a
 /// hanging weight (thesis 7.1). The first `moving` weights swing, the others hang still.

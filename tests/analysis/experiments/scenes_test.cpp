@@ -94,6 +94,19 @@ TEST(ChainScene, FallsAsItsMassesSay) {
   EXPECT_NEAR(-3.0 - world.position[0].y(), expected, 1e-9);
 }
 
+TEST(SwingingScene, SwingsForEverWithoutContactsAndPinches) {
+  const Scene scene = swinging_scene(5);
+  World world = make_world(scene, awake(Method::pinch));
+  double fastest = 0.0;
+  for (int i = 0; i < 24000; ++i) {
+    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    if (i >= 23000) fastest = std::max(fastest, world.velocity[0].norm());
+  }
+  EXPECT_NEAR(fastest, 0.5, 0.01);
+  EXPECT_TRUE(world.contacts.empty());
+  EXPECT_EQ(count_elements(world), (ElementCounts{6, 0, 0, 0, 7, 6}));
+}
+
 TEST(DisconnectedScene, SomeSwingAndOthersHangStill) {
   const Scene scene = disconnected_scene(20, 3);
   World world = make_world(scene, awake(Method::pinch));

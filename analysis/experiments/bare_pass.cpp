@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/bare_pass.h"
+
+#include "sim/tangent.h"
+
+namespace pinchlab::experiments {
+
+BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.step_length) {
+  const CableState& cable = world.cables.front();
+  compliance = 1.0 / (scene.cables.front().axial_stiffness * step_length * step_length);
+  for (const Link& link : cable.links) {
+    Body body{link.attachment, Vec2::Zero(), 0.0, 0.0, 0.0, link.signed_radius()};
+    if (link.body >= 0) {
+      const auto b = static_cast<std::size_t>(link.body);
+      const pinchlab::Body& given = scene.bodies[b];
+      body.position = world.position[b];
+      body.velocity = world.velocity[b];
+      body.angular_velocity = world.angular_velocity[b];
+      body.inverse_inertia = 1.0 / disc_inertia(given);
+      if (given.kind == BodyKind::free) body.inverse_mass = 1.0 / given.mass;
+    }
+    bodies.push_back(body);
+  }
+  for (std::size_t s = 1; s < cable.segments.size(); ++s) {
+    rows.push_back({Vec2::Zero(), 0.0, cable.segments[s].rest_length, 0.0, 0.0, 0.0});
+  }
+}
+
+// A segment's row is J = -dC/d(velocities) with C = L - l, dC/dt = e.(v_B - v_A) + p_B om_B - p_A
+// om_A (model.md); (J M^-1 J^T + compliance) impulse = C/h + dC/dt. Neighbours share one body.
+void BarePass::step() {
+  const std::size_t count = rows.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Body &a = bodies[i], &b = bodies[i + 1];
+    Row& row = rows[i];
+    const Tangent tangent =
+        common_tangent(a.position, a.signed_radius, b.position, b.signed_radius);
+    row.direction = tangent.direction;
+    row.length = tangent.length;
+    row.diagonal = a.inverse_mass + a.inverse_inertia * a.signed_radius * a.signed_radius +
+                   b.inverse_mass + b.inverse_inertia * b.signed_radius * b.signed_radius +
+                   compliance * row.rest_length;
+    row.impulse = (row.length - row.rest_length) / step_length +
+                  row.direction.dot(b.velocity - a.velocity) +
+                  b.signed_radius * b.angular_velocity - a.signed_radius * a.angular_velocity;
+    if (i == 0) continue;
+    Row& before = rows[i - 1];
+    before.upper = -(a.inverse_mass * before.direction.dot(row.direction) +
+                     a.inverse_inertia * a.signed_radius * a.signed_radius);
+    const double factor = before.upper / before.diagonal;
+    row.diagonal -= factor * before.upper;
+    row.impulse -= factor * before.impulse;
+  }
+  for (std::size_t i = count; i-- > 0;) {
+    Row& row = rows[i];
+    if (i + 1 < count) row.impulse -= row.upper * rows[i + 1].impulse;
+    row.impulse /= row.diagonal;
+    Body &a = bodies[i], &b = bodies[i + 1];
+    a.velocity += row.impulse * a.inverse_mass * row.direction;
+    a.angular_velocity += row.impulse * a.inverse_inertia * a.signed_radius;
+    b.velocity -= row.impulse * b.inverse_mass * row.direction;
+    b.angular_velocity -= row.impulse * b.inverse_inertia * b.signed_radius;
+  }
+}
+
+}  // namespace pinchlab::experiments

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/bare_pass.h"
+
+#include <gtest/gtest.h>
+
+#include "analysis/experiments/scenes.h"
+#include "sim/step.h"
+
+namespace pinchlab::experiments {
+namespace {
+
+// The yardstick must do the work that it stands for: one step of the simulator, without gravity and
+// with all segments taut, gives the same tensions and velocities.
+TEST(BarePass, SolvesTheSystemOfAStep) {
+  Scene scene = stress_scene(5, free_spacing);
+  scene.gravity = Vec2::Zero();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    scene.bodies[b].angular_velocity = 0.01 * (static_cast<double>(b % 7) - 3.0);  // rad/s
+  }
+  Configuration configuration = Method::pinch;
+  configuration.sleep = false;
+  World world = make_world(scene, configuration);
+  ASSERT_EQ(step(scene, world), StepStatus::ok);  // its kick is half as long
+  BarePass pass(scene, world);
+  pass.step();
+  ASSERT_EQ(step(scene, world), StepStatus::ok);
+  const CableState& cable = world.cables.front();
+  ASSERT_EQ(pass.rows.size(), 21U);
+  double least = infinity, greatest = 0.0;
+  for (std::size_t s = 1; s < cable.segments.size(); ++s) {
+    const double tension = pass.rows[s - 1].impulse / world.step_length;
+    EXPECT_NEAR(tension, cable.segments[s].tension, 1e-9 * tension) << s;
+    least = std::min(least, tension);
+    greatest = std::max(greatest, tension);
+  }
+  EXPECT_GT(greatest - least, 1.0);  // N: not all the same by symmetry
+  for (std::size_t i = 1; i + 1 < cable.links.size(); ++i) {
+    const auto b = static_cast<std::size_t>(cable.links[i].body);
+    EXPECT_NEAR(pass.bodies[i].angular_velocity, world.angular_velocity[b], 1e-12) << b;
+  }
+}
+
+// Free bodies at its ends too.
+TEST(BarePass, PullsTheWeightsOfAChain) {
+  Scene scene = chain_scene(5);
+  scene.gravity = Vec2::Zero();
+  scene.bodies[0].velocity = {0.0, -0.3};
+  World world = make_world(scene, Method::pinch);
+  ASSERT_EQ(step(scene, world), StepStatus::ok);
+  BarePass pass(scene, world);
+  pass.bodies.front().velocity += Vec2(0.0, -0.1);
+  world.velocity[0] += Vec2(0.0, -0.1);
+  pass.step();
+  ASSERT_EQ(step(scene, world), StepStatus::ok);
+  EXPECT_NEAR(pass.bodies.front().velocity.y(), world.velocity[0].y(), 1e-9);
+  EXPECT_NEAR(pass.bodies.back().velocity.y(), world.velocity[1].y(), 1e-9);
+  EXPECT_GT(world.velocity[1].y(), 0.1);
+}
+
+}  // namespace
+}  // namespace pinchlab::experiments
