@@ -174,6 +174,37 @@ Item caught_loads(bool quick) {
   return item;
 }
 
+Item jerks(bool quick) {
+  Item item;
+  item.id = "jerk";
+  item.title = "Jerks";
+  item.x_name = "mass ratio";
+  item.why =
+      "What a jerk sets off within a step is not foreseen: a light body's vibration is damped by "
+      "the tension of the step before, which is none, and a contact is looked for by the speeds of "
+      "the step before. A light body is thrown "
+      "aside; a heavier one overlaps, or stretches its cable, for a step.";
+  item.scene =
+      "Through a light body: the hanging pair of the mass ratios, where M first falls 0.1 m on a "
+      "slack cable. Into a pinch: M falls 5 m before its cable jerks a roller of 1 kg, which rests "
+      "10 mm below a wrapped drum, up against it.";
+  for (const double ratio : decades(0, 9, quick ? 1 : 2)) {
+    Case test = hanging(ratio, quick);
+    test.series = "through a light body";
+    test.scene.cables[1].slack = 0.1;
+    item.cases.push_back(test);
+  }
+  for (const double ratio : decades(0, 4, quick ? 1 : 2)) {
+    Case test;
+    test.series = "into a pinch";
+    test.x = ratio;
+    test.scene = roller_jerked_at_drum(ratio);
+    test.seconds = 2.0;
+    item.cases.push_back(test);
+  }
+  return item;
+}
+
 Item friction(bool quick) {
   Item item;
   item.id = "friction";
