@@ -91,7 +91,7 @@ std::string speeds_panel(const ItemResults& done, const std::string& table) {
   std::string text =
       "unset object\nunset label\nunset logscale x\nset yrange [1e-5:100]\nset ytics auto\n"
       "set logscale y\nset format y '10^{%L}'\nset ytics 1e-5,10\nset ylabel 'm/s'\nset xrange "
-      "[*:*]\nset format x '%g'\n"
+      "[0:4]\nset format x '%g'\n"
       "set xtics auto\nset xlabel 'time, s'\nset title 'fastest roller of four'\nplot ";
   for (std::size_t m = 0; m < done.item.methods.size(); ++m) {
     const std::string& method = done.item.methods[m];
