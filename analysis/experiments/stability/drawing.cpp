@@ -16,6 +16,11 @@ namespace {
 constexpr double lowest = 1e-9, highest = 1e5;  // of severities that are drawn
 constexpr int panel_px = 330;
 
+/// A single panel is wider, for the legend above it, px.
+int figure_width(int panels) {
+  return 64 + (panels == 1 ? 450 : panels * panel_px);
+}
+
 std::string method_title(const std::string& method) {
   if (method == "pinch") return "ours (pinch)";
   if (method == "thesis") return "thesis";
@@ -42,7 +47,7 @@ std::vector<std::string> series_of(const Item& item) {
 
 /// Places the plot of panel number `panel`, `apart_px` from the next, under `keys_px` of legend.
 std::string panel_margins(int panel, int panels, double apart_px, int keys_px, int height_px) {
-  const double left = 64.0, right = 12.0, width = 64.0 + panels * panel_px;
+  const double left = 64.0, right = 12.0, width = figure_width(panels);
   const double inner = (width - left - right - apart_px * (panels - 1)) / panels;
   const double x = left + panel * (inner + apart_px);
   return fmt::format(
@@ -86,7 +91,7 @@ std::string speeds_panel(const ItemResults& done, const std::string& table) {
   std::string text =
       "unset object\nunset label\nunset logscale x\nset yrange [1e-5:100]\nset ytics auto\n"
       "set logscale y\nset format y '10^{%L}'\nset ytics 1e-5,10\nset ylabel 'm/s'\nset xrange "
-      "[*:*]\nset format x '%g'\n"
+      "[0:4]\nset format x '%g'\n"
       "set xtics auto\nset xlabel 'time, s'\nset title 'fastest roller of four'\nplot ";
   for (std::size_t m = 0; m < done.item.methods.size(); ++m) {
     const std::string& method = done.item.methods[m];
@@ -104,7 +109,7 @@ Drawing draw_curves(const ItemResults& done) {
   const std::string table = "stability-" + item.id;
   const int panels = static_cast<int>(series.size()) + (item.shows_speeds ? 1 : 0);
   const int height_px = 340;
-  Drawing drawing{64 + panels * panel_px, height_px, ""};
+  Drawing drawing{figure_width(panels), height_px, ""};
   const double apart_px = item.shows_speeds ? 70.0 : 22.0;
   const auto [low, high] = drawn_range(item);
   std::string& text = drawing.commands;
@@ -215,7 +220,7 @@ Drawing draw_map(const ItemResults& done) {
   }
   const std::vector<double> xs(x_set.begin(), x_set.end()), ys(y_set.begin(), y_set.end());
   const int panels = static_cast<int>(item.methods.size()), height_px = 330;
-  Drawing drawing{64 + panels * panel_px, height_px, ""};
+  Drawing drawing{figure_width(panels), height_px, ""};
   std::string& text = drawing.commands;
   text += fmt::format(
       "set termoption enhanced\nset multiplot\nunset grid\nunset key\nset border 15\n"

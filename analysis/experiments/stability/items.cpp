@@ -10,6 +10,7 @@ std::vector<Item> stability_items(bool quick) {
           frames_and_steps(quick),
           pulleys(quick),
           caught_loads(quick),
+          jerks(quick),
           windings(quick),
           stacks(quick),
           cables_under_a_pinch(quick),

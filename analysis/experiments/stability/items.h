@@ -31,6 +31,7 @@ std::vector<Item> stability_items(bool quick);
 Item mass_ratio(bool quick);
 Item pulleys(bool quick);
 Item caught_loads(bool quick);
+Item jerks(bool quick);
 Item friction(bool quick);
 Item windings(bool quick);
 Item stacks(bool quick);

@@ -99,12 +99,27 @@ std::string worst_table(const ItemResults& done) {
                         rows);
 }
 
+/// Where ours has steps whose active set did not settle.
+std::string unsettled(const ItemResults& done) {
+  std::int64_t fallbacks = 0;
+  std::vector<std::string> where;
+  for (const Result& r : select(done, "pinch", "")) {
+    fallbacks += r.fallbacks;
+    if (r.fallbacks > 0) where.push_back(fmt::format("{} {}", r.series, value_text(r.x)));
+  }
+  if (fallbacks == 0) return "";
+  return fmt::format(
+      " In {} steps ({}) the active set of ours did not settle, and what flipped was held for the "
+      "step; the measures count them like all others.",
+      fallbacks, fmt::join(where, ", "));
+}
+
 std::string section(const ItemResults& done) {
   const Item& item = done.item;
   return fmt::format(
-      "\n<a id=\"{0}\"></a>\n## {1}\n\n{2}\n\n![{1}](stability-{0}.svg)\n\n{3} Largest measures "
-      "over all cases ([table](stability-{0}.csv)):\n\n{4}",
-      item.id, item.title, item.scene, item.why, worst_table(done));
+      "\n<a id=\"{0}\"></a>\n## {1}\n\n{2}\n\n![{1}](stability-{0}.svg)\n\n{3}{4} Largest measures "
+      "over all cases ([table](stability-{0}.csv)):\n\n{5}",
+      item.id, item.title, item.scene, item.why, unsettled(done), worst_table(done));
 }
 
 /// Totals that the introduction tells of ours.

@@ -109,6 +109,31 @@ Scene roller_on_drum(int extra_turns, int cables, double half_width) {
   return scene;
 }
 
+Scene roller_jerked_at_drum(double mass) {
+  const double w = cable_half_width, r = 0.25;
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, pulley_radius, 10.0));
+  scene.bodies.push_back(
+      body("roller", BodyKind::rail, 0.0, -(pulley_radius + r + 2.0 * w + 0.01), r, 1.0));
+  scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 2.0, 0.0, 0.3, 1.0));
+  scene.bodies.push_back(body("weight", BodyKind::rail, 2.35, -2.0, 0.2, mass));
+  add_cable(scene, at(-2.0, 2.0), {{0, 1, 0}}, at(2.0, 2.5));
+  add_cable(scene, {1, {r, 0.0}}, {{2, -1, 0}}, on(3));
+  scene.cables[1].slack = 5.0;
+  return scene;
+}
+
+Scene slipping_winding(int extra_turns) {
+  Scene scene = roller_on_drum(extra_turns);
+  scene.bodies[0].kind = BodyKind::fixed;
+  scene.bodies.push_back(body("left", BodyKind::free, -R, -3.0, 0.2, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, R, -3.0, 0.2, 2.0));
+  for (Body& b : scene.bodies) b.cable_friction = 0.02;
+  scene.cables[0].start = on(2);
+  scene.cables[0].end = on(3);
+  return scene;
+}
+
 Scene zigzag_stack(int count, double half_width) {
   const double w = half_width, r = 0.25, apart = 0.05;
   Scene scene;

@@ -27,6 +27,14 @@ Scene caught_load(double height);
 /// A roller of 1 kg that falls 50 mm on a cable over a drum, with `extra_turns` round the drum.
 Scene roller_on_drum(int extra_turns, int cables = 1, double half_width = cable_half_width);
 
+/// A roller of 1 kg at rest, 10 mm below a drum with a cable under it; `mass` falls 5 m before the
+/// cable that it hangs on is taut and jerks the roller up.
+Scene roller_jerked_at_drum(double mass);
+
+/// The roller on the drum with 1 kg and 2 kg at the cable's ends, on a
+/// drum that does not turn, friction 0.02.
+Scene slipping_winding(int extra_turns);
+
 /// `count` rollers of 1 kg on a rail above a drum, from 50 mm apart, the cable in a zig-zag round
 /// all and a weight of 1 kg at its end.
 Scene zigzag_stack(int count, double half_width = cable_half_width);
