@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiments/accuracy.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/render_cost.h"
 #include "demos/command_line.h"
@@ -24,7 +25,9 @@ struct Experiment {
 };
 
 /// All but render, which has options of its own.
-const std::vector<Experiment> experiments = {};
+const std::vector<Experiment> experiments = {
+    {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
+};
 
 /// The options as they can be typed again, after the command's name.
 std::string typed(const Options& options, bool has_loads) {

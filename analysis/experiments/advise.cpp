@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/advise.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "analysis/experiments/accuracy_scenes.h"
+#include "analysis/experiments/experiment.h"
+#include "demos/scene_json.h"
+
+namespace pinchlab::experiments {
+
+namespace {
+
+/// The wanted error must be this many times what the reference may be off by.
+constexpr double least_surety = 2.0;
+/// Where refining stops.
+constexpr double enough_surety = 8.0;
+
+bool vouched_for(const Question& question, const Problem& problem) {
+  return problem.doubt_m * least_surety <= question.error_m;
+}
+
+std::string table(const Advice& advice) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Rung& rung : advice.rungs) {
+    const Trial& t = rung.trial;
+    const bool chosen =
+        advice.best >= 0 && &rung == &advice.rungs[static_cast<std::size_t>(advice.best)];
+    rows.push_back({chosen ? "->" : "", rung.setting, fmt::format("{}", rung.steps_per_frame),
+                    t.finite ? fmt::format("{:.2e}", t.error) : "not finite",
+                    t.finite ? fmt::format("{:.0f}", 1e6 * t.cpu_s_per_s) : "-"});
+  }
+  std::string text = fmt::format("   {:<28}{:>14}{:>14}{:>22}\n", "configuration", "steps a frame",
+                                 "error, m", "us a simulated second");
+  for (const auto& row : rows) {
+    text += fmt::format("{:<3}{:<28}{:>14}{:>14}{:>22}\n", row[0], row[1], row[2], row[3], row[4]);
+  }
+  return text;
+}
+
+std::string cost(const Trial& trial) {
+  return fmt::format("{:.3g} ms of processor time a simulated second", 1e3 * trial.cpu_s_per_s);
+}
+
+/// What to type for a configuration.
+std::string how_to_use(const Rung& rung) {
+  const std::size_t comma = rung.setting.find(", direct");
+  if (comma == std::string::npos) return "";
+  return fmt::format("\nTry it: pinchlab simulate SCENE --method {} --steps-per-frame {} --out -\n",
+                     rung.setting.substr(0, comma), rung.steps_per_frame);
+}
+
+}  // namespace
+
+Advice advise(const Question& question) {
+  const Scene scene = read_scene_file(question.scene).scene;
+  start_world(scene, question.scene, Method::pinch);  // tells what is wrong with it by its file
+  const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
+  const double seconds = question.seconds > 0.0 ? question.seconds : clip;
+  Advice advice;
+  for (advice.reference_steps = 2 * question.most_steps;; advice.reference_steps *= 2) {
+    advice.problem = own_solution(scene.name, scene, seconds, advice.reference_steps);
+    if (advice.problem.doubt_m * enough_surety <= question.error_m) break;
+    if (2 * advice.reference_steps > question.most_reference_steps) break;
+  }
+  advice.problem.length_m = 1.0;
+  advice.problem.length = "a metre";
+  if (!vouched_for(question, advice.problem)) return advice;
+  const std::vector<Contender> all = contenders();
+  Progress progress("advise", static_cast<double>(all.size()));
+  for (const Contender& contender : all) {
+    const auto run = [&](int steps) {
+      return simulate(advice.problem, contender.configuration, steps);
+    };
+    const std::vector<Rung> rungs =
+        climb(advice.problem, contender.name, run, question.most_steps, Limits());
+    advice.rungs.insert(advice.rungs.end(), rungs.begin(), rungs.end());
+    progress.done(1.0);
+  }
+  advice.best = cheapest(advice.problem, advice.rungs, question.error_m, true);
+  return advice;
+}
+
+std::string advice_text(const Question& question, const Advice& advice) {
+  const Problem& problem = advice.problem;
+  std::string text = fmt::format(
+      "{}: {:g} s, against {}.\nThat solution moves by {:.1e} m when its step is doubled.\n\n",
+      problem.title, problem.seconds(), problem.reference, problem.doubt_m);
+  if (!vouched_for(question, problem)) {
+    return text + fmt::format(
+                      "An error of {:g} m is below what this can vouch for. Ask for {:.0e} m or "
+                      "more, or for a shorter --time.\n",
+                      question.error_m, 1.05 * least_surety * problem.doubt_m);
+  }
+  text += table(advice) + "\n";
+  if (advice.best < 0) {
+    return text + fmt::format("None of these keeps within {:g} m at this and all finer steps.\n",
+                              question.error_m);
+  }
+  const Rung& best = advice.rungs[static_cast<std::size_t>(advice.best)];
+  return text + fmt::format("Cheapest within {:g} m: {}, {} step{} a frame: {:.1e} m off, {}.\n{}",
+                            question.error_m, best.setting, best.steps_per_frame,
+                            best.steps_per_frame == 1 ? "" : "s", best.trial.error,
+                            cost(best.trial), how_to_use(best));
+}
+
+void add_advise_command(CLI::App& app) {
+  auto question = std::make_shared<Question>();
+  CLI::App* command =
+      app.add_subcommand("advise", "The cheapest way to simulate a scene to a wanted error");
+  command->add_option("scene", question->scene, "Scene file; demos/README.md documents the format")
+      ->type_name("SCENE")
+      ->required();
+  command
+      ->add_option("--error", question->error_m,
+                   "Farthest that any body's centre or rim may be off in any frame, m")
+      ->type_name("M")
+      ->required()
+      ->check(CLI::Range(1e-12, 1e3));
+  command
+      ->add_option("--time", question->seconds, "How much of the scene counts, s [the whole clip]")
+      ->type_name("S")
+      ->check(CLI::Range(0.05, 600.0));
+  command->footer(
+      "Tries every method with every solver, and the thesis' configuration, at 1 to 256 steps a "
+      "frame, against\nthe scene's own solution at many more, and names the cheapest that stays "
+      "within the error, at those steps\nand all finer ones. Exit code 1: there is none, or the "
+      "solution is not sure enough to tell.\n\n"
+      "Examples:\n"
+      "  pinchlab advise demos/04-two-blocking.json --error 0.01\n"
+      "  pinchlab advise demos/06-windlass.json --error 1e-5 --time 4");
+  command->callback([question] {
+    const Advice advice = advise(*question);
+    const std::string text = advice_text(*question, advice);
+    std::fputs(text.c_str(), advice.best >= 0 ? stdout : stderr);
+    if (advice.best < 0) throw CLI::RuntimeError(1);
+  });
+}
+
+}  // namespace pinchlab::experiments
