@@ -21,13 +21,13 @@ struct Series {
   const char* dash;  // gnuplot's dash type
 };
 constexpr Series series[] = {
-    {"cable, iterative", 6, "2"},
-    {"cable, direct", 6, "1"},
-    {"pinch_no_contact, iterative", 7, "2"},
-    {"pinch_no_contact, direct", 7, "1"},
+    {"cable iterative", 6, "2"},
+    {"cable direct", 6, "1"},
+    {"pinch_no_contact iterative", 7, "2"},
+    {"pinch_no_contact direct", 7, "1"},
     {"thesis", 3, "1"},
-    {"pinch, iterative", 2, "1"},
-    {"pinch, direct", 1, "1"},
+    {"pinch iterative", 2, "1"},
+    {"pinch direct", 1, "1"},
 };
 constexpr int peer_styles[] = {4, 5};
 
@@ -93,12 +93,13 @@ void figure_of(Output& output, const ProblemResult& result, const std::vector<Pe
   output.figure(
       "accuracy-" + result.problem.name, 900, 480,
       axes() +
-          fmt::format("set title {} tc rgb '#333333'\n"
-                      "set xlabel 'processor time a simulated second (µs)'\n"
-                      "set ylabel {}\n"
-                      "set yrange [{}:{}]\nset key outside right center reverse Left spacing 1.3\n",
-                      analysis::gnuplot_quote(result.problem.title),
-                      analysis::gnuplot_quote("error / " + result.problem.length), low, high) +
+          fmt::format(
+              "set title {} tc rgb '#333333'\n"
+              "set xlabel 'processor time a simulated second (µs)'\n"
+              "set ylabel {}\n"
+              "set yrange [{}:{}]\nset key outside right center invert reverse Left spacing 1.3\n",
+              analysis::gnuplot_quote(result.problem.title),
+              analysis::gnuplot_quote("error / " + result.problem.length), low, high) +
           lines_of(result, peers, 0.7));
 }
 
@@ -112,13 +113,13 @@ void figure_of_demonstrations(Output& output, const std::vector<const ProblemRes
   for (std::size_t i = 0; i < results.size(); ++i) {
     text += fmt::format("set title {} tc rgb '#333333'\nset ylabel {}\nset xlabel {}\n",
                         analysis::gnuplot_quote(results[i]->problem.name),
-                        i % 3 == 0 ? "'error, relative'" : "''",
-                        i + 3 >= results.size() ? "'µs a simulated second'" : "''") +
+                        i % 3 == 0 ? "'error, relative'" : "' '",
+                        i + 3 >= results.size() ? "'µs a simulated second'" : "' '") +
             lines_of(*results[i], peers, 0.5);
   }
   text +=
       "unset title\nunset xlabel\nunset ylabel\nunset tics\nunset border\nunset grid\n"
-      "set key center center reverse Left spacing 1.4\n"
+      "set key center center invert reverse Left spacing 1.4\n"
       "set xrange [1:2]\nset yrange [1:2]\nplot ";
   for (const Series& s : series) {
     text += fmt::format("NaN with linespoints ls {} dt {} title {}, ", s.style, s.dash,

@@ -256,7 +256,7 @@ Problem own_solution(const std::string& name, const Scene& scene, double seconds
   problem.rims = true;
   solve_finely(problem, steps_per_frame);
   problem.reference =
-      fmt::format("its own solution (pinch, direct) at {} steps a frame", steps_per_frame);
+      fmt::format("the scene's own solution (pinch direct) at {} steps a frame", steps_per_frame);
   problem.length_m = reach(problem.exact, true);
   problem.length = "the farthest that a centre or rim gets from its start";
   return problem;

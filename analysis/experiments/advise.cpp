@@ -50,10 +50,10 @@ std::string cost(const Trial& trial) {
 
 /// What to type for a configuration.
 std::string how_to_use(const Rung& rung) {
-  const std::size_t comma = rung.setting.find(", direct");
-  if (comma == std::string::npos) return "";
+  const std::size_t solver = rung.setting.find(" direct");
+  if (solver == std::string::npos) return "";
   return fmt::format("\nTry it: pinchlab simulate SCENE --method {} --steps-per-frame {} --out -\n",
-                     rung.setting.substr(0, comma), rung.steps_per_frame);
+                     rung.setting.substr(0, solver), rung.steps_per_frame);
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ Trial judge(const Problem& problem, const Recording& recording) {
 }
 
 Trial measure(const Problem& problem, const std::function<Recording()>& run, const Limits& limits) {
-  constexpr std::size_t fewest = 3, most = 9;
+  constexpr std::size_t fewest = 3, most = 200;
   const Recording first = run();
   Trial trial = judge(problem, first);
   if (!trial.finite || first.cpu_s > limits.repeat_cpu_s) return trial;
@@ -117,7 +117,7 @@ bool meets(const Problem& problem, const Trial& trial, double error) {
 }
 
 int cheapest(const Problem& problem, const std::vector<Rung>& rungs, double error, bool lasting) {
-  constexpr double tie = 1.1;
+  constexpr double tie = 1.15;
   std::vector<std::size_t> good;
   for (std::size_t i = rungs.size(); i-- > 0;) {
     const bool finer = i + 1 < rungs.size() && rungs[i + 1].setting == rungs[i].setting;
@@ -155,7 +155,7 @@ std::vector<Contender> contenders() {
     for (const Solver solver : {Solver::direct, Solver::iterative}) {
       Configuration configuration = method;
       configuration.solver = solver;
-      all.push_back({std::string(to_string(method)) + ", " + to_string(solver), configuration});
+      all.push_back({std::string(to_string(method)) + ' ' + to_string(solver), configuration});
     }
   }
   all.push_back({"thesis", thesis_configuration()});

@@ -72,7 +72,7 @@ Trial judge(const Problem& problem, const Recording& recording);
 /// How far to go.
 struct Limits {
   double repeat_cpu_s = 0.05;     ///< a run is repeated until it has taken so long: three times at
-                                  ///< least, nine at most, not at all if once takes longer
+                                  ///< least, not at all if once takes longer
   double ladder_cpu_s_per_s = 1;  ///< finer steps are left out once a simulated second costs this
 };
 
@@ -81,7 +81,7 @@ Trial measure(const Problem& problem, const std::function<Recording()>& run, con
 
 /// A trial of one setting at one number of steps a frame.
 struct Rung {
-  std::string setting;  ///< "pinch, direct"
+  std::string setting;  ///< "pinch direct"
   int steps_per_frame = 1;
   Trial trial;
 };
@@ -95,8 +95,8 @@ std::vector<Rung> climb(const Problem& problem, const std::string& setting,
 bool meets(const Problem& problem, const Trial& trial, double error);
 
 /// The cheapest rung that meets `error`, or -1. `lasting`: only where all finer steps of its
-/// setting do too, so that none wins by luck. Times within a tenth of the least are a tie, which
-/// the first wins.
+/// setting do too, so that none wins by luck. Times within 15 % of the least are a tie, which the
+/// first wins.
 int cheapest(const Problem& problem, const std::vector<Rung>& rungs, double error, bool lasting);
 
 /// The rungs that no other beats both in error and in time, by rising time.
@@ -104,7 +104,7 @@ std::vector<Rung> front(const std::vector<Rung>& rungs);
 
 /// A configuration that is compared, by name.
 struct Contender {
-  std::string name;  ///< "pinch, direct"
+  std::string name;  ///< "pinch direct"
   Configuration configuration;
 };
 /// Every method with every solver, then the thesis' configuration as a whole.

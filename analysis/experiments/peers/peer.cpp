@@ -30,7 +30,7 @@ Peer box2d() {
       "5 mm is 0.5 mm. Single precision. Its pulley joint has neither radius nor inertia nor "
       "friction and is no cable.";
 #ifdef PINCHLAB_BOX2D
-  peer.version = fmt::format("{}.{}.{}", b2_version.major, b2_version.minor, b2_version.revision);
+  peer.version = fmt::format("{}.{}", b2_version.major, b2_version.minor);
   peer.cannot = box2d_cannot;
   peer.settings = [](const Problem&, bool quick) {
     std::vector<PeerSetting> settings;
