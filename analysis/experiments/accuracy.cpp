@@ -30,7 +30,9 @@ std::vector<ProblemResult> problems(const Extent& extent) {
   for (Problem& problem : known_problems()) {
     results.push_back({std::move(problem), false, {}, {}});
   }
-  for (const std::filesystem::path& path : find_scenes({demos_folder()})) {
+  const std::vector<std::filesystem::path> paths = find_scenes({demos_folder()});
+  Progress progress("the demonstrations' own solutions", static_cast<double>(paths.size()));
+  for (const std::filesystem::path& path : paths) {
     const Scene scene = read_scene_file(path).scene;
     const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
     results.push_back({own_solution(scene.name, scene, std::min(clip, extent.demonstration_s),
@@ -38,6 +40,7 @@ std::vector<ProblemResult> problems(const Extent& extent) {
                        true,
                        {},
                        {}});
+    progress.done(1.0);
   }
   return results;
 }

@@ -48,10 +48,9 @@ std::string lines_of(const ProblemResult& result, const std::vector<Peer>& peers
     if (result.peers[p].rungs.empty()) continue;
     plots.push_back(fmt::format("'accuracy.csv' {} with points ls {} ps 0.25 notitle",
                                 points(scene, "engine", peers[p].name), peer_styles[p]));
-    plots.push_back(
-        fmt::format("'accuracy-fronts.csv' {} with linespoints ls {} title {}",
-                    points(scene, "engine", peers[p].name), peer_styles[p],
-                    analysis::gnuplot_quote(peers[p].name + " (best of its settings)")));
+    plots.push_back(fmt::format("'accuracy-fronts.csv' {} with linespoints ls {} title {}",
+                                points(scene, "engine", peers[p].name), peer_styles[p],
+                                analysis::gnuplot_quote(peers[p].name + ", its best (dots: all)")));
   }
   for (const Series& s : series) {
     plots.push_back(fmt::format("'accuracy.csv' {} with linespoints ls {} dt {} ps {} title {}",
@@ -85,7 +84,7 @@ std::pair<double, double> error_range(const std::vector<const ProblemResult*>& r
     for (const PeerResult& peer : result->peers) widen(peer.rungs);
   }
   return {std::pow(10.0, std::floor(std::log10(low) - 0.1)),
-          std::pow(10.0, std::min(3.0, std::ceil(std::log10(high) + 0.1)))};
+          std::pow(10.0, std::min(5.0, std::ceil(std::log10(high) + 0.1)))};
 }
 
 void figure_of(Output& output, const ProblemResult& result, const std::vector<Peer>& peers) {

@@ -297,8 +297,9 @@ std::string demonstrations_section(const std::vector<ProblemResult>& results) {
   return fmt::format(
       "### The demonstrations\n\nTheir right answer is not known otherwise, so it is "
       "{}. Errors are the largest of any body's centre and rim, relative to "
-      "the farthest that one gets from its start. The doubt is the distance between that solution "
-      "and the one at half as many steps, over the whole horizon; errors below it say nothing. "
+      "the farthest that one gets from its start. The doubt is 2.5 times the distance between that "
+      "solution and the one at half as many steps, over the whole horizon, which allows for an "
+      "order of 1/2; errors below it say nothing. "
       "Where the order is near 2 the motion is smooth; where it is 1 or less, bodies meet with "
       "an impact, whose moment is known to a step, and what follows inherits that. A best error "
       "that stays large at all numbers of steps is the model's own, not the step's.\n\n"

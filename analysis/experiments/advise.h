@@ -17,7 +17,7 @@ struct Question {
   double error_m = 1e-3;            ///< > 0
   double seconds = 0.0;             ///< 0: the whole clip
   int most_steps = 256;             ///< a frame, that are tried
-  int most_reference_steps = 8192;  ///< a frame, of the scene's own solution
+  int most_reference_steps = 4096;  ///< a frame, of the scene's own solution
 };
 
 /// What was found.

@@ -19,6 +19,16 @@ void record(const Problem& problem, const World& world, std::vector<Place>& plac
   }
 }
 
+/// Motion under the pinch method, solved directly.
+Motion own_motion(const Problem& problem, int steps_per_frame) {
+  Recording recording = simulate(problem, Method::pinch, steps_per_frame);
+  if (!recording.finite) {
+    throw std::runtime_error(problem.name + ": its own solution at " +
+                             std::to_string(steps_per_frame) + " steps a frame is not finite");
+  }
+  return std::move(recording.motion);
+}
+
 double apart(const Place& a, const Place& b, bool rims) {
   const double centres = (a.centre - b.centre).norm();
   return rims ? std::max(centres, std::abs(a.rim - b.rim)) : centres;
@@ -163,13 +173,15 @@ std::vector<Contender> contenders() {
 }
 
 void solve_finely(Problem& problem, int steps_per_frame) {
-  const Recording coarse = simulate(problem, Method::pinch, steps_per_frame / 2);
-  Recording fine = simulate(problem, Method::pinch, steps_per_frame);
-  if (!coarse.finite || !fine.finite) {
-    throw std::runtime_error(problem.name + ": its own solution is not finite");
-  }
-  problem.doubt_m = distance(coarse.motion, fine.motion, problem.rims).largest_m;
-  problem.exact = std::move(fine.motion);
+  problem.exact = own_motion(problem, steps_per_frame / 2);
+  refine(problem, steps_per_frame);
+}
+
+void refine(Problem& problem, int steps_per_frame) {
+  constexpr double doubt_over_change = 2.5;
+  Motion finer = own_motion(problem, steps_per_frame);
+  problem.doubt_m = doubt_over_change * distance(problem.exact, finer, problem.rims).largest_m;
+  problem.exact = std::move(finer);
 }
 
 double observed_order(const std::vector<Rung>& rungs, double floor) {

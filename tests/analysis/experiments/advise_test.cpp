@@ -123,11 +123,13 @@ TEST_F(Advise, CommandLineIsStrict) {
   using CLI::ExitCodes;
   EXPECT_EQ(exit_code({"advise", scene}), static_cast<int>(ExitCodes::RequiredError));
   EXPECT_EQ(exit_code({"advise", "--error", "1"}), static_cast<int>(ExitCodes::RequiredError));
-  for (const char* error : {"0", "-1", "nan", "much"}) {
-    EXPECT_NE(exit_code({"advise", scene, "--error", error}), 0) << error;
+  const int invalid = static_cast<int>(ExitCodes::ValidationError);
+  for (const char* error : {"0", "-1", "nan", "inf", "much", "1e-3x"}) {
+    EXPECT_EQ(exit_code({"advise", scene, "--error", error}), invalid) << error;
   }
-  EXPECT_NE(exit_code({"advise", scene, "--error", "1", "--time", "0"}), 0);
-  EXPECT_NE(exit_code({"advise", scene, "--error", "1", "--steps", "4"}), 0);
+  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--time", "0"}), invalid);
+  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--steps", "4"}),
+            static_cast<int>(ExitCodes::ExtrasError));
 }
 
 }  // namespace
