@@ -128,7 +128,7 @@ void add_still(CLI::App& app) {
 
 void add_simulate(CLI::App& app) {
   struct Options : TrajectoryOptions {
-    std::string scene, method_name = "pinch";
+    std::string scene, method = "pinch";
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
@@ -139,8 +139,10 @@ void add_simulate(CLI::App& app) {
       ->required();
   command->add_option("--segments", options->segments, "One row a cable's segment and frame")
       ->type_name("SEG.csv");
-  add_method(*command, options->method_name,
-             "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
+  add_method(*command, options->method,
+             "pinch, pinch_no_contact, cable, baseline (the scene's own), or thesis: all of the "
+             "thesis' ways, its iterative solver too [pinch]",
+             {"pinch", "pinch_no_contact", "cable", "baseline", "thesis"});
   command->add_option("--until", options->until, "Time of the last row, s [the clip's last frame]")
       ->type_name("S");
   add_fps(*command, options->timing);
@@ -159,10 +161,12 @@ void add_simulate(CLI::App& app) {
       "Examples:\n"
       "  pinchlab simulate demos/03-drop.json --out drop.csv --segments drop-segments.csv\n"
       "  pinchlab simulate demos/03-drop.json --method baseline --until 2 --steps-per-frame 16 "
-      "--out -");
+      "--out -\n"
+      "  pinchlab simulate demos/02-stack.json --method thesis --out stack-thesis.csv");
   command->callback([options] {
     const SceneFile file = read_scene_file(options->scene);
-    options->method = method_of(file.scene, options->method_name);
+    options->configuration =
+        configuration_from_string(options->method).value_or(Configuration(file.scene.baseline));
     write_trajectory(file, *options);
   });
 }

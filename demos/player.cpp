@@ -53,12 +53,12 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
   return fmt::format(
       "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
       "--steps-per-frame {4} --until {5} --out -",
-      path.string(), to_string(world.configuration.method), world.failure, scene.frames_per_second,
+      path.string(), to_string(world.configuration), world.failure, scene.frames_per_second,
       scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
 }
 
-Player::Player(const SceneFile& file, const Scene& scene, Method method)
-    : file_(file), scene_(scene), world_(start_world(scene, file.path, method)) {}
+Player::Player(const SceneFile& file, const Scene& scene, const Configuration& configuration)
+    : file_(file), scene_(scene), world_(start_world(scene, file.path, configuration)) {}
 
 void Player::advance_to(int frame) {
   for (; frame_ < frame; ++frame_) {

@@ -29,7 +29,7 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
 class Player {
  public:
   /// `file` must outlive the player. Throws SceneFileError where the geometry cannot exist.
-  Player(const SceneFile& file, const Scene& scene, Method method);
+  Player(const SceneFile& file, const Scene& scene, const Configuration& configuration);
 
   /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with
   /// a failure_report if a value is not finite.

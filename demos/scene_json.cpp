@@ -449,9 +449,10 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
   return parse_scene(text, path);
 }
 
-World start_world(const Scene& scene, const std::filesystem::path& path, Method method) {
+World start_world(const Scene& scene, const std::filesystem::path& path,
+                  const Configuration& configuration) {
   try {
-    return make_world(scene, method);
+    return make_world(scene, configuration);
   } catch (const SceneError& error) {
     std::string message = error.what();
     if (message.starts_with(error.place + ": ")) {

@@ -44,7 +44,8 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path);
 
 /// make_world for a scene that comes from the file at `path`: where the geometry cannot exist,
 /// throws SceneFileError with the file's name.
-World start_world(const Scene& scene, const std::filesystem::path& path, Method method);
+World start_world(const Scene& scene, const std::filesystem::path& path,
+                  const Configuration& configuration);
 
 /// The method called `name` in files and on the command line; std::invalid_argument if there is
 /// none.

@@ -72,7 +72,7 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
   }
   const Scene scene = with_timing(file.scene, options.timing);
   const int last = last_frame(scene, options.until);
-  Player player(file, scene, options.method);
+  Player player(file, scene, options.configuration);
   OutputFile bodies(options.out);
   bodies.write("time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n");
   std::optional<OutputFile> segments;

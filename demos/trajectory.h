@@ -10,7 +10,7 @@
 namespace pinchlab {
 
 struct TrajectoryOptions {
-  Method method = Method::pinch;
+  Configuration configuration;
   Timing timing;
   std::optional<double> until;  ///< s, of the last row; default: the last frame's
   std::filesystem::path out;    ///< one row a body and frame; "-": standard output

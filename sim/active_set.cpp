@@ -48,13 +48,17 @@ struct Tolerances {
 /// which the rows' biases divide by the step.
 Tolerances tolerances(const World& world) {
   const Scratch& s = world.scratch;
+  const Part& part = part_being_solved(world);
   double speed = 0.0, extent = 0.0, impulse = 0.0, stiffest = 0.0;
-  for (std::size_t b = 0; b < world.velocity.size(); ++b) {
+  for (const int number : bodies_of(s.parts, part)) {
+    const std::size_t b = index(number);
     extent = std::max(extent, world.position[b].cwiseAbs().maxCoeff());
     speed = std::max(
         {speed, world.velocity[b].cwiseAbs().maxCoeff(), s.velocity_free[b].cwiseAbs().maxCoeff()});
   }
-  for (const CableState& cable : world.cables) extent = std::max(extent, cable.length);
+  for (const int c : cables_of(s.parts, part)) {
+    extent = std::max(extent, world.cables[index(c)].length);
+  }
   for (const Row& row : s.rows) {
     impulse = std::max(impulse, std::abs(row.impulse));
     stiffest = std::max(stiffest, row.diagonal);
@@ -111,11 +115,11 @@ void apply(World& world, const Flip& flip) {
   if (flip.is_run) {
     Run& run = world.scratch.active_set.capstan.runs[index(flip.row)];
     run.slip = flip.slip;
-    run.flipped = world.diagnostics.active_set_solves;
+    run.flipped = world.scratch.active_set.solves;
     return;
   }
   Row& row = world.scratch.rows[index(flip.row)];
-  row.flipped = world.diagnostics.active_set_solves;
+  row.flipped = world.scratch.active_set.solves;
   if (is_friction(row)) {
     row.slip = flip.slip;
   } else {
@@ -188,7 +192,8 @@ void sweep(World& world) {
   }
 }
 
-/// Keeps states for the next step, and reports forces.
+}  // namespace
+
 void store_states(World& world, double kick) {
   Scratch& s = world.scratch;
   for (const Row& row : s.rows) {
@@ -219,7 +224,7 @@ void store_states(World& world, double kick) {
     CableState& cable = world.cables[index(run.cable)];
     for (int i = run.first_link;; i = next_link(cable, i)) {
       Link& link = cable.links[index(i)];
-      if (!link.pinch_middle) {
+      if (!link.pinch_middle || run.first_link == run.last_link) {
         link.slip = run.slip;
         link.slip_speed = run.speed;
       }
@@ -234,18 +239,16 @@ void store_states(World& world, double kick) {
   }
 }
 
-}  // namespace
-
-void solve(const Scene& scene, World& world, double kick) {
+void solve_direct(const Scene& scene, World& world, int part, double kick) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
-  world.diagnostics.active_set_solves = 0;
-  world.velocity = s.velocity_free;
-  world.angular_velocity = s.angular_velocity_free;
+  set.part = part;
+  set.solves = 0;
+  release_bodies(world);
   if (s.rows.empty()) return;
 
-  order_rows(world);
-  find_runs(scene, world);
+  order_rows(world, part);
+  find_runs(scene, world, part_being_solved(world));
   // All contradicted states flip while that makes progress, then one at a time.
   constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
@@ -259,7 +262,7 @@ void solve(const Scene& scene, World& world, double kick) {
     if (solves == before_dropping) drop_friction(world);
     bound_friction(world);
     solve_for_states(world);
-    world.diagnostics.active_set_solves = solves;
+    set.solves = solves;
     check(world);
     settled = set.flips.empty();
     if (settled) break;
@@ -277,7 +280,7 @@ void solve(const Scene& scene, World& world, double kick) {
     if (!is_friction(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
   }
   store_states(world, kick);
-  world.diagnostics.total_solves += world.diagnostics.active_set_solves;
+  world.diagnostics.active_set_solves = std::max(world.diagnostics.active_set_solves, set.solves);
 }
 
 }  // namespace pinchlab

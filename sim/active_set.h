@@ -6,16 +6,19 @@
 
 namespace pinchlab {
 
-/// Finds impulses for all rows of world.scratch.rows such that the velocities after a kick of
-/// `kick` seconds (s) meet every row: unilateral rows complementary, friction inside its bounds,
-/// sliding cables by the capstan law. Starts from the states of the last step; writes velocities,
-/// states and forces.
+/// Finds impulses for the rows of a part (an index into Parts::list), which stand in
+/// world.scratch.rows, such that the velocities after a kick of `kick` seconds (s) meet every row:
+/// unilateral rows complementary, friction inside its bounds, sliding cables by the capstan law.
+/// Starts from the states of the last step; writes velocities, states and forces.
 ///
 /// Each guess of the states gives one linear system, solved directly. Contradicted states are
 /// flipped all at once while their number falls (block pivoting, Judice & Pires 1994), then one by
 /// one, the one that has kept its state longest first. If friction makes the states cycle, what has
 /// flipped sticks for the rest of the step, and diagnostics.fallbacks counts the step; projected
 /// sweeps are the last resort.
-void solve(const Scene& scene, World& world, double kick);
+void solve_direct(const Scene& scene, World& world, int part, double kick);
+
+/// Keeps states of rows and runs for the next step, and reports forces.
+void store_states(World& world, double kick);
 
 }  // namespace pinchlab

@@ -11,87 +11,95 @@ namespace pinchlab {
 
 namespace {
 
-bool can_move(BodyKind kind) {
-  return kind == BodyKind::free || kind == BodyKind::rail;
+std::size_t index(int i) {
+  return static_cast<std::size_t>(i);
 }
 
-/// Boxes round the body and its cables where it was a step ago, is, and may be after the next step.
-void update_boxes(const Scene& scene, World& world) {
-  BroadPhase& broad = world.scratch.broad_phase;
-  double widest = 0.0;
-  for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
-  const double fall = scene.gravity.norm() * world.step_length * world.step_length;
-  broad.low.resize(scene.bodies.size());
-  broad.high.resize(scene.bodies.size());
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const double radius = scene.bodies[b].radius;
-    double reach = radius + widest;
-    if (can_move(scene.bodies[b].kind)) {
-      reach += 0.02 * radius + 2.0 * (world.velocity[b].norm() * world.step_length + fall);
-    }
-    broad.low[b] = world.position[b] - Vec2::Constant(reach);
-    broad.high[b] = world.position[b] + Vec2::Constant(reach);
+/// The skin as a share of the mean radius: pairs then last for some frames of ordinary motion, and
+/// are few more than needed.
+constexpr double skin_share = 0.2;
+
+/// What all bodies of a scene reach beyond their radii.
+struct Margin {
+  double widest = 0.0;  // m, half width of the widest cable
+  double fall = 0.0;    // m, by gravity in one step
+
+  Margin(const Scene& scene, const World& world) {
+    for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
+    fall = scene.gravity.norm() * world.step_length * world.step_length;
   }
+};
+
+/// How far from its centre a body and the cables round it may reach from the last step to the next.
+double reach_of_body(const Scene& scene, const World& world, const Margin& margin, std::size_t b) {
+  const double radius = scene.bodies[b].radius;
+  if (!can_move(scene.bodies[b])) return radius + margin.widest;
+  const double speed = world.velocity[b].cwiseAbs().sum();
+  return 1.02 * radius + margin.widest + 2.0 * (speed * world.step_length + margin.fall);
 }
 
-/// Sweeps along the axis in which the scene is longer; the order is nearly that of the last step.
+bool holds(const Box& box, const Vec2& point, double reach) {
+  return point.x() - reach >= box.low.x() && point.x() + reach <= box.high.x() &&
+         point.y() - reach >= box.low.y() && point.y() + reach <= box.high.y();
+}
+
+bool overlap(const Box& a, const Box& b, int axis) {
+  return a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis];
+}
+
+/// Sweeps along the axis in which the scene is longer; the order is nearly that of the last time.
 void sort_bodies(BroadPhase& broad) {
-  const std::size_t count = broad.low.size();
+  const std::size_t count = broad.boxes.size();
   if (broad.order.size() != count) {
     broad.order.resize(count);
     for (std::size_t b = 0; b < count; ++b) broad.order[b] = static_cast<int>(b);
-    Vec2 low = broad.low[0], high = broad.high[0];
-    for (std::size_t b = 1; b < count; ++b) {
-      low = low.cwiseMin(broad.low[b]);
-      high = high.cwiseMax(broad.high[b]);
+    Box all = broad.boxes[0];
+    for (const Box& box : broad.boxes) {
+      all.low = all.low.cwiseMin(box.low);
+      all.high = all.high.cwiseMax(box.high);
     }
-    broad.axis = high.x() - low.x() >= high.y() - low.y() ? 0 : 1;
+    const Vec2 size = all.high - all.low;
+    broad.axis = size.x() >= size.y() ? 0 : 1;
     std::sort(broad.order.begin(), broad.order.end(), [&broad](int a, int b) {
-      const double ka = broad.low[static_cast<std::size_t>(a)][broad.axis];
-      const double kb = broad.low[static_cast<std::size_t>(b)][broad.axis];
+      const double ka = broad.boxes[index(a)].low[broad.axis];
+      const double kb = broad.boxes[index(b)].low[broad.axis];
       return ka != kb ? ka < kb : a < b;
     });
   }
   for (std::size_t i = 1; i < count; ++i) {
     const int body = broad.order[i];
-    const double key = broad.low[static_cast<std::size_t>(body)][broad.axis];
+    const double key = broad.boxes[index(body)].low[broad.axis];
     std::size_t j = i;
     for (; j > 0; --j) {
       const int other = broad.order[j - 1];
-      const double other_key = broad.low[static_cast<std::size_t>(other)][broad.axis];
+      const double other_key = broad.boxes[index(other)].low[broad.axis];
       if (other_key < key || (other_key == key && other < body)) break;
       broad.order[j] = other;
     }
     broad.order[j] = body;
   }
   broad.key.resize(count);
+  broad.longest_box = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    broad.key[i] = broad.low[static_cast<std::size_t>(broad.order[i])][broad.axis];
+    const Box& box = broad.boxes[index(broad.order[i])];
+    broad.key[i] = box.low[broad.axis];
+    broad.longest_box = std::max(broad.longest_box, box.high[broad.axis] - box.low[broad.axis]);
   }
 }
 
-}  // namespace
-
-void find_body_pairs(const Scene& scene, World& world) {
-  BroadPhase& broad = world.scratch.broad_phase;
+void list_body_pairs(const Scene& scene, BroadPhase& broad) {
   broad.body_pairs.clear();
-  if (scene.bodies.empty()) return;
-  update_boxes(scene, world);
-  sort_bodies(broad);
-  const int axis = broad.axis, other_axis = 1 - axis;
+  const int axis = broad.axis;
   for (std::size_t i = 0; i < broad.order.size(); ++i) {
     const int a = broad.order[i];
-    const Vec2 &low = broad.low[static_cast<std::size_t>(a)],
-               &high = broad.high[static_cast<std::size_t>(a)];
-    for (std::size_t j = i + 1; j < broad.order.size() && broad.key[j] <= high[axis]; ++j) {
+    const Box& box = broad.boxes[index(a)];
+    for (std::size_t j = i + 1; j < broad.order.size() && broad.key[j] <= box.high[axis]; ++j) {
       const int b = broad.order[j];
-      if (broad.low[static_cast<std::size_t>(b)][other_axis] > high[other_axis] ||
-          broad.high[static_cast<std::size_t>(b)][other_axis] < low[other_axis]) {
+      if (!overlap(box, broad.boxes[index(b)], 1 - axis)) continue;
+      if (scene.bodies[index(a)].kind == BodyKind::fixed &&
+          scene.bodies[index(b)].kind == BodyKind::fixed) {
         continue;
       }
-      const BodyKind ka = scene.bodies[static_cast<std::size_t>(a)].kind;
-      const BodyKind kb = scene.bodies[static_cast<std::size_t>(b)].kind;
-      if (ka == BodyKind::fixed && kb == BodyKind::fixed) continue;
       broad.body_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
@@ -100,35 +108,27 @@ void find_body_pairs(const Scene& scene, World& world) {
       [](const BodyPair& p, const BodyPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
 }
 
-void find_span_pairs(const Scene& scene, World& world) {
-  BroadPhase& broad = world.scratch.broad_phase;
+void list_span_pairs(const Scene& scene, const World& world, BroadPhase& broad) {
   broad.span_pairs.clear();
-  if (scene.bodies.empty()) return;
-  const int axis = broad.axis, other_axis = 1 - axis;
-  double longest_box = 0.0;
-  for (std::size_t b = 0; b < broad.low.size(); ++b) {
-    longest_box = std::max(longest_box, broad.high[b][axis] - broad.low[b][axis]);
-  }
+  broad.span_boxes.clear();
+  const int axis = broad.axis;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
-      if (segment.pinched) continue;
-      const Vec2 low = segment.tail.cwiseMin(segment.head)
-                           .cwiseMin(segment.previous_tail)
-                           .cwiseMin(segment.previous_head);
-      const Vec2 high = segment.tail.cwiseMax(segment.head)
-                            .cwiseMax(segment.previous_tail)
-                            .cwiseMax(segment.previous_head);
-      auto it = std::lower_bound(broad.key.begin(), broad.key.end(), low[axis] - longest_box);
-      for (; it != broad.key.end() && *it <= high[axis]; ++it) {
+      Box box = span_box(segment);
+      box.low -= Vec2::Constant(broad.skin);
+      box.high += Vec2::Constant(broad.skin);
+      broad.span_boxes.push_back(box);
+      const Link& to = cable.links[s];
+      const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
+      const double least = box.low[axis] - broad.longest_box;
+      auto it = std::lower_bound(broad.key.begin(), broad.key.end(), least);
+      for (; it != broad.key.end() && *it <= box.high[axis]; ++it) {
         const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];
-        const Vec2 &box_low = broad.low[static_cast<std::size_t>(body)],
-                   &box_high = broad.high[static_cast<std::size_t>(body)];
-        if (box_high[axis] < low[axis] || box_low[other_axis] > high[other_axis] ||
-            box_high[other_axis] < low[other_axis]) {
-          continue;
-        }
+        const Box& other = broad.boxes[index(body)];
+        if (!overlap(box, other, axis) || !overlap(box, other, 1 - axis)) continue;
+        if (holds_span(scene, cable, from, body) || holds_span(scene, cable, to, body)) continue;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
       }
     }
@@ -137,6 +137,81 @@ void find_span_pairs(const Scene& scene, World& world) {
             [](const SpanPair& p, const SpanPair& q) {
               return std::tie(p.cable, p.segment, p.body) < std::tie(q.cable, q.segment, q.body);
             });
+}
+
+/// Whether all spans are where their boxes allow for. Where a span was a step ago was checked then.
+bool spans_in_boxes(const World& world, const BroadPhase& broad) {
+  std::size_t box = 0;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    const std::size_t first = first_segment(cable);
+    if (sleeps(world, c)) {
+      box += cable.segments.size() - first;
+      continue;
+    }
+    for (std::size_t s = first; s < cable.segments.size(); ++s, ++box) {
+      const Segment& segment = cable.segments[s];
+      if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
+          !holds(broad.span_boxes[box], segment.head, 0.0)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void update_boxes(const Scene& scene, World& world, double skin) {
+  std::vector<Box>& boxes = world.scratch.broad_phase.boxes;
+  boxes.resize(scene.bodies.size());
+  const Margin margin(scene, world);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Vec2 reach = Vec2::Constant(reach_of_body(scene, world, margin, b) +
+                                      (can_move(scene.bodies[b]) ? skin : 0.0));
+    boxes[b] = {world.position[b] - reach, world.position[b] + reach};
+  }
+}
+
+Box span_box(const Segment& segment) {
+  return {segment.tail.cwiseMin(segment.head)
+              .cwiseMin(segment.previous_tail)
+              .cwiseMin(segment.previous_head),
+          segment.tail.cwiseMax(segment.head)
+              .cwiseMax(segment.previous_tail)
+              .cwiseMax(segment.previous_head)};
+}
+
+void find_body_pairs(const Scene& scene, World& world) {
+  BroadPhase& broad = world.scratch.broad_phase;
+  const std::size_t count = scene.bodies.size();
+  const Margin margin(scene, world);
+  bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
+  for (std::size_t b = 0; valid && b < count; ++b) {
+    valid = !can_move(scene.bodies[b]) || is_still(world, static_cast<int>(b)) ||
+            holds(broad.boxes[b], world.position[b], reach_of_body(scene, world, margin, b));
+  }
+  if (valid) return;
+  broad.cables = world.cables.size();
+  broad.bodies_changed = true;
+  broad.body_pairs.clear();
+  if (count == 0) return;
+  double radii = 0.0;
+  for (const Body& body : scene.bodies) radii += body.radius;
+  broad.skin = skin_share * radii / static_cast<double>(count);
+  update_boxes(scene, world, broad.skin);
+  sort_bodies(broad);
+  list_body_pairs(scene, broad);
+}
+
+void find_span_pairs(const Scene& scene, World& world) {
+  BroadPhase& broad = world.scratch.broad_phase;
+  int changes = 0;
+  for (const CableState& cable : world.cables) changes += cable.changes;
+  if (!broad.bodies_changed && broad.changes == changes && spans_in_boxes(world, broad)) return;
+  broad.bodies_changed = false;
+  broad.changes = changes;
+  list_span_pairs(scene, world, broad);
 }
 
 }  // namespace pinchlab

@@ -42,7 +42,7 @@ double head_material(const CableState& cable, std::size_t i, double angle) {
 Vec2 link_centre(const World& world, const Link& link) {
   if (link.body < 0) return link.attachment;
   const Vec2& centre = world.position[static_cast<std::size_t>(link.body)];
-  if (link.orientation != 0) return centre;
+  if (link.orientation != 0 || link.attachment.isZero(0.0)) return centre;
   const double angle = world.angle[static_cast<std::size_t>(link.body)];
   const double c = std::cos(angle), s = std::sin(angle);
   return centre + Vec2(c * link.attachment.x() - s * link.attachment.y(),
@@ -79,6 +79,8 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
     t.length = 0.0;
     t.pinched = true;
   }
+  segment.tail_centre = a;
+  segment.head_centre = b;
   segment.direction = t.direction;
   segment.length = t.length;
   segment.pinched = t.pinched;
@@ -105,12 +107,17 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
 
 void update_segments(World& world) {
   world.scratch.released.clear();
-  for (CableState& cable : world.cables) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(world, c)) continue;
+    CableState& cable = world.cables[c];
+    Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       Segment& segment = cable.segments[i];
+      const Vec2 to = link_centre(world, cable.links[i]);
       segment.previous_tail = segment.tail;
       segment.previous_head = segment.head;
-      update_tangent(world, cable, i);
+      if (from != segment.tail_centre || to != segment.head_centre) update_tangent(world, cable, i);
+      from = to;
     }
     update_wraps_and_rest_lengths(world, cable);
   }
@@ -127,6 +134,7 @@ void remove_link(const World& world, CableState& cable, int link) {
                          cable.links[static_cast<std::size_t>(after)].orientation &&
                      cable.links[static_cast<std::size_t>(before)].orientation != 0 &&
                      before != after;
+  ++cable.changes;
   // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
   // computed anew from the link before. In a merge the earlier link on the body stays.
   const auto erase = [&cable](int i) {
@@ -151,16 +159,16 @@ void remove_link(const World& world, CableState& cable, int link) {
 }
 
 void remove_links(World& world) {
-  for (CableState& cable : world.cables) {
-    bool changed = true;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    CableState& cable = world.cables[c];
+    bool changed = !sleeps(world, c);
     while (changed) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         const Link& link = cable.links[i];
         const bool needed = cable.closed && cable.links.size() <= 2;
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed) {
-          world.scratch.released.push_back(
-              {static_cast<int>(&cable - world.cables.data()), link.body});
+          world.scratch.released.push_back({static_cast<int>(c), link.body});
           remove_link(world, cable, static_cast<int>(i));
           changed = true;
           break;
@@ -197,6 +205,7 @@ void insert_link(const Scene& scene, const World& world, CableState& cable, std:
     part->previous_head = part->head;
   }
   // Both parts get the same strain: rest lengths in the ratio of the lengths.
+  ++cable.changes;
   Link& added = cable.links[position];
   const double stored = link.radius * orientation * (alpha_head(cable, position) - first.alpha);
   const double free_length = first.length + second.length;
@@ -222,6 +231,7 @@ void insert_pinch(const Scene& scene, const World& world, CableState& cable, std
       pressed - middle.signed_radius() * (alpha - world.angle[static_cast<std::size_t>(body)]);
   Segment between;
   between.alpha = alpha;
+  ++cable.changes;
   cable.links.insert(cable.links.begin() + at(i + 1), {middle, whole});
   cable.segments.insert(cable.segments.begin() + at(i + 1), {between, between});
   for (std::size_t s : {i + 1, i + 2}) {

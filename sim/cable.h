@@ -34,6 +34,14 @@ inline bool wound_end(const Link& a, const Link& b) {
   return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0);
 }
 
+/// Whether the span that ends at link `end` is held by `body` there, and cannot be hit by it:
+/// always so but for an end that is held at the body's rim.
+inline bool holds_span(const Scene& scene, const CableState& cable, const Link& end, int body) {
+  if (end.body != body) return false;
+  const double margin = scene.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  return end.orientation != 0 || end.attachment.norm() < margin * (1.0 - 1e-9);
+}
+
 /// New tangents, directions, wraps and rest lengths for the bodies' present positions (thesis:
 /// UpdateSegments). Material stays where it is on every body.
 void update_segments(World& world);

@@ -44,6 +44,13 @@ Run make_run(const Scene& scene, World& world, int c, int first, int last) {
   const CableState& cable = world.cables[index(c)];
   const Link& link = cable.links[index(first)];
   const double mu = scene.bodies[index(link.body)].cable_friction;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
+  const auto factor = [](double friction, double arc) {
+    return std::exp(std::min(friction * arc, largest_exponent));
+  };
+  const auto row_of = [&scratch, c](int segment) {
+    return scratch.row_of_segment[index(scratch.segment_begin[index(c)] + segment)];
+  };
   Run run;
   run.cable = c;
   run.first_link = first;
@@ -52,26 +59,32 @@ Run make_run(const Scene& scene, World& world, int c, int first, int last) {
   run.slip = run.frictionless ? Slip::forward : mu == infinity ? Slip::stick : link.slip;
   run.passages_begin = run.passages_end = static_cast<int>(s.passages.size());
   if (mu == infinity) return run;
-  add_pressed_end(scratch, world, cable.segments[index(first)], mu, s.passages);
+  if (!three) add_pressed_end(scratch, world, cable.segments[index(first)], mu, s.passages);
   for (int i = first;; i = next_link(cable, i)) {
     const Link& part = cable.links[index(i)];
     Passage passage;
-    if (part.pinch_middle) {
-      const int row = scratch.row_of_segment[index(scratch.segment_begin[index(c)] + i)];
-      passage.middle = row;
-      scratch.rows[index(row)].run = static_cast<int>(s.runs.size());
-      if (part.contact >= 0) {
+    if (part.pinch_middle && first == last) {
+      passage.factor = factor(mu, middle_arc);
+    } else if (part.pinch_middle) {
+      passage.middle = row_of(i);
+      if (three) {
+        passage.middle_out = row_of(next_link(cable, i));
+        passage.middle_factor = factor(scene.bodies[index(part.body)].cable_friction, middle_arc);
+      } else {
+        scratch.rows[index(passage.middle)].run = static_cast<int>(s.runs.size());
+      }
+      if (part.contact >= 0 && !three) {
         passage.normal = scratch.normal_row_of_contact[index(part.contact)];
         passage.friction = mu / std::max(1, world.contacts[index(part.contact)].pinch_points);
       }
     } else {
-      passage.factor = std::exp(std::min(mu * std::max(part.wrap, 0.0), largest_exponent));
+      passage.factor = factor(mu, std::max(part.wrap, 0.0));
     }
     s.passages.push_back(passage);
     if (i == last) break;
   }
   const int after = next_link(cable, last);
-  add_pressed_end(scratch, world, cable.segments[index(after)], mu, s.passages);
+  if (!three) add_pressed_end(scratch, world, cable.segments[index(after)], mu, s.passages);
   run.passages_end = static_cast<int>(s.passages.size());
   return run;
 }
@@ -140,15 +153,18 @@ double sliding_limit(const World& world, const Run& run, int s) {
 
 }  // namespace
 
-void find_runs(const Scene& scene, World& world) {
+void find_runs(const Scene& scene, World& world, const Part& part) {
   Scratch& scratch = world.scratch;
   CapstanScratch& s = scratch.active_set.capstan;
+  const bool link_by_link = world.configuration.pinch_rows == PinchRows::three &&
+                            world.configuration.solver == Solver::direct;
   s.runs.clear();
   s.passages.clear();
   s.segments.clear();
   s.run_before.clear();
   s.cable_begin.assign(1, 0);
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+  for (const int number : cables_of(scratch.parts, part)) {
+    const std::size_t c = index(number);
     const CableState& cable = world.cables[c];
     if (!slides_somewhere(scene, cable)) continue;
     const auto row_of = [&](int segment) {
@@ -171,7 +187,7 @@ void find_runs(const Scene& scene, World& world) {
       const int first = segment;
       int last = first;
       if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
-      while (cable.links[index(next_link(cable, last))].pinch_middle) {
+      while (!link_by_link && cable.links[index(next_link(cable, last))].pinch_middle) {
         last = next_link(cable, next_link(cable, last));
         seen += 2;
       }
@@ -209,7 +225,7 @@ void part_slack_segments(World& world, int begin, int count, int start) {
     if (world.scratch.rows[index(s.segments[index(position)])].on) continue;
     if (slack_before && oldest >= 0) {
       s.runs[index(oldest)].slip = Slip::stick;
-      s.runs[index(oldest)].flipped = world.diagnostics.active_set_solves + 1;
+      s.runs[index(oldest)].flipped = world.scratch.active_set.solves + 1;
     }
     slack_before = true;
     oldest = -1;

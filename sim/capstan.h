@@ -10,6 +10,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// Something on a cable's way over a body that changes its tension: an arc, or a pinch.
@@ -18,10 +19,17 @@ struct Passage {
   int normal = -1;        // pinch: row of the contact's force, or -1
   double friction = 0.0;  // pinch: the wrapped body's friction is at most friction * that force
   int middle = -1;        // non-transitional pinch: the middle body's row, or -1
+  int middle_out = -1;    // with three rows: the second one of the middle body
+  double middle_factor = 1.0;  // with three rows: the most that the middle body changes the tension
 };
 
+/// With three rows a pinch friction is as in the thesis: contacts have no share in it, and the
+/// middle body holds the cable like an arc of this much on it (rad).
+constexpr double middle_arc = 1.0;
+
 /// All links of a cable on one body in succession: one link, or the parts into which pinches divide
-/// it. Material slides over the body at one speed everywhere in the run.
+/// it. Material slides over the body at one speed everywhere in the run. (The direct solver with
+/// three rows a pinch has a run for each link; the segments between them make the speeds equal.)
 struct Run {
   int cable = 0, first_link = 0, last_link = 0;
   int row_in = -1, row_out = -1;  // segment rows before and after
@@ -54,8 +62,8 @@ struct CapstanScratch {
   std::vector<int> sums_begin, borders;
 };
 
-/// Lists the runs of all cables that touch a body of finite friction; empty if none do.
-void find_runs(const Scene& scene, World& world);
+/// Lists the runs of a part's cables that touch a body of finite friction; empty if none do.
+void find_runs(const Scene& scene, World& world, const Part& part);
 
 /// Joins segments into groups for the present states of runs and segments.
 ///

@@ -20,6 +20,10 @@ std::optional<Configuration> configuration_from_string(std::string_view name) {
   return std::nullopt;
 }
 
+const char* to_string(const Configuration& configuration) {
+  return configuration == thesis_configuration() ? "thesis" : to_string(configuration.method);
+}
+
 const char* to_string(Solver solver) {
   return solver == Solver::direct ? "direct" : "iterative";
 }

@@ -34,11 +34,13 @@ struct Configuration {
   Solver solver = Solver::direct;
   Detection detection = Detection::sweep;
   PinchRows pinch_rows = PinchRows::one;
+  int iterations = 10;       ///< >= 1, sweeps of the iterative solver
   bool sleep = true;         ///< parts of the scene that have come to rest cost no more
   bool diagnostics = false;  ///< fills the measured lengths and energy of World::diagnostics
 
   Configuration() = default;
   Configuration(Method m) : method(m) {}  // NOLINT: a method alone is a configuration
+  bool operator==(const Configuration&) const = default;
 };
 
 /// The whole of what the thesis describes: cables solved by projected Gauss-Seidel sweeps,
@@ -47,6 +49,9 @@ Configuration thesis_configuration();
 
 /// "thesis", or the name of a method with our own choices for the rest; nothing for other names.
 std::optional<Configuration> configuration_from_string(std::string_view name);
+
+/// The name that configuration_from_string knows it by; of any other one its method's.
+const char* to_string(const Configuration& configuration);
 
 const char* to_string(Solver solver);
 const char* to_string(Detection detection);

@@ -7,8 +7,11 @@ namespace pinchlab {
 
 namespace {
 
+/// The body's place in its part, or -1: what it does is not up to the rows.
 int mobile(const Scratch& s, int body) {
-  return body >= 0 && s.mobility[static_cast<std::size_t>(body)].any() ? body : -1;
+  return body >= 0 && s.mobility[static_cast<std::size_t>(body)].any()
+             ? s.parts.local[static_cast<std::size_t>(body)]
+             : -1;
 }
 
 void list_rows_of_bodies(Scratch& s, std::size_t bodies) {
@@ -66,24 +69,14 @@ void breadth_first(Scratch& s, int start, int stamp, std::vector<int>& order) {
   }
 }
 
-}  // namespace
-
-void order_rows(World& world) {
-  Scratch& s = world.scratch;
-  s.structure.clear();
-  for (const Row& row : s.rows) {
-    s.structure.push_back(mobile(s, row.a));
-    s.structure.push_back(mobile(s, row.b));
-  }
-  if (s.structure == s.ordered_structure) return;
-  s.ordered_structure = s.structure;
-
-  const std::size_t bodies = s.mobility.size(), rows = s.rows.size();
+/// Reverse Cuthill-McKee; each connected group of rows is walked once from any row, to find a far
+/// end, and once from there.
+void find_order(Scratch& s, std::size_t bodies) {
+  const std::size_t rows = s.rows.size();
   list_rows_of_bodies(s, bodies);
   s.row_stamp.assign(rows, 0);
   s.body_stamp.assign(bodies, 0);
   s.order.clear();
-  // Each connected part is walked once from any row, to find a far end, and once from there.
   int stamp = 1;
   for (std::size_t r = 0; r < rows; ++r) {
     if (s.row_stamp[r] != 0) continue;
@@ -94,6 +87,26 @@ void order_rows(World& world) {
     breadth_first(s, far_end, stamp++, s.order);
   }
   std::reverse(s.order.begin(), s.order.end());
+}
+
+}  // namespace
+
+void order_rows(World& world, int part) {
+  Scratch& s = world.scratch;
+  const auto p = static_cast<std::size_t>(part);
+  if (s.orders.size() <= p) s.orders.resize(s.parts.list.size());
+  s.structure.clear();
+  for (const Row& row : s.rows) {
+    s.structure.push_back(mobile(s, row.a));
+    s.structure.push_back(mobile(s, row.b));
+  }
+  if (s.structure != s.orders[p].structure) {
+    s.orders[p].structure = s.structure;
+    find_order(s, bodies_of(s.parts, s.parts.list[p]).size());
+    s.orders[p].order = s.order;
+  } else {
+    s.order = s.orders[p].order;
+  }
 }
 
 }  // namespace pinchlab

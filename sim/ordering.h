@@ -6,9 +6,9 @@
 
 namespace pinchlab {
 
-/// Lists the rows that couple each mobile body, and orders the rows by reverse Cuthill-McKee (1969)
-/// so that coupled rows come close together: along a cable, one after the other. Nothing is done
-/// while the rows couple the same bodies as in the last step.
-void order_rows(World& world);
+/// Orders the rows of a part (an index into Parts::list) by reverse Cuthill-McKee (1969), so that
+/// coupled rows come close together: along a cable, one after the other. The order is kept while
+/// the part's rows couple the same bodies as in the last step.
+void order_rows(World& world, int part);
 
 }  // namespace pinchlab

@@ -2,6 +2,7 @@
 #include "sim/pinch.h"
 
 #include <algorithm>
+#include <numbers>
 #include <tuple>
 
 #include "sim/cable.h"
@@ -11,11 +12,6 @@ namespace pinchlab {
 
 namespace {
 
-bool can_move(const Scene& scene, int body) {
-  const BodyKind kind = scene.bodies[static_cast<std::size_t>(body)].kind;
-  return kind == BodyKind::free || kind == BodyKind::rail;
-}
-
 double full_width(const World& world) {
   double width = 0.0;
   if (world.configuration.method != Method::cable) {
@@ -24,10 +20,11 @@ double full_width(const World& world) {
   return width;
 }
 
-/// How much nearer two things with relative velocity v may come within the next step, generously.
-double reach(const Scene& scene, const World& world, const Vec2& v, double radius) {
+/// How much nearer two things whose speeds add up to `speed` may come within the next step,
+/// generously.
+double reach(const Scene& scene, const World& world, double speed, double radius) {
   const double h = world.step_length;
-  return 2.0 * h * (v.norm() + scene.gravity.norm() * h) + 0.01 * radius;
+  return 2.0 * h * (speed + scene.gravity.norm() * h) + 0.01 * radius;
 }
 
 Vec2 nearest_point(const Wall& wall, const Vec2& x) {
@@ -49,8 +46,13 @@ bool presses(const World& world, const Contact& contact, double gap) {
          contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
 }
 
-Contact* find_contact(World& world, int body, int other) {
+/// The contact of two bodies, or nothing; `hint` is where it was.
+Contact* find_contact(World& world, int body, int other, int hint) {
   const int a = std::min(body, other), b = std::max(body, other);
+  if (hint >= 0 && hint < static_cast<int>(world.contacts.size())) {
+    Contact& contact = world.contacts[static_cast<std::size_t>(hint)];
+    if (contact.a == a && contact.b == b) return &contact;
+  }
   const auto it = std::lower_bound(
       world.contacts.begin(), world.contacts.end(), std::pair(a, b),
       [](const Contact& c, const std::pair<int, int>& p) { return std::pair(c.a, c.b) < p; });
@@ -91,11 +93,13 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
            opposite(cable.links[static_cast<std::size_t>(neighbour)], link);
   };
   constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
+  const bool at_end = is_other(before) || is_other(after);
   const double width = 2.0 * cable.half_width;
   if (world.configuration.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
     contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
   }
+  if (at_end && link.wrap < std::numbers::pi) return;  // it lies there, and no other turn is near
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
   for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
     const double arc = least + k * turn;
@@ -113,45 +117,18 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
 /// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
 /// closes by the second-order gap of a rolling step.
 void remove_open_pinches(World& world) {
-  for (CableState& cable : world.cables) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(world, c)) continue;
+    CableState& cable = world.cables[c];
     for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
       const Link& link = cable.links[static_cast<std::size_t>(i)];
       if (!link.pinch_middle) continue;
       const int pressed = cable.links[static_cast<std::size_t>(previous_link(cable, i))].body;
-      const Contact* contact = find_contact(world, link.body, pressed);
+      const Contact* contact = find_contact(world, link.body, pressed, link.contact);
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
           (!presses(world, *contact, width) && contact->gap > width * (1.0 + 5e-4))) {
         remove_link(world, cable, i);
-      }
-    }
-  }
-}
-
-/// Tells each pinch its contact, and each contact how many cables it presses and how far apart it
-/// must keep its bodies.
-void assign_contacts(World& world) {
-  for (CableState& cable : world.cables) {
-    const double width = 2.0 * cable.half_width;
-    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
-      Link& to = cable.links[s];
-      const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
-      const Link& from = cable.links[tail];
-      Segment& segment = cable.segments[s];
-      segment.contact = -1;
-      if (!opposite(from, to) || from.pinch_middle) continue;
-      to.contact = -1;
-      Contact* contact = find_contact(world, from.body, to.body);
-      if (contact == nullptr) continue;
-      if (world.configuration.method == Method::pinch)
-        contact->target = std::max(contact->target, width);
-      contact->pinch_linked = true;
-      const int index = static_cast<int>(contact - world.contacts.data());
-      ++contact->pinch_points;
-      if (to.pinch_middle) {
-        to.contact = index;
-      } else {
-        segment.contact = index;
       }
     }
   }
@@ -173,14 +150,31 @@ void find_contacts(const Scene& scene, World& world) {
   std::swap(old, world.contacts);
   world.contacts.clear();
   const double width = full_width(world);
+  const auto less = [](const Contact& p, const Contact& q) {
+    return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
+  };
+  // Between bodies that are where they were, what was a contact is one.
+  const auto keep = [&](int a, int b, int wall) {
+    Contact wanted;
+    wanted.a = a;
+    wanted.b = b;
+    wanted.wall = wall;
+    const auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
+    if (it != old.end() && !less(wanted, *it)) world.contacts.push_back(*it);
+  };
   for (const BodyPair& pair : world.scratch.broad_phase.body_pairs) {
+    if (is_still(world, pair.a) && is_still(world, pair.b)) {
+      keep(pair.a, pair.b, -1);
+      continue;
+    }
     const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
     const Vec2 d = world.position[b] - world.position[a];
     const double distance = d.norm();
     const double radii = scene.bodies[a].radius + scene.bodies[b].radius;
     const double least = std::min(scene.bodies[a].radius, scene.bodies[b].radius);
-    const Vec2 v = world.velocity[b] - world.velocity[a];
-    if (distance - radii > width + reach(scene, world, v, least)) continue;
+    // Bodies that move together have no speed between them until one is stopped within the step.
+    const double speed = world.velocity[a].norm() + world.velocity[b].norm();
+    if (distance - radii > width + reach(scene, world, speed, least)) continue;
     Contact contact;
     contact.a = pair.a;
     contact.b = pair.b;
@@ -190,10 +184,14 @@ void find_contacts(const Scene& scene, World& world) {
   }
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-      if (!can_move(scene, static_cast<int>(b))) continue;
+      if (!can_move(scene.bodies[b])) continue;
+      if (is_still(world, static_cast<int>(b))) {
+        keep(static_cast<int>(b), -1, static_cast<int>(w));
+        continue;
+      }
       const Vec2 d = nearest_point(scene.walls[w], world.position[b]) - world.position[b];
       const double distance = d.norm(), radius = scene.bodies[b].radius;
-      if (distance - radius > reach(scene, world, world.velocity[b], radius)) continue;
+      if (distance - radius > reach(scene, world, world.velocity[b].norm(), radius)) continue;
       Contact contact;
       contact.a = static_cast<int>(b);
       contact.wall = static_cast<int>(w);
@@ -202,9 +200,6 @@ void find_contacts(const Scene& scene, World& world) {
       world.contacts.push_back(contact);
     }
   }
-  const auto less = [](const Contact& p, const Contact& q) {
-    return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
-  };
   if (!scene.walls.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
   auto previous = old.begin();
   for (Contact& contact : world.contacts) {
@@ -254,6 +249,7 @@ void configure_pinches(const Scene& scene, World& world) {
       for (int k = contacts_of_body.begin[body]; k < contacts_of_body.begin[body + 1]; ++k) {
         Contact& contact = world.contacts[static_cast<std::size_t>(
             contacts_of_body.items[static_cast<std::size_t>(k)])];
+        if (is_still(world, contact.a) && is_still(world, contact.b)) continue;
         const bool is_a = contact.a == link.body;
         find_pinches_on(world, contact, static_cast<int>(c), i, is_a ? contact.b : contact.a,
                         is_a ? contact.normal : Vec2(-contact.normal), found);
@@ -268,7 +264,43 @@ void configure_pinches(const Scene& scene, World& world) {
     insert_pinch(scene, world, world.cables[static_cast<std::size_t>(pinch.cable)],
                  static_cast<std::size_t>(pinch.link), pinch.arc, pinch.body);
   }
-  assign_contacts(world);
+}
+
+void assign_contacts(World& world) {
+  if (world.configuration.method == Method::cable) return;
+  const Parts& parts = world.scratch.parts;
+  for (const Part& part : parts.list) {
+    if (part.kept) continue;
+    for (const int i : contacts_of(parts, part)) {
+      world.contacts[static_cast<std::size_t>(i)].pinch_points = 0;
+    }
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (parts.list[static_cast<std::size_t>(parts.of_cable[c])].kept) continue;
+    CableState& cable = world.cables[c];
+    const double width = 2.0 * cable.half_width;
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      Link& to = cable.links[s];
+      const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
+      const Link& from = cable.links[tail];
+      Segment& segment = cable.segments[s];
+      const int hint = to.pinch_middle ? to.contact : segment.contact;
+      segment.contact = to.contact = -1;
+      if (!opposite(from, to) || from.pinch_middle) continue;
+      Contact* contact = find_contact(world, from.body, to.body, hint);
+      if (contact == nullptr) continue;
+      if (world.configuration.method == Method::pinch)
+        contact->target = std::max(contact->target, width);
+      contact->pinch_linked = true;
+      const int index = static_cast<int>(contact - world.contacts.data());
+      ++contact->pinch_points;
+      if (to.pinch_middle) {
+        to.contact = index;
+      } else {
+        segment.contact = index;
+      }
+    }
+  }
 }
 
 }  // namespace pinchlab

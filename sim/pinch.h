@@ -15,6 +15,10 @@ void find_contacts(const Scene& scene, World& world);
 /// non-transitional pinches and takes them out of those that have opened.
 void configure_pinches(const Scene& scene, World& world);
 
+/// Tells each pinch of the parts that are awake its contact, and each contact how many cables it
+/// presses and how far apart it must keep its bodies.
+void assign_contacts(World& world);
+
 /// Arc (rad after the tail) at which the direction `u` from the body's centre meets the cable
 /// stored on link i, in [-tolerance, 2 pi - tolerance); the same plus whole turns up to link.wrap
 /// also do.

@@ -70,7 +70,8 @@ void bound_pinch_friction(const Scene& scene, const World& world, Row& row) {
   const int normal =
       contact ? world.scratch.normal_row_of_contact[static_cast<std::size_t>(middle.contact)] : -1;
   const bool clamped =
-      normal >= 0 && world.scratch.rows[static_cast<std::size_t>(normal)].diagonal == 0.0;
+      contact &&
+      (normal < 0 || world.scratch.rows[static_cast<std::size_t>(normal)].diagonal == 0.0);
   if (row.friction == infinity &&
       (clamped || world.configuration.method == Method::pinch_no_contact)) {
     row.on = true;  // held by axles that do not give way, or (thesis) by the joint alone
@@ -111,27 +112,31 @@ void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out)
   }
 }
 
-void make_segment_rows(const Scene& scene, World& world, double kick) {
+void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick) {
   Scratch& scratch = world.scratch;
-  scratch.segment_begin.clear();
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
+  scratch.rows.clear();
+  scratch.segment_begin.resize(world.cables.size());
   scratch.row_of_segment.clear();
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+  for (const int cable_number : cables_of(scratch.parts, part)) {
+    const auto c = static_cast<std::size_t>(cable_number);
     CableState& cable = world.cables[c];
-    scratch.segment_begin.push_back(static_cast<int>(scratch.row_of_segment.size()));
-    scratch.row_of_segment.resize(scratch.row_of_segment.size() + cable.segments.size(), -1);
+    const std::size_t begin = scratch.row_of_segment.size();
+    scratch.segment_begin[c] = static_cast<int>(begin);
+    scratch.row_of_segment.resize(begin + cable.segments.size(), -1);
     const double stiffness = scene.cables[c].axial_stiffness;
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Link& to = cable.links[s];
       const Link& from =
           cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
       // After a middle link comes the opposite of the row before it: one signed row serves both.
-      if (from.pinch_middle || wound_end(from, to)) continue;
+      if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
       Row row = segment_row(world, from, to, segment);
       row.index = static_cast<int>(c);
       row.item = static_cast<int>(s);
       row.on = !segment.slack;
-      if (to.pinch_middle) {
+      if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
@@ -145,24 +150,28 @@ void make_segment_rows(const Scene& scene, World& world, double kick) {
             std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
       }
       row.diagonal = diagonal_of(row, scratch.mobility);
-      scratch.row_of_segment[static_cast<std::size_t>(scratch.segment_begin.back()) + s] =
-          static_cast<int>(scratch.rows.size());
+      scratch.row_of_segment[begin + s] = static_cast<int>(scratch.rows.size());
       scratch.rows.push_back(row);
     }
   }
 }
 
-void make_contact_rows(const Scene& scene, World& world) {
-  world.scratch.normal_row_of_contact.clear();
-  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+void make_contact_rows(const Scene& scene, World& world, const Part& part) {
+  std::vector<int>& normal_row_of_contact = world.scratch.normal_row_of_contact;
+  normal_row_of_contact.resize(world.contacts.size());
+  world.scratch.first_contact_row = static_cast<int>(world.scratch.rows.size());
+  for (const int number : contacts_of(world.scratch.parts, part)) {
+    const auto i = static_cast<std::size_t>(number);
     const Contact& contact = world.contacts[i];
     const auto a = static_cast<std::size_t>(contact.a), b = static_cast<std::size_t>(contact.b);
     const Vec2& n = contact.normal;
-    world.scratch.normal_row_of_contact.push_back(static_cast<int>(world.scratch.rows.size()));
+    normal_row_of_contact[i] = -1;
+    if (!can_move(scene.bodies[a]) && (contact.b < 0 || !can_move(scene.bodies[b]))) continue;
+    normal_row_of_contact[i] = static_cast<int>(world.scratch.rows.size());
     Row row;
     row.kind = RowKind::normal;
     row.on = contact.touching;
-    row.index = static_cast<int>(i);
+    row.index = number;
     row.a = contact.a;
     row.b = contact.b;
     row.ja = {-n.x(), -n.y(), 0.0};
@@ -181,6 +190,7 @@ void make_contact_rows(const Scene& scene, World& world) {
       const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
       if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
         row.bias = restitution * speed;
+        row.rebounds = true;
       }
     }
     row.diagonal = diagonal_of(row, world.scratch.mobility);
@@ -199,7 +209,7 @@ void make_contact_rows(const Scene& scene, World& world) {
     friction.index = row.index;
     friction.friction = friction_coefficient;
     friction.slip = contact.slip;
-    friction.normal = world.scratch.normal_row_of_contact.back();
+    friction.normal = normal_row_of_contact[i];
     friction.a = contact.a;
     friction.b = contact.b;
     // Both forces act at one point, a share of the gap off the surfaces, so that they have no

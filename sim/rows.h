@@ -9,6 +9,7 @@
 
 namespace pinchlab {
 
+struct Part;
 struct World;
 
 /// Inverse mass and inertia of a body in this step, drag included: dv = linear * impulse.
@@ -24,7 +25,8 @@ struct Mobility {
 
 enum class RowKind {
   segment,       // tension of a span or transitional pinch, >= 0
-  pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row
+  pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row,
+                 // or with PinchRows::three two of kind `segment`
   normal,        // contact force, >= 0
   tangent,       // Coulomb friction of bare surfaces, |.| <= mu * normal
 };
@@ -41,6 +43,7 @@ struct Row {
   double compliance = 0.0;                                                     // 1/kg
   double diagonal = 0.0;               // 1/kg, J * mobility * J^T
   double impulse = 0.0;                // N s
+  bool rebounds = false;               // normal: the bias is the speed of a rebound
   double speed = 0.0;                  // w, m/s, after the solve
   bool on = false;                     // active set: bears a force
   Slip slip = Slip::stick;             // active set: friction rows
@@ -58,10 +61,12 @@ struct Row {
 /// Mobilities for a velocity kick of `kick` seconds.
 void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out);
 
-/// Rows of all cables at the present positions (thesis: SegmentsInit).
-void make_segment_rows(const Scene& scene, World& world, double kick);
+/// Begins world.scratch.rows with the rows of a part's cables at the present positions (thesis:
+/// SegmentsInit).
+void make_segment_rows(const Scene& scene, World& world, const Part& part, double kick);
 
-/// Rows of all contacts (thesis: ContactsInit).
-void make_contact_rows(const Scene& scene, World& world);
+/// Adds the rows of a part's contacts (thesis: ContactsInit). Bodies that cannot give way to one
+/// another get none.
+void make_contact_rows(const Scene& scene, World& world, const Part& part);
 
 }  // namespace pinchlab

@@ -106,6 +106,11 @@ inline double step_length(const Scene& scene) {  // s
   return 1.0 / (static_cast<double>(scene.frames_per_second) * scene.steps_per_frame);
 }
 
+/// Whether the body's centre can move.
+inline bool can_move(const Body& body) {
+  return body.kind == BodyKind::free || body.kind == BodyKind::rail;
+}
+
 inline double disc_inertia(const Body& body) {  // kg m^2
   return body.inertia.value_or(0.5 * body.mass * body.radius * body.radius);
 }

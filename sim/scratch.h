@@ -7,6 +7,9 @@
 #include "sim/broad_phase.h"
 #include "sim/capstan.h"
 #include "sim/contact.h"
+#include "sim/gauss_seidel.h"
+#include "sim/parts.h"
+#include "sim/profile_ldl.h"
 #include "sim/profile_lu.h"
 #include "sim/rows.h"
 #include "sim/terms.h"
@@ -21,6 +24,13 @@ struct BodyTerm {
   Eigen::Vector3d vector;
 };
 
+/// One end of an unknown's row, in the chain of those on one body.
+struct RowEnd {
+  Eigen::Vector3d j;  // (x, y, angle)
+  int previous;       // in the chain, or -1
+  int least;          // unknown of the chain
+};
+
 /// A change of state that the last solution asks for.
 struct Flip {
   int row;  // or run, where is_run
@@ -30,6 +40,8 @@ struct Flip {
 };
 
 struct ActiveSet {
+  int part = 0;                     // being solved, of Parts::list
+  int solves = 0;                   // of this part in this step so far
   CapstanScratch capstan;           // empty without finite friction on a cable
   std::vector<int> unknown_of_row;  // of rows that have one of their own, or -1
   std::vector<int> row_of_unknown;
@@ -43,7 +55,11 @@ struct ActiveSet {
   std::vector<int> least_column, least_equation;  // least unknown that moves, or sees, each body
   std::vector<int> first;                         // profile
   std::vector<double> scale, right_side, solution, residual;
-  ProfileLu lu;
+  bool symmetric = true;      // every unknown is one row's impulse
+  std::vector<RowEnd> ends;   // two an unknown: what it does to its row's bodies
+  std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
+  ProfileLdl ldl;             // symmetric
+  ProfileLu lu;               // otherwise
   std::vector<Flip> flips;
 };
 
@@ -52,23 +68,32 @@ struct Release {
   int cable, body;
 };
 
+/// The order of a part's rows, for the bodies that they couple.
+struct RowOrder {
+  std::vector<int> structure, order;
+};
+
 struct Scratch {
   std::vector<Release> released;  // since update_segments
   BroadPhase broad_phase;
   std::vector<Contact> old_contacts;
   Lists<int> contacts_of_body;
-  std::vector<int> fill;  // cursors while Lists are made
-  std::vector<Row> rows;
+  std::vector<int> fill;                           // cursors while Lists are made
+  std::vector<Row> rows;                           // of the part being solved
   std::vector<Mobility> mobility;                  // one a body
+  double mobility_kick = 0.0;                      // s, what they are for
   std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
-  std::vector<int> normal_row_of_contact;
-  std::vector<int> order;  // of the rows, by order_rows
-  std::vector<int> structure,
-      ordered_structure;                   // bodies that the rows couple; what `order` is for
+  std::vector<int> normal_row_of_contact;          // of the part's contacts; -1: none
+  int first_contact_row = 0;                       // those before are of cables
+  Parts parts;
+  std::vector<int> order;                  // of the rows, by order_rows
+  std::vector<RowOrder> orders;            // one a part
+  std::vector<int> structure;              // bodies that the rows couple
   std::vector<int> row_stamp, body_stamp;  // marks of order_rows
 
-  Lists<int> rows_of_body;  // rows that a mobile body couples
+  Lists<int> rows_of_body;  // rows that a mobile body of the part couples
   ActiveSet active_set;
+  SweepScratch sweeps;  // empty with the direct solver
 
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step
   std::vector<double> angular_velocity_before;

@@ -45,13 +45,6 @@ bool just_left(const World& world, const CableState& cable, const Segment& segme
   return false;
 }
 
-/// A body may hit the span that ends on it only where it holds the end at its rim.
-bool holds_span(const Scene& scene, const CableState& cable, const Link& end, int body) {
-  if (end.body != body) return false;
-  const double margin = scene.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
-  return end.orientation != 0 || end.attachment.norm() < margin * (1.0 - 1e-9);
-}
-
 Hit test_span(const Scene& scene, const World& world, const CableState& cable, std::size_t s,
               int body) {
   const Segment& segment = cable.segments[s];
@@ -62,7 +55,12 @@ Hit test_span(const Scene& scene, const World& world, const CableState& cable, s
   const double margin = scene.bodies[b].radius + cable.half_width - graze;
   const Vec2 now = world.position[b] - segment.tail;
   const double along = segment.direction.dot(now), side = cross(segment.direction, now);
-
+  const bool beside = along > 0.0 && along < segment.length;
+  const bool within = beside && std::abs(side) < margin;
+  if (!within && segment.tail == segment.previous_tail && segment.head == segment.previous_head &&
+      world.velocity[b].isZero(0.0)) {
+    return hit;  // neither of them has moved
+  }
   const Vec2 before =
       world.position[b] - world.step_length * world.velocity[b] - segment.previous_tail;
   const Vec2 span_before = segment.previous_head - segment.previous_tail;
@@ -72,8 +70,7 @@ Hit test_span(const Scene& scene, const World& world, const CableState& cable, s
   const double along_before = direction_before.dot(before);
   const double side_before = cross(direction_before, before);
 
-  const bool beside = along > 0.0 && along < segment.length;
-  bool reached = beside && std::abs(side) < margin;
+  bool reached = within;
   if (!reached && side * side_before < 0.0) {
     const double t = side_before / (side_before - side);  // of the crossing, 0..1 within the step
     const double along_then = along_before + t * (along - along_before);
@@ -105,6 +102,7 @@ void add_hit_links(const Scene& scene, World& world) {
     }
     CableState& cable = world.cables[static_cast<std::size_t>(pairs[begin].cable)];
     const auto first = static_cast<std::size_t>(pairs[begin].segment);
+    const bool still = sleeps(world, static_cast<std::size_t>(pairs[begin].cable));
     std::size_t added = 0;
     // Of all hits take the earliest, then test the rest against the parts of the span. A body gets
     // at most one link a span and step, so there are at most end - begin rounds.
@@ -112,6 +110,7 @@ void add_hit_links(const Scene& scene, World& world) {
       again = false;
       Hit earliest;
       for (std::size_t i = begin; i < end; ++i) {
+        if (still && is_still(world, pairs[i].body)) continue;
         for (std::size_t part = 0; part <= added; ++part) {
           const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
           const int head = static_cast<int>(s), tail = previous_link(cable, head);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/step.h"
 
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "sim/active_set.h"
+#include "sim/all_pairs.h"
 #include "sim/cable.h"
 #include "sim/diagnostics.h"
+#include "sim/gauss_seidel.h"
 #include "sim/pinch.h"
 #include "sim/span_hits.h"
 
@@ -26,64 +28,68 @@ double kick_length(const World& world) {
 void apply_forces(const Scene& scene, World& world) {
   const double k = kick_length(world);
   Scratch& s = world.scratch;
-  set_mobilities(scene, k, s.mobility);
-  s.velocity_before = world.velocity;
-  s.angular_velocity_before = world.angular_velocity;
-  s.velocity_free.resize(scene.bodies.size());
-  s.angular_velocity_free.resize(scene.bodies.size());
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
-    Vec2 v = Vec2::Zero();
-    double omega = 0.0;
-    if (body.kind == BodyKind::free || body.kind == BodyKind::rail) {
-      Vec2 pull = k * scene.gravity;
-      if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
-      v = ((1.0 - linear) * world.velocity[b] + pull) / (1.0 + linear);
+  if (s.mobility.empty() || s.mobility_kick != k) {
+    set_mobilities(scene, k, s.mobility);
+    s.mobility_kick = k;
+    s.velocity_free.assign(scene.bodies.size(), Vec2::Zero());
+    s.angular_velocity_free.assign(scene.bodies.size(), 0.0);
+  }
+  if (world.configuration.diagnostics) {
+    s.velocity_before = world.velocity;
+    s.angular_velocity_before = world.angular_velocity;
+  }
+  for (const Part& part : s.parts.list) {
+    if (part.asleep) continue;
+    for (const int number : bodies_of(s.parts, part)) {
+      const auto b = static_cast<std::size_t>(number);
+      const Body& body = scene.bodies[b];
+      const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
+      if (can_move(body)) {
+        Vec2 pull = k * scene.gravity;
+        if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
+        s.velocity_free[b] = ((1.0 - linear) * world.velocity[b] + pull) / (1.0 + linear);
+      }
+      s.angular_velocity_free[b] = body.driven_angular_velocity
+                                       ? *body.driven_angular_velocity
+                                       : ((1.0 - angular) * world.angular_velocity[b] +
+                                          k * body.torque / disc_inertia(body)) /
+                                             (1.0 + angular);
     }
-    if (body.driven_angular_velocity) {
-      omega = *body.driven_angular_velocity;
-    } else if (body.kind != BodyKind::fixed) {
-      omega = ((1.0 - angular) * world.angular_velocity[b] + k * body.torque / disc_inertia(body)) /
-              (1.0 + angular);
-    }
-    s.velocity_free[b] = v;
-    s.angular_velocity_free[b] = omega;
   }
 }
 
 /// Positions, and the material that slides over bodies, with the velocities just found.
 void move_bodies(World& world) {
   const double h = world.step_length;
-  for (std::size_t b = 0; b < world.position.size(); ++b) {
-    world.position[b] += h * world.velocity[b];
-    world.angle[b] += h * world.angular_velocity[b];
-  }
-  if (world.scratch.active_set.capstan.runs.empty() && world.contacts.empty()) return;
-  for (CableState& cable : world.cables) {
-    for (Link& link : cable.links) link.material -= h * link.slip_speed;
-  }
-}
-
-/// Below this nothing moves (m/s, and rad/s times radius): far above round-off, and a nanometre a
-/// second.
-constexpr double rest_speed = 1e-9;
-/// After this long (s) at rest a scene stays at rest: all its forces are constant.
-constexpr double rest_time = 0.5;
-
-bool is_resting(const World& world) {
-  return static_cast<double>(world.resting_steps) * world.step_length >= rest_time;
-}
-
-void note_rest(const Scene& scene, World& world) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (world.velocity[b].cwiseAbs().maxCoeff() > rest_speed ||
-        std::abs(world.angular_velocity[b]) * scene.bodies[b].radius > rest_speed) {
-      world.resting_steps = 0;
-      return;
+  const Parts& parts = world.scratch.parts;
+  for (const Part& part : parts.list) {
+    if (part.asleep) continue;
+    for (const int number : bodies_of(parts, part)) {
+      const auto b = static_cast<std::size_t>(number);
+      world.position[b] += h * world.velocity[b];
+      world.angle[b] += h * world.angular_velocity[b];
+    }
+    if (!part.slides) continue;
+    for (const int c : cables_of(parts, part)) {
+      for (Link& link : world.cables[static_cast<std::size_t>(c)].links) {
+        link.material -= h * link.slip_speed;
+      }
     }
   }
-  ++world.resting_steps;
+}
+
+bool all_asleep(const World& world) {
+  const auto& parts = world.scratch.parts.list;
+  return std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.asleep; });
+}
+
+void solve(const Scene& scene, World& world, int part, double kick) {
+  switch (world.configuration.solver) {
+    case Solver::direct:
+      return solve_direct(scene, world, part, kick);
+    case Solver::iterative:
+      return solve_iterative(scene, world, part, kick);
+  }
 }
 
 class Stopwatch {
@@ -105,6 +111,26 @@ class Stopwatch {
   Clock::time_point last_;
 };
 
+/// Velocities that meet all constraints, part by part.
+void solve_parts(const Scene& scene, World& world, Stopwatch& watch) {
+  world.diagnostics.active_set_solves = 0;
+  Parts& parts = world.scratch.parts;
+  for (int p = 0; p < static_cast<int>(parts.list.size()); ++p) {
+    Part& part = parts.list[static_cast<std::size_t>(p)];
+    if (part.asleep) continue;
+    make_segment_rows(scene, world, part, kick_length(world));
+    watch.lap(Stage::init_segments);
+    make_contact_rows(scene, world, part);
+    watch.lap(Stage::init_contacts);
+    solve(scene, world, p, kick_length(world));
+    part.slides =
+        !world.scratch.active_set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
+    note_rest(scene, world, part);
+    watch.lap(Stage::solve);
+  }
+  world.diagnostics.total_solves += world.diagnostics.active_set_solves;
+}
+
 }  // namespace
 
 void detect(const Scene& scene, World& world, StageTimes* times) {
@@ -113,34 +139,30 @@ void detect(const Scene& scene, World& world, StageTimes* times) {
   watch.lap(Stage::update_segments);
   remove_links(world);
   watch.lap(Stage::remove_links);
-  find_body_pairs(scene, world);
-  find_span_pairs(scene, world);
+  const bool sweep = world.configuration.detection == Detection::sweep;
+  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world);
   watch.lap(Stage::broad_phase);
+  (sweep ? find_span_pairs : find_all_span_pairs)(scene, world);
   add_hit_links(scene, world);
   watch.lap(Stage::intersect_segments);
   find_contacts(scene, world);
   watch.lap(Stage::find_contacts);
   configure_pinches(scene, world);
+  find_parts(scene, world);
+  assign_contacts(world);
   watch.lap(Stage::configure_pinches);
 }
 
 StepStatus step(const Scene& scene, World& world, StageTimes* times) {
-  if (is_resting(world)) {
+  if (all_asleep(world)) {
     ++world.step;
     return StepStatus::ok;
   }
   Stopwatch watch(times);
   apply_forces(scene, world);
   watch.lap(Stage::apply_forces);
-  world.scratch.rows.clear();
-  make_segment_rows(scene, world, kick_length(world));
-  watch.lap(Stage::init_segments);
-  make_contact_rows(scene, world);
-  watch.lap(Stage::init_contacts);
-  solve(scene, world, kick_length(world));
-  watch.lap(Stage::solve);
+  solve_parts(scene, world, watch);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
-  note_rest(scene, world);
   if (world.configuration.diagnostics) measure_energy(scene, world);
   watch.lap(Stage::diagnose);
   move_bodies(world);
@@ -157,10 +179,8 @@ Velocities velocities_now(const Scene& scene, const World& world) {
   if (world.step == 0) return {world.velocity, world.angular_velocity};
   World next = world;
   apply_forces(scene, next);
-  next.scratch.rows.clear();
-  make_segment_rows(scene, next, kick_length(next));
-  make_contact_rows(scene, next);
-  solve(scene, next, kick_length(next));
+  Stopwatch untimed(nullptr);
+  solve_parts(scene, next, untimed);
   Velocities now{world.velocity, world.angular_velocity};
   for (std::size_t b = 0; b < now.linear.size(); ++b) {
     now.linear[b] = 0.5 * (world.velocity[b] + next.velocity[b]);

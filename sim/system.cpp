@@ -39,12 +39,16 @@ bool has_unknown(const World& world, std::size_t r) {
   return !slips && row.diagonal > 0.0;
 }
 
+/// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
 void number_unknowns(World& world) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
   set.unknown_of_row.assign(s.rows.size(), -1);
   set.row_of_unknown.clear();
+  set.symmetric = set.capstan.runs.empty();
   for (const int r : s.order) {
+    const Row& row = s.rows[index(r)];
+    if (row.on && row.slip != Slip::stick) set.symmetric = false;
     if (!has_unknown(world, index(r))) continue;
     set.unknown_of_row[index(r)] = static_cast<int>(set.row_of_unknown.size());
     set.row_of_unknown.push_back(r);
@@ -110,15 +114,17 @@ bool moves(const Scratch& s, int body) {
 void gather_body_terms(World& world) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
-  const std::size_t bodies = s.mobility.size();
+  const std::size_t bodies = bodies_of(s.parts, part_being_solved(world)).size();
+  const std::vector<int>& local = s.parts.local;
   set.columns.clear();
   set.equations.clear();
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
     for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
       const Term& term = set.impulse_terms[index(k)];
-      if (moves(s, row.a)) set.columns.push_back({term.index, row.a, term.coefficient * row.ja});
-      if (moves(s, row.b)) set.columns.push_back({term.index, row.b, term.coefficient * row.jb});
+      for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
+        if (moves(s, body)) set.columns.push_back({term.index, body, term.coefficient * j});
+      }
     }
   }
   std::size_t begin = 0;
@@ -135,42 +141,45 @@ void gather_body_terms(World& world) {
 
   Lists<BodyTerm>& lists = set.columns_of_body;
   lists.begin.assign(bodies + 1, 0);
-  for (const BodyTerm& term : set.columns) ++lists.begin[index(term.body) + 1];
+  for (const BodyTerm& term : set.columns) ++lists.begin[index(local[index(term.body)]) + 1];
   for (std::size_t b = 0; b < bodies; ++b) lists.begin[b + 1] += lists.begin[b];
   lists.items.resize(set.columns.size());
   set.fill = lists.begin;
   for (const BodyTerm& term : set.columns) {
-    lists.items[index(set.fill[index(term.body)]++)] = term;
+    lists.items[index(set.fill[index(local[index(term.body)])]++)] = term;
   }
 }
 
 /// The profile: unknown u reaches back to the least one that shares a body with it.
-void find_profile(ActiveSet& set, std::size_t bodies) {
+void find_profile(World& world) {
+  ActiveSet& set = world.scratch.active_set;
+  const std::size_t bodies = bodies_of(world.scratch.parts, part_being_solved(world)).size();
+  const auto local = [&world](int body) { return index(world.scratch.parts.local[index(body)]); };
   const int count = static_cast<int>(set.row_of_unknown.size());
   set.least_column.assign(bodies, count);
   set.least_equation.assign(bodies, count);
   for (const BodyTerm& t : set.columns) {
-    set.least_column[index(t.body)] = std::min(set.least_column[index(t.body)], t.unknown);
+    set.least_column[local(t.body)] = std::min(set.least_column[local(t.body)], t.unknown);
   }
   for (const BodyTerm& t : set.equations) {
-    set.least_equation[index(t.body)] = std::min(set.least_equation[index(t.body)], t.unknown);
+    set.least_equation[local(t.body)] = std::min(set.least_equation[local(t.body)], t.unknown);
   }
   set.first.resize(index(count));
   for (int u = 0; u < count; ++u) set.first[index(u)] = u;
   for (const BodyTerm& t : set.columns) {
     set.first[index(t.unknown)] =
-        std::min(set.first[index(t.unknown)], set.least_equation[index(t.body)]);
+        std::min(set.first[index(t.unknown)], set.least_equation[local(t.body)]);
   }
   for (const BodyTerm& t : set.equations) {
     set.first[index(t.unknown)] =
-        std::min(set.first[index(t.unknown)], set.least_column[index(t.body)]);
+        std::min(set.first[index(t.unknown)], set.least_column[local(t.body)]);
   }
 }
 
-void assemble(World& world) {
+void assemble_coupled(World& world) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
-  find_profile(set, s.mobility.size());
+  find_profile(world);
   for (const EquationTerm& term : set.equation_terms) {
     for (int k = set.impulse_begin[index(term.row)]; k < set.impulse_end[index(term.row)]; ++k) {
       const int other = set.impulse_terms[index(k)].index;  // through compliance, without a body
@@ -182,7 +191,8 @@ void assemble(World& world) {
   for (const BodyTerm& t : set.equations) {
     const Eigen::Vector3d seen = s.mobility[index(t.body)] * t.vector;
     const auto& lists = set.columns_of_body;
-    for (int k = lists.begin[index(t.body)]; k < lists.begin[index(t.body) + 1]; ++k) {
+    const std::size_t b = index(s.parts.local[index(t.body)]);
+    for (int k = lists.begin[b]; k < lists.begin[b + 1]; ++k) {
       const BodyTerm& column = lists.items[index(k)];
       set.lu.add(t.unknown, column.unknown, seen.dot(column.vector));
     }
@@ -204,29 +214,91 @@ void assemble(World& world) {
   }
 }
 
-/// Impulses of the rows for the unknowns' values; velocities, and the rows' speeds.
-void apply_solution(World& world, const std::vector<double>& z) {
+/// The matrix J M^-1 J^T + compliance where each unknown is one row's impulse. Every body keeps the
+/// chain of the unknowns that move it, so that a row finds those that it is coupled with.
+void assemble_symmetric(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  const std::size_t count = set.row_of_unknown.size();
+  set.last_end.assign(bodies_of(s.parts, part_being_solved(world)).size(), -1);
+  set.ends.resize(2 * count);
+  set.scale.resize(count);
+  set.ldl.clear();
+  for (std::size_t u = 0; u < count; ++u) {
+    const Row& row = s.rows[index(set.row_of_unknown[u])];
+    const int unknown = static_cast<int>(u);
+    const int bodies[2] = {moves(s, row.a) ? row.a : -1, moves(s, row.b) ? row.b : -1};
+    int first = unknown;
+    for (const int body : bodies) {
+      if (body < 0) continue;
+      const int last = set.last_end[index(s.parts.local[index(body)])];
+      if (last >= 0) first = std::min(first, set.ends[index(last)].least);
+    }
+    double* entries = set.ldl.append(first) - first;
+    entries[unknown] = row.compliance;
+    set.scale[u] = row.diagonal + row.compliance;
+    for (int side = 0; side < 2; ++side) {
+      if (bodies[side] < 0) continue;
+      const Eigen::Vector3d& j = side == 0 ? row.ja : row.jb;
+      const Eigen::Vector3d seen = s.mobility[index(bodies[side])] * j;
+      int& last = set.last_end[index(s.parts.local[index(bodies[side])])];
+      for (int e = last; e >= 0; e = set.ends[index(e)].previous) {
+        const double value = seen.dot(set.ends[index(e)].j);
+        entries[e / 2] += e / 2 == unknown ? 2.0 * value : value;  // both ends on one body
+      }
+      entries[unknown] += seen.dot(j);
+      const int least = last >= 0 ? set.ends[index(last)].least : unknown;
+      set.ends[2 * u + static_cast<std::size_t>(side)] = {j, last, least};
+      last = 2 * unknown + side;
+    }
+  }
+}
+
+/// Assembles and factors; returns how many rows repeat others.
+int factor(World& world, double ridge) {
+  ActiveSet& set = world.scratch.active_set;
+  if (set.symmetric) {
+    assemble_symmetric(world);
+    return set.ldl.factor(set.scale, ridge);
+  }
+  assemble_coupled(world);
+  return set.lu.factor(set.scale, ridge);
+}
+
+/// Impulses of the rows for the unknowns' values, and the velocities.
+void set_impulses(World& world) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     double p = 0.0;
-    for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
-      const Term& term = set.impulse_terms[index(k)];
-      p += term.coefficient * z[index(term.index)];
+    if (set.symmetric) {
+      const int unknown = set.unknown_of_row[r];
+      if (unknown >= 0) p = set.solution[index(unknown)];
+    } else {
+      for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
+        const Term& term = set.impulse_terms[index(k)];
+        p += term.coefficient * set.solution[index(term.index)];
+      }
     }
     s.rows[r].impulse = p;
   }
   apply_impulses(world);
-  for (Row& row : s.rows) row.speed = row_speed(world, row) + row.compliance * row.impulse;
 }
 
-/// What each equation misses at the rows' present speeds; returns the largest.
-double equation_residuals(World& world) {
-  ActiveSet& set = world.scratch.active_set;
+/// The rows' speeds, and what each equation misses at them; returns the largest.
+double find_residuals(World& world) {
+  Scratch& s = world.scratch;
+  ActiveSet& set = s.active_set;
+  for (Row& row : s.rows) row.speed = row_speed(world, row) + row.compliance * row.impulse;
   set.residual.assign(set.row_of_unknown.size(), 0.0);
-  for (const EquationTerm& term : set.equation_terms) {
-    set.residual[index(term.unknown)] +=
-        term.coefficient * world.scratch.rows[index(term.row)].speed;
+  if (set.symmetric) {
+    for (std::size_t u = 0; u < set.residual.size(); ++u) {
+      set.residual[u] = s.rows[index(set.row_of_unknown[u])].speed;
+    }
+  } else {
+    for (const EquationTerm& term : set.equation_terms) {
+      set.residual[index(term.unknown)] += term.coefficient * s.rows[index(term.row)].speed;
+    }
   }
   double largest = 0.0;
   for (const double r : set.residual) largest = std::max(largest, std::abs(r));
@@ -235,34 +307,46 @@ double equation_residuals(World& world) {
 
 double fastest(const World& world) {
   double speed = 0.0;
-  for (const Vec2& v : world.velocity) speed = std::max(speed, v.cwiseAbs().maxCoeff());
+  for (const int b : bodies_of(world.scratch.parts, part_being_solved(world))) {
+    speed = std::max(speed, world.velocity[index(b)].cwiseAbs().maxCoeff());
+  }
   return speed;
 }
 
-/// One step of iterative refinement. The residual is measured at the velocities, where heavy and
-/// light bodies do not mix, so that it restores what elimination loses at large mass ratios.
-void refine(World& world) {
+/// One step of iterative refinement, and what it leaves. The residual is measured at the
+/// velocities, where heavy and light bodies do not mix, so that it restores what elimination loses
+/// at large mass ratios.
+double refine(World& world) {
   ActiveSet& set = world.scratch.active_set;
-  set.lu.solve(set.residual);
+  if (set.symmetric) {
+    set.ldl.solve(set.residual);
+  } else {
+    set.lu.solve(set.residual);
+  }
   for (std::size_t u = 0; u < set.solution.size(); ++u) set.solution[u] -= set.residual[u];
-  apply_solution(world, set.solution);
+  set_impulses(world);
+  return find_residuals(world);
+}
+
+/// Starts from no impulses at all; returns the largest residual.
+double start(World& world) {
+  Scratch& s = world.scratch;
+  s.active_set.solution.assign(s.active_set.row_of_unknown.size(), 0.0);
+  for (Row& row : s.rows) row.impulse = 0.0;
+  release_bodies(world);
+  return find_residuals(world);
 }
 
 /// Of all solutions of a system with repeated rows, (nearly) the one of least norm: that of the
 /// system with a small ridge on its diagonal, whose right side is first made consistent by a basic
 /// solution.
 void spread_over_repeated_rows(World& world) {
-  Scratch& s = world.scratch;
-  ActiveSet& set = s.active_set;
+  ActiveSet& set = world.scratch.active_set;
   constexpr double ridge = 1e-8;
-  equation_residuals(world);
   set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
-  assemble(world);
-  set.lu.factor(set.scale, ridge);
-  std::fill(set.solution.begin(), set.solution.end(), 0.0);
-  apply_solution(world, set.solution);
+  factor(world, ridge);
+  start(world);
   for (int k = 0; k < 3; ++k) {
-    equation_residuals(world);
     for (std::size_t u = 0; u < set.residual.size(); ++u) set.residual[u] -= set.right_side[u];
     refine(world);
   }
@@ -283,29 +367,33 @@ void push(World& world, const Row& row, double impulse) {
   if (row.b >= 0) push_body(world, row.b, row.jb, impulse);
 }
 
+void release_bodies(World& world) {
+  const Scratch& s = world.scratch;
+  for (const int number : bodies_of(s.parts, part_being_solved(world))) {
+    const std::size_t b = index(number);
+    world.velocity[b] = s.velocity_free[b];
+    world.angular_velocity[b] = s.angular_velocity_free[b];
+  }
+}
+
 void apply_impulses(World& world) {
-  world.velocity = world.scratch.velocity_free;
-  world.angular_velocity = world.scratch.angular_velocity_free;
+  release_bodies(world);
   for (const Row& row : world.scratch.rows) push(world, row, row.impulse);
 }
 
 void solve_for_states(World& world) {
-  Scratch& s = world.scratch;
-  ActiveSet& set = s.active_set;
+  ActiveSet& set = world.scratch.active_set;
   if (!set.capstan.runs.empty()) make_groups(world);
   number_unknowns(world);
-  express(world);
-  gather_body_terms(world);
-  assemble(world);
-  const int repeated = set.lu.factor(set.scale, 0.0);
-
-  set.solution.assign(set.row_of_unknown.size(), 0.0);
-  apply_solution(world, set.solution);
-  const double start = equation_residuals(world);
-  refine(world);
-  const double rounding = 1e-13 * start + 4e-16 * fastest(world);
-  for (int k = 0; k < 2 && repeated == 0 && equation_residuals(world) > rounding; ++k)
-    refine(world);
+  if (!set.symmetric) {
+    express(world);
+    gather_body_terms(world);
+  }
+  const int repeated = factor(world, 0.0);
+  const double before = start(world);
+  double residual = refine(world);
+  const double rounding = 1e-13 * before + 4e-16 * fastest(world);
+  for (int k = 0; k < 2 && repeated == 0 && residual > rounding; ++k) residual = refine(world);
   if (repeated > 0) spread_over_repeated_rows(world);
 }
 

@@ -12,11 +12,20 @@ namespace pinchlab {
 /// Unknowns z are impulses of rows, or of groups of rows that depend on one another: p = F z.
 /// Equations are rows, or sums G of them: G (J (v* + M^-1 J^T p) + bias + compliance p) = 0. The
 /// matrix G (J M^-1 J^T + compliance) F is narrow in the order of scratch.order and is factored
-/// directly. Where constraints repeat one another, the solution of least norm is taken, as for
-/// equally stiff cables.
+/// directly. Where nothing slides F and G are the identity and the matrix is symmetric. Where
+/// constraints repeat one another, the solution of least norm is taken, as for equally stiff
+/// cables.
 void solve_for_states(World& world);
 
-/// Velocities = free velocities + what the rows' impulses do.
+/// The part whose rows stand in world.scratch.rows.
+inline const Part& part_being_solved(const World& world) {
+  return world.scratch.parts.list[static_cast<std::size_t>(world.scratch.active_set.part)];
+}
+
+/// Velocities of the part's bodies = free velocities.
+void release_bodies(World& world);
+
+/// Velocities of the part's bodies = free velocities + what the rows' impulses do.
 void apply_impulses(World& world);
 
 /// J v + bias at the present velocities (m/s).

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "sim/cable.h"
 #include "sim/pinch.h"
@@ -251,6 +252,10 @@ const char* to_string(Method method) {
 }
 
 World make_world(const Scene& scene, Configuration configuration) {
+  if (configuration.iterations < 1) {
+    throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
+                                            configuration.iterations));
+  }
   World world;
   // A scene is judged by the full model, whatever it is run with.
   world.configuration = Method::pinch;
@@ -258,6 +263,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   for (const Body& body : scene.bodies) {
     world.position.push_back(body.position);
     world.angle.push_back(body.angle);
+    world.still_steps.push_back(0);
     const bool moves = body.kind == BodyKind::free || body.kind == BodyKind::rail;
     Vec2 v = moves ? body.velocity : Vec2::Zero();
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
@@ -277,6 +283,8 @@ World make_world(const Scene& scene, Configuration configuration) {
   refuse_cables_through_bodies(scene, world);
   find_contacts(scene, world);
   configure_pinches(scene, world);
+  find_parts(scene, world);
+  assign_contacts(world);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
   if (configuration.method != Method::pinch) {

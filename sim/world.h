@@ -50,6 +50,8 @@ struct Segment {
   bool pinched = false;      // between two touching bodies: zero length, never hit-tested
   int contact = -1;          // pressing a transitional pinch, by confirm_pinches; or -1
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
+  Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();      // m, of the circles that the
+                                                                    // tangent is for
 };
 
 struct CableState {
@@ -57,6 +59,7 @@ struct CableState {
   double length = 0.0;      // m of material, constant
   bool closed = false;
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
+  int changes = 0;       // links inserted and removed so far
   std::vector<Link> links;
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
                                   // from the last link to the first when closed
@@ -84,7 +87,7 @@ struct Diagnostics {
                                              // cables' lengths
   int active_set_solves = 0;                 // in the last step
   std::int64_t total_solves = 0;             // since the start
-  std::int64_t fallbacks = 0;  // steps whose active set did not settle, since the start
+  std::int64_t fallbacks = 0;                // parts of steps whose active set did not settle
 };
 
 struct World {
@@ -98,8 +101,7 @@ struct World {
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;
 
-  std::int64_t resting_steps =
-      0;  // steps for which nothing has moved faster than step.cpp's rest_speed
+  std::vector<int> still_steps;  // steps for which the body's part has been at rest, by note_rest
 
   std::vector<Contact> contacts;  // sorted by (a, b, wall)
   Diagnostics diagnostics;
@@ -110,7 +112,8 @@ struct World {
   double time() const { return static_cast<double>(step) * step_length; }
 };
 
-/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist.
+/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist,
+/// std::invalid_argument where the configuration cannot.
 World make_world(const Scene& scene, Configuration configuration);
 
 }  // namespace pinchlab

@@ -11,6 +11,7 @@
 #include "analysis/experiments/accuracy.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/stability/stability.h"
 #include "demos/command_line.h"
 
 namespace pinchlab::experiments {
@@ -27,6 +28,7 @@ struct Experiment {
 /// All but render, which has options of its own.
 const std::vector<Experiment> experiments = {
     {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
+    {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 
 /// The options as they can be typed again, after the command's name.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -69,6 +70,7 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"render", "--size", "65x65", "01-small.json"},
       {"render", "--size", "999999x64"},
       {"render", "--method", "plain"},
+      {"render", "--method", "thesis"},
       {"render", "--codec", "mpeg2"},
       {"render", "--jobs", "0"},
       {"render", "--jobs", "two"},
@@ -84,6 +86,7 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"still", "01-small.json", "--time", "1", "--both", "--method", "cable", "--out", "x.png"},
       {"simulate", "01-small.json"},
       {"simulate", "--out", "-"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--method", "plain"},
       {"simulate", "01-small.json", "--out", "a.csv", "--segments", "a.csv"},
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "-1"},
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "nan"},
@@ -102,6 +105,20 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
   EXPECT_FALSE(fs::exists(folder / "x.png"));
   EXPECT_FALSE(fs::exists(folder / "a.csv"));
   EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Program, SimulatesAsTheThesisDoes) {
+  const fs::path folder = folder_with_scene();
+  const auto motion = [&folder](const std::string& method) {
+    const RunResult run =
+        run_program(folder, {"simulate", "01-small.json", "--method", method, "--out", "-"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.out;
+  };
+  const std::string thesis = motion("thesis"), pinch = motion("pinch");
+  EXPECT_EQ(std::count(thesis.begin(), thesis.end(), '\n'),
+            std::count(pinch.begin(), pinch.end(), '\n'));
+  EXPECT_NE(thesis, pinch);
 }
 
 TEST(Program, FailureIsOneAndLeavesNoFile) {

@@ -70,6 +70,23 @@ TEST_P(Stack, OfTenPinchingBodiesComesToRest) {
 
 INSTANTIATE_TEST_SUITE_P(StepsPerFrame, Stack, ::testing::Values(1, 2, 4, 8));
 
+// Rollers that fall together have no speed between them until the lowest is stopped; then each
+// meets the next within the same step or the one after.
+TEST(Pinch, FallingTowerIsCaughtWithoutSqueezingAtOneStepAFrame) {
+  for (const int frames_per_second : {15, 24, 60}) {
+    Scene scene = tower(20, true);
+    scene.frames_per_second = frames_per_second;
+    scene.steps_per_frame = 1;
+    World world = make_world(scene, measured());
+    for (int i = 0; i < 2 * frames_per_second; ++i) {
+      ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+      for (std::size_t b = 1; b <= 20; ++b) {
+        ASSERT_GT(least_gap(world, scene, b - 1, b), 2.0 * w * (1.0 - 1e-6)) << i << ", " << b;
+      }
+    }
+  }
+}
+
 TEST(Pinch, TowerOnAWrapPressesWithItsWholeWeight) {
   Scene scene = tower(10, false);
   World world = make_world(scene, measured());

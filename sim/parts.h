@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The parts of a scene that act on one another and on nothing else that moves. Each is solved by
+// itself, and sleeps once it has come to rest.
+
+#include <span>
+#include <vector>
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+struct World;
+
+struct Part {
+  int bodies_begin = 0, bodies_end = 0;      // of Parts::bodies
+  int cables_begin = 0, cables_end = 0;      // of Parts::cables
+  int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
+  bool asleep = false;                       // at rest for long enough: nothing of it changes
+  bool kept = false;                         // asleep, and was so in the step before
+  bool slides = false;                       // by solve: cable may slide over bodies
+};
+
+/// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
+struct Parts {
+  std::vector<Part> list;
+  std::vector<int> bodies;     // that can move or turn; every one is in one part
+  std::vector<int> cables;     // every one is in one part
+  std::vector<int> contacts;   // every one is in one part
+  std::vector<int> of_body;    // part, or -1: fixed
+  std::vector<int> of_cable;   // part
+  std::vector<int> local;      // place of the body in its part's bodies, or -1: fixed
+  std::vector<int> structure;  // what the parts were found for: pairs in contact
+  int changes = -1;            // and CableState::changes of all cables
+  std::vector<int> root;       // of each body's tree while parts are found
+  std::vector<int> part_of_root;
+};
+
+inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {
+  return std::span(all).subspan(static_cast<std::size_t>(begin),
+                                static_cast<std::size_t>(end - begin));
+}
+inline std::span<const int> bodies_of(const Parts& parts, const Part& part) {
+  return slice(parts.bodies, part.bodies_begin, part.bodies_end);
+}
+inline std::span<const int> cables_of(const Parts& parts, const Part& part) {
+  return slice(parts.cables, part.cables_begin, part.cables_end);
+}
+inline std::span<const int> contacts_of(const Parts& parts, const Part& part) {
+  return slice(parts.contacts, part.contacts_begin, part.contacts_end);
+}
+
+/// Whether nothing about the body ever changes.
+inline bool is_static(const Body& body) {
+  return body.kind == BodyKind::fixed && !body.driven_angular_velocity;
+}
+
+/// Divides the scene into parts, by its cables and by world.contacts, and finds which of them
+/// sleep.
+void find_parts(const Scene& scene, World& world);
+
+/// Whether the body's part sleeps, or the body is static: it is where it was.
+bool is_still(const World& world, int body);
+
+/// Whether the cable's part sleeps.
+bool sleeps(const World& world, std::size_t cable);
+
+/// Counts for how many steps the bodies of a part have been slower than `rest_speed`, after the
+/// solve. A part with a body that is faster is wide awake.
+void note_rest(const Scene& scene, World& world, const Part& part);
+
+}  // namespace pinchlab

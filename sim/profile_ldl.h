@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A direct solver for symmetric matrices that are narrow about their diagonal.
+
+#include <cstddef>
+#include <vector>
+
+namespace pinchlab {
+
+/// L D L^T factors without pivoting inside the matrix' profile (George & Liu 1981, ch. 4): row u is
+/// kept from its first entry to the diagonal. The work is the sum of the squared widths: linear for
+/// a cable, whose matrix is tridiagonal.
+///
+/// A pivot below `dependence` times the diagonal's scale means that the row repeats earlier ones;
+/// its unknown is left at zero (a basic solution) and counted.
+class ProfileLdl {
+ public:
+  static constexpr double dependence = 1e-13;
+
+  /// Starts an empty matrix.
+  void clear() {
+    first_.clear();
+    begin_.clear();
+    entries_.clear();
+  }
+
+  /// Appends row u = size(), of zeros, whose first entry stands in column `first` <= u. The row's
+  /// entry in column v is the result's [v - first], until the next call.
+  double* append(int first) {
+    const int u = static_cast<int>(first_.size());
+    first_.push_back(first);
+    begin_.push_back(static_cast<int>(entries_.size()));
+    entries_.resize(entries_.size() + static_cast<std::size_t>(u - first + 1), 0.0);
+    return entries_.data() + begin_.back();
+  }
+
+  int size() const { return static_cast<int>(first_.size()); }
+
+  /// Factors in place. `scale[u]` > 0 is the size against which pivot u is judged; `ridge` times it
+  /// is added to the diagonal first. Returns how many rows were dependent.
+  int factor(const std::vector<double>& scale, double ridge);
+
+  /// Solves in place.
+  void solve(std::vector<double>& x) const;
+
+ private:
+  std::vector<int> first_;
+  std::vector<int> begin_;          // of row u in entries_
+  std::vector<double> entries_;     // rows: L, unit diagonal not stored, then the pivot's place
+  std::vector<double> reciprocal_;  // of the pivots (0: dependent)
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "sim/step.h"
+
+namespace pinchlab::experiments {
+
+void PrintTo(const ElementCounts& c, std::ostream* out) {
+  *out << c.bodies << " bodies, " << c.non_transitional << " non-transitional, " << c.transitional
+       << " transitional, " << c.contacts << " contacts, " << c.joints << " joints, " << c.segments
+       << " segments";
+}
+
+namespace {
+
+Configuration awake(Configuration configuration) {
+  configuration.sleep = false;
+  return configuration;
+}
+
+// Rows of the thesis' Tables 5.1 and 5.2 as printed.
+struct PrintedCounts {
+  int load;
+  ElementCounts pinched, free;
+};
+const PrintedCounts printed[] = {
+    {1, {4, 2, 2, 3, 10, 9}, {4, 0, 0, 0, 6, 5}},
+    {2, {8, 6, 4, 7, 22, 21}, {8, 0, 0, 0, 10, 9}},
+    {5, {20, 18, 10, 19, 58, 57}, {20, 0, 0, 0, 22, 21}},
+    {10, {40, 38, 20, 39, 118, 117}, {40, 0, 0, 0, 42, 41}},
+    {20, {80, 78, 40, 79, 238, 237}, {80, 0, 0, 0, 82, 81}},
+};
+
+TEST(StressScene, HasTheThesisElements) {
+  for (const PrintedCounts& row : printed) {
+    const World pinched = make_world(stress_scene(row.load, pinched_spacing), Method::pinch);
+    EXPECT_EQ(count_elements(pinched), row.pinched) << "load " << row.load;
+    for (const Method method : {Method::pinch, Method::cable}) {
+      const World free = make_world(stress_scene(row.load, free_spacing), method);
+      EXPECT_EQ(count_elements(free), row.free) << "load " << row.load;
+    }
+  }
+}
+
+TEST(StressScene, KeepsItsElementsAndTensionWhileItRuns) {
+  for (const std::size_t n : {1UL, 5UL, 20UL, 50UL, 100UL, 200UL, 500UL, 1000UL, 2000UL}) {
+    const Scene scene = stress_scene(static_cast<int>(n), pinched_spacing);
+    World world = make_world(scene, awake(Method::pinch));
+    for (int i = 0; i < 10; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    const ElementCounts counts{4 * n, 4 * n - 2, 2 * n, 4 * n - 1, 12 * n - 2, 12 * n - 3};
+    EXPECT_EQ(count_elements(world), counts) << "load " << n;
+    EXPECT_EQ(counts.attachments(), 8 * n);
+    const double expected = stress_stiffness * stress_strain;
+    const CableState& cable = world.cables.front();
+    for (std::size_t s = 1; s < cable.segments.size(); ++s) {
+      if (cable.segments[s].pinched) continue;
+      EXPECT_NEAR(cable.segments[s].tension, expected, 1e-6 * expected) << n << ", segment " << s;
+    }
+  }
+}
+
+TEST(PinchDetectionScene, PressesTheCableOnlyWhereItShould) {
+  for (const bool pinching : {false, true}) {
+    for (const bool other : {false, true}) {
+      for (const std::size_t n : {1UL, 2UL, 20UL}) {
+        const Scene scene = pinch_detection_scene(static_cast<int>(n), pinching, other);
+        World world = make_world(scene, awake(Method::pinch));
+        for (int i = 0; i < 60; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+        const ElementCounts counts = count_elements(world);
+        EXPECT_EQ(counts.bodies, 2 * n + n * (pinching ? 1 : 0) + n * (other ? 1 : 0));
+        EXPECT_EQ(counts.non_transitional, pinching ? n : 0);
+        EXPECT_EQ(counts.transitional, 0U);
+        const auto touching = std::count_if(world.contacts.begin(), world.contacts.end(),
+                                            [](const Contact& c) { return c.touching; });
+        EXPECT_EQ(static_cast<std::size_t>(touching), n * (pinching ? 1 : 0) + n * (other ? 1 : 0));
+      }
+    }
+  }
+}
+
+TEST(ChainScene, FallsAsItsMassesSay) {
+  const Scene scene = chain_scene(81);
+  World world = make_world(scene, awake(Method::pinch));
+  const int steps = 240;
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+  // Discs of 0.1 kg: their surfaces, w inside of the cable's centre line, roll at its speed.
+  const double ratio = 0.5 / 0.55;
+  const double inertia = 1999.0 + 81 * 0.05 * ratio * ratio;
+  const double expected = 0.5 * 9.81 / inertia * world.time() * world.time();
+  EXPECT_NEAR(-3.0 - world.position[0].y(), expected, 1e-9);
+}
+
+TEST(DisconnectedScene, SomeSwingAndOthersHangStill) {
+  const Scene scene = disconnected_scene(20, 3);
+  World world = make_world(scene, awake(Method::pinch));
+  for (int i = 0; i < 240; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+  for (std::size_t b = 1; b < scene.bodies.size(); b += 2) {
+    if (b < 6) {
+      EXPECT_GT(world.velocity[b].norm(), 1e-3) << b;
+    } else {
+      EXPECT_LT(world.velocity[b].norm(), 1e-9) << b;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::experiments
