@@ -137,7 +137,8 @@ void run_accuracy(const Options& options) {
   }
   write_tables(output, results, all_peers, options.command);
   write_accuracy_figures(output, results, all_peers);
-  output.page("accuracy", accuracy_page(results, all_peers), options.command);
+  output.page("accuracy", accuracy_page(results, all_peers, how_far.ours, how_far.peers),
+              options.command);
 }
 
 }  // namespace pinchlab::experiments

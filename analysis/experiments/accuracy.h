@@ -33,9 +33,9 @@ std::vector<Rung> ladder(const std::vector<Rung>& rungs, const std::string& sett
 void write_accuracy_figures(Output& output, const std::vector<ProblemResult>& results,
                             const std::vector<Peer>& peers);
 
-/// What the figures show, in words.
-std::string accuracy_page(const std::vector<ProblemResult>& results,
-                          const std::vector<Peer>& peers);
+/// What the figures show, in words; the limits are those that our and the peers' ladders had.
+std::string accuracy_page(const std::vector<ProblemResult>& results, const std::vector<Peer>& peers,
+                          const Limits& ours_limits, const Limits& peer_limits);
 
 /// Runs everything; writes accuracy.csv, accuracy-fronts.csv, the figures and accuracy.md.
 void run_accuracy(const Options& options);

@@ -321,8 +321,8 @@ std::string peers_text(const std::vector<Peer>& peers) {
 
 }  // namespace
 
-std::string accuracy_page(const std::vector<ProblemResult>& results,
-                          const std::vector<Peer>& peers) {
+std::string accuracy_page(const std::vector<ProblemResult>& results, const std::vector<Peer>& peers,
+                          const Limits& ours_limits, const Limits& peer_limits) {
   std::string text = fmt::format(
       "# Error against processor time\n\n"
       "Every method with every solver, and the thesis' configuration as a whole, at 1, 2, 4, ... "
@@ -330,12 +330,13 @@ std::string accuracy_page(const std::vector<ProblemResult>& results,
       "error is the largest distance, over all frames, of a watched body from where it should be, "
       "relative to a length that is named with each scene. Time is processor time of the steps a "
       "simulated second, the median of repeats, with sleep and diagnostics off. A setting is left "
-      "out at finer steps once it takes longer than real time. Raw numbers: `accuracy.csv`.\n\n"
+      "out at finer steps once a simulated second takes {:g} s (another engine's: {:g} s). Raw "
+      "numbers: `accuracy.csv`.\n\n"
       "## Which setting is cheapest\n\n"
       "The cheapest of Pinchlab's settings that meets the error, and meets it at all finer steps "
       "too. Of settings within 15 % of the least time the first is named, in the order of the "
       "tables below. \"Not vouched for\": the reference itself is no better.\n\n{}\n",
-      cheapest_table(results));
+      ours_limits.ladder_cpu_s_per_s, peer_limits.ladder_cpu_s_per_s, cheapest_table(results));
   text += "## Against other engines, at equal error\n\n" + peers_text(peers);
   if (std::any_of(peers.begin(), peers.end(), [](const Peer& p) { return p.present(); })) {
     text +=

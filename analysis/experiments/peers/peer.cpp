@@ -25,8 +25,8 @@ Peer box2d() {
   peer.model =
       "A chain of rigid links as thick as the cable, joined by revolute joints; pulleys turn by "
       "contact friction. Links have mass, which a cable has not; they feel no gravity here, which "
-      "is kinder. All combinations of link length, chain mass (as a share of the lightest load), "
-      "iterations and steps were run, at ten of Box2D's metres a metre, so that its tolerance of "
+      "is kinder. Link length, the chain's mass as a share of the lightest load, iterations and "
+      "steps are varied, all at ten of Box2D's metres a metre, so that its tolerance of "
       "5 mm is 0.5 mm. Single precision. Its pulley joint has neither radius nor inertia nor "
       "friction and is no cable.";
 #ifdef PINCHLAB_BOX2D

@@ -48,7 +48,7 @@ bool says(const std::string& page, const std::string& words) {
 }
 
 TEST(AccuracyPage, TellsCheapestOrderAndWhatFailed) {
-  const std::string page = accuracy_page(made_up(1e-2, 1e-1), made_up_peers());
+  const std::string page = accuracy_page(made_up(1e-2, 1e-1), made_up_peers(), Limits(), Limits());
   EXPECT_TRUE(says(page,
                    "| made-up | pinch direct, 1 step: 100 µs | pinch direct, 4 steps: 400 µs "
                    "| pinch direct, 16 steps: 1600 µs | not reached (best 3.9e-05) |"))
@@ -61,7 +61,7 @@ TEST(AccuracyPage, TellsCheapestOrderAndWhatFailed) {
 }
 
 TEST(AccuracyPage, SaysWhereAnotherEngineIsBetter) {
-  const std::string page = accuracy_page(made_up(1e-7, 1e-5), made_up_peers());
+  const std::string page = accuracy_page(made_up(1e-7, 1e-5), made_up_peers(), Limits(), Limits());
   EXPECT_TRUE(says(page,
                    "made-up, error 1e-02: Engine, its setting (8 steps) takes 10 µs, "
                    "`pinch direct` 100 µs."))
