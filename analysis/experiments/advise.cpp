@@ -26,20 +26,42 @@ bool vouched_for(const Question& question, const Problem& problem) {
   return problem.doubt_m * least_surety <= question.error_m;
 }
 
-std::string table(const Advice& advice) {
-  std::vector<std::vector<std::string>> rows;
-  for (const Rung& rung : advice.rungs) {
-    const Trial& t = rung.trial;
-    const bool chosen =
-        advice.best >= 0 && &rung == &advice.rungs[static_cast<std::size_t>(advice.best)];
-    rows.push_back({chosen ? "->" : "", rung.setting, fmt::format("{}", rung.steps_per_frame),
-                    t.finite ? fmt::format("{:.2e}", t.error) : "not finite",
-                    t.finite ? fmt::format("{:.0f}", 1e6 * t.cpu_s_per_s) : "-"});
+/// Of each configuration the fewest steps from which on it meets the error, or its best rung.
+std::vector<std::size_t> shown(const Question& question, const Advice& advice) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < advice.rungs.size();) {
+    std::size_t end = i, best = i;
+    while (end < advice.rungs.size() && advice.rungs[end].setting == advice.rungs[i].setting) {
+      const Trial& trial = advice.rungs[end].trial;
+      if (trial.finite && !(trial.error >= advice.rungs[best].trial.error)) best = end;
+      ++end;
+    }
+    std::size_t first = end;
+    while (first > i && meets(advice.problem, advice.rungs[first - 1].trial, question.error_m)) {
+      --first;
+    }
+    if (!question.all) {
+      rows.push_back(first < end ? first : best);
+    } else {
+      for (std::size_t k = i; k < end; ++k) rows.push_back(k);
+    }
+    i = end;
   }
-  std::string text = fmt::format("   {:<28}{:>14}{:>14}{:>22}\n", "configuration", "steps a frame",
-                                 "error, m", "us a simulated second");
-  for (const auto& row : rows) {
-    text += fmt::format("{:<3}{:<28}{:>14}{:>14}{:>22}\n", row[0], row[1], row[2], row[3], row[4]);
+  return rows;
+}
+
+std::string table(const Question& question, const Advice& advice) {
+  std::string text = fmt::format("   {:<27}{:>14}{:>12}{:>24}{:>8}\n", "configuration",
+                                 "steps a frame", "error, m", "us a simulated second", "enough");
+  for (const std::size_t i : shown(question, advice)) {
+    const Rung& rung = advice.rungs[i];
+    const Trial& t = rung.trial;
+    text +=
+        fmt::format("{:<3}{:<27}{:>14}{:>12}{:>24}{:>8}\n",
+                    static_cast<int>(i) == advice.best ? "->" : "", rung.setting,
+                    rung.steps_per_frame, t.finite ? fmt::format("{:.1e}", t.error) : "not finite",
+                    t.finite ? fmt::format("{:.0f}", 1e6 * t.cpu_s_per_s) : "-",
+                    meets(advice.problem, t, question.error_m) ? "yes" : "no");
   }
   return text;
 }
@@ -48,12 +70,12 @@ std::string cost(const Trial& trial) {
   return fmt::format("{:.3g} ms of processor time a simulated second", 1e3 * trial.cpu_s_per_s);
 }
 
-/// What to type for a configuration.
-std::string how_to_use(const Rung& rung) {
+/// What to type for a configuration; the program offers no other solvers by name.
+std::string how_to_use(const Question& question, const Rung& rung) {
   const std::size_t solver = rung.setting.find(" direct");
-  if (solver == std::string::npos) return "";
-  return fmt::format("\nTry it: pinchlab simulate SCENE --method {} --steps-per-frame {} --out -\n",
-                     rung.setting.substr(0, solver), rung.steps_per_frame);
+  if (solver == std::string::npos && rung.setting != "thesis") return "";
+  return fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {} --out -\n",
+                     question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame);
 }
 
 /// A finite number in a range; CLI11's own check lets NaN pass.
@@ -107,11 +129,11 @@ std::string advice_text(const Question& question, const Advice& advice) {
       problem.title, problem.seconds(), advice.reference_steps, problem.doubt_m);
   if (!vouched_for(question, problem)) {
     return text + fmt::format(
-                      "An error of {:g} m is below what this can vouch for. Ask for {:.0e} m or "
+                      "An error of {:g} m is below what this can vouch for. Ask for {:.1e} m or "
                       "more, or for a shorter --time.\n",
-                      question.error_m, 1.05 * least_surety * problem.doubt_m);
+                      question.error_m, 1.06 * least_surety * problem.doubt_m);
   }
-  text += table(advice) + "\n";
+  text += table(question, advice) + "\n";
   if (advice.best < 0) {
     return text + fmt::format("None of these keeps within {:g} m at this and all finer steps.\n",
                               question.error_m);
@@ -120,7 +142,7 @@ std::string advice_text(const Question& question, const Advice& advice) {
   return text + fmt::format("Cheapest within {:g} m: {}, {} step{} a frame: {:.1e} m off, {}.\n{}",
                             question.error_m, best.setting, best.steps_per_frame,
                             best.steps_per_frame == 1 ? "" : "s", best.trial.error,
-                            cost(best.trial), how_to_use(best));
+                            cost(best.trial), how_to_use(question, best));
 }
 
 void add_advise_command(CLI::App& app) {
@@ -140,6 +162,7 @@ void add_advise_command(CLI::App& app) {
       ->add_option("--time", question->seconds, "How much of the scene counts, s [the whole clip]")
       ->type_name("S")
       ->check(between(0.05, 600.0));
+  command->add_flag("--all", question->all, "Show all that was tried, not one row a configuration");
   command->footer(
       "Tries every method with every solver, and the thesis' configuration, at 1 to 256 steps a "
       "frame, against\nthe scene's own solution at many more, and names the cheapest that stays "

@@ -34,7 +34,7 @@ Peer box2d() {
   peer.cannot = box2d_cannot;
   peer.settings = [](const Problem&, bool quick) {
     std::vector<PeerSetting> settings;
-    const std::vector<double> links = quick ? std::vector{0.2} : std::vector{0.2, 0.1, 0.05};
+    const std::vector<double> links = quick ? std::vector{0.2} : std::vector{0.2, 0.1};
     const std::vector<double> masses =
         quick ? std::vector{0.1, 0.01} : std::vector{1.0, 0.1, 0.01, 0.001};
     for (const double link : links) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 
 #include "demos/scene_json.h"
@@ -75,6 +76,13 @@ TEST_F(Advise, NamesTheFewestStepsThatMeetTheError) {
   EXPECT_TRUE(meets(advice.problem, advice.rungs[best].trial, question.error_m));
   EXPECT_EQ(advice.rungs[best - 1].setting, advice.rungs[best].setting);
   EXPECT_FALSE(meets(advice.problem, advice.rungs[best - 1].trial, question.error_m));
+  const auto rows = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  Question all = question;
+  all.all = true;
+  EXPECT_EQ(rows(advice_text(all, advice)) - rows(advice_text(question, advice)),
+            static_cast<std::ptrdiff_t>(advice.rungs.size() - contenders().size()));
 }
 
 TEST_F(Advise, RefusesWhatTheReferenceCannotVouchFor) {
@@ -85,6 +93,11 @@ TEST_F(Advise, RefusesWhatTheReferenceCannotVouchFor) {
   EXPECT_TRUE(advice.rungs.empty());
   const std::string text = advice_text(question, advice);
   EXPECT_NE(text.find("below what this can vouch for"), std::string::npos) << text;
+  // What it asks for instead is granted.
+  const std::string ask_for = "Ask for ";
+  Question next = question;
+  next.error_m = std::stod(text.substr(text.find(ask_for) + ask_for.size()));
+  EXPECT_FALSE(advise(next).rungs.empty()) << text;
 }
 
 TEST_F(Advise, SaysWhereNothingMeetsTheError) {
