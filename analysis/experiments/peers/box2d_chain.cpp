@@ -213,7 +213,13 @@ std::string box2d_cannot(const Problem& problem) {
   for (const Cable& cable : problem.scene.cables) {
     if (cable.closed) return "closed cables are not built";
   }
-  return "";
+  for (const Body& body : problem.scene.bodies) {
+    if (body.driven_angular_velocity || body.torque != 0.0 || body.linear_drag > 0.0 ||
+        body.angular_drag > 0.0) {
+      return "drives, torques and drag are not built";
+    }
+  }
+  return problem.scene.walls.empty() ? "" : "walls are not built";
 }
 
 Recording run_box2d(const Problem& problem, const Box2dSettings& settings) {

@@ -35,14 +35,18 @@ int straight_load(const CableState& cable) {
   return -1;
 }
 
+/// Whether the cable turns a pulley, and does not slip on it.
+bool turns(const Body& body) {
+  return body.kind == BodyKind::fixed_axle && body.cable_friction == infinity;
+}
+
 /// I/R^2 (kg) summed over the pulleys that the cable turns.
 double pulley_share(const Scene& scene, const CableState& cable) {
   double share = 0.0;
   for (const Link& link : cable.links) {
     if (link.orientation == 0) continue;
     const Body& body = scene.bodies[static_cast<std::size_t>(link.body)];
-    if (body.kind == BodyKind::fixed_axle)
-      share += disc_inertia(body) / (link.radius * link.radius);
+    if (turns(body)) share += disc_inertia(body) / (link.radius * link.radius);
   }
   return share;
 }
@@ -130,6 +134,7 @@ Model load(const std::string& xml) {
     throw std::runtime_error("MuJoCo: no room for the model's text");
   }
   std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], xml.c_str(), xml.size() + 1);
+  mju_user_warning = [](const char*) {};  // not into a log file: data->warning tells
   char error[1000] = "";
   Model model(mj_loadXML(name, files.get(), error, sizeof error), mj_deleteModel);
   mj_deleteVFS(files.get());
@@ -153,15 +158,23 @@ std::vector<Place> places(const Problem& problem, const mjData& data,
 std::string mujoco_cannot(const Problem& problem) {
   const Scene& scene = problem.scene;
   if (scene.cables.size() != 1 || scene.cables[0].closed) return "one open cable is built";
+  bool any_turns = false;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (is_load(scene.cables[0], b)) continue;
-    if (body.kind == BodyKind::free || body.kind == BodyKind::rail) {
+    if (is_load(scene.cables[0], b)) {
+      if (body.kind != BodyKind::free || body.linear_drag > 0.0) return "loads are built free";
+    } else if (body.kind == BodyKind::free || body.kind == BodyKind::rail) {
       return "a tendon is not pinched: it has no width, and bodies do not feel it";
-    }
-    if (body.kind == BodyKind::fixed_axle && body.cable_friction < infinity) {
+    } else if (!turns(body) && body.cable_friction > 0.0) {
       return "a tendon has no capstan friction";
+    } else if (body.driven_angular_velocity || body.torque != 0.0 || body.angular_drag > 0.0) {
+      return "a tendon does not turn its pulleys";
     }
+    any_turns = any_turns || turns(body);
+  }
+  const World world = make_world(scene, Method::pinch);
+  if (any_turns && straight_load(world.cables[0]) < 0) {
+    return "no load hangs straight, to carry the pulleys' inertia";
   }
   return "";
 }

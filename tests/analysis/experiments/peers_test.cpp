@@ -48,13 +48,16 @@ TEST(Peers, Box2dChainHoldsItsLoadOnceStepsAreManyEnough) {
   EXPECT_LT(best_error(peer, slipping_atwood(), 64), 0.05);
 }
 
-TEST(Peers, Box2dBuildsNoClosedCables) {
+TEST(Peers, Box2dSaysWhatIsNotBuilt) {
   const Peer peer = peer_called("Box2D");
   if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
   Problem problem = atwood();
   EXPECT_EQ(peer.cannot(problem), "");
   problem.scene.cables[0].closed = true;
-  EXPECT_NE(peer.cannot(problem), "");
+  EXPECT_NE(peer.cannot(problem).find("closed"), std::string::npos);
+  problem = atwood();
+  problem.scene.bodies[2].driven_angular_velocity = 1.0;
+  EXPECT_NE(peer.cannot(problem).find("drives"), std::string::npos);
 }
 
 TEST(Peers, MujocoTendonIsSecondOrderWhenStartedHalfAStepBack) {
@@ -84,6 +87,11 @@ TEST(Peers, MujocoSaysWhatATendonCannotDo) {
   if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
   EXPECT_EQ(peer.cannot(atwood()), "");
   EXPECT_NE(peer.cannot(slipping_atwood()).find("friction"), std::string::npos);
+  Problem fixed = atwood();
+  fixed.scene.bodies[2].kind = BodyKind::fixed;
+  EXPECT_NE(peer.cannot(fixed).find("friction"), std::string::npos);
+  fixed.scene.bodies[2].cable_friction = 0.0;
+  EXPECT_EQ(peer.cannot(fixed), "");
   EXPECT_NE(peer.cannot(roller_on_drum()).find("pinched"), std::string::npos);
   EXPECT_NE(peer.cannot(resting_stack()).find("pinched"), std::string::npos);
 }
