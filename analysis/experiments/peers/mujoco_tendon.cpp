@@ -159,19 +159,21 @@ std::string mujoco_cannot(const Problem& problem) {
   const Scene& scene = problem.scene;
   if (scene.cables.size() != 1 || scene.cables[0].closed) return "one open cable is built";
   bool any_turns = false;
+  std::string why;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (is_load(scene.cables[0], b)) {
-      if (body.kind != BodyKind::free || body.linear_drag > 0.0) return "loads are built free";
+      if (body.kind != BodyKind::free || body.linear_drag > 0.0) why = "loads are built free";
     } else if (body.kind == BodyKind::free || body.kind == BodyKind::rail) {
       return "a tendon is not pinched: it has no width, and bodies do not feel it";
     } else if (!turns(body) && body.cable_friction > 0.0) {
-      return "a tendon has no capstan friction";
+      why = "a tendon has no capstan friction";
     } else if (body.driven_angular_velocity || body.torque != 0.0 || body.angular_drag > 0.0) {
-      return "a tendon does not turn its pulleys";
+      why = "a tendon does not turn its pulleys";
     }
     any_turns = any_turns || turns(body);
   }
+  if (!why.empty()) return why;
   const World world = make_world(scene, Method::pinch);
   if (any_turns && straight_load(world.cables[0]) < 0) {
     return "no load hangs straight, to carry the pulleys' inertia";
