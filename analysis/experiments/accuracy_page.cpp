@@ -192,7 +192,81 @@ std::string order_text(const ProblemResult& result, const std::vector<Rung>& run
   const double doubt = result.problem.doubt_m / result.problem.length_m;
   const double order = observed_order(rungs, std::max(1e-12, 4.0 * doubt));
   if (best_error(rungs) < 1e-9 && rungs.front().trial.error < 1e-9) return "exact";
-  return std::isnan(order) ? "-" : fmt::format("{:.1f}", order);
+  if (std::isnan(order)) return "-";
+  return std::abs(order) < 0.05 ? "0.0" : fmt::format("{:.1f}", order);
+}
+
+/// In how many cases (scene and wanted error) a contender meets the error, of those that any meets,
+/// and in how many it is the cheapest or nearly.
+std::string contender_sentence(const std::vector<ProblemResult>& results,
+                               const std::string& setting) {
+  constexpr double nearly = 1.15;
+  int cases = 0, met = 0, cheapest_in = 0;
+  for (const ProblemResult& result : results) {
+    const std::vector<Rung> mine = ladder(result.rungs, setting);
+    for (const double error : wanted_errors) {
+      const Rung* best = cheapest_of_ours(result, result.rungs, error);
+      const Rung* own = cheapest_of_ours(result, mine, error);
+      if (best) ++cases;
+      if (own) ++met;
+      if (best && own && own->trial.cpu_s_per_s <= nearly * best->trial.cpu_s_per_s) ++cheapest_in;
+    }
+  }
+  return fmt::format(
+      "* `{}` meets the error in {} of the {} cases (scene and error) in which any setting does, "
+      "and "
+      "is the cheapest or within 15 % of it in {}.\n",
+      setting, met, cases, cheapest_in);
+}
+
+/// How often another engine meets an error that our default meets, and at how many times its cost.
+std::string peer_sentence(const std::vector<ProblemResult>& results, const Peer& peer,
+                          std::size_t p) {
+  int cases = 0;
+  std::vector<double> ratios;
+  for (const ProblemResult& result : results) {
+    if (result.peers[p].rungs.empty()) continue;
+    const std::vector<Rung> mine = ladder(result.rungs, ours);
+    for (const double error : wanted_errors) {
+      const Rung* own = cheapest_of_ours(result, mine, error);
+      if (!own) continue;
+      ++cases;
+      const int best = cheapest(result.problem, result.peers[p].rungs, error, false);
+      if (best < 0) continue;
+      ratios.push_back(result.peers[p].rungs[static_cast<std::size_t>(best)].trial.cpu_s_per_s /
+                       own->trial.cpu_s_per_s);
+    }
+  }
+  if (ratios.empty()) {
+    return fmt::format("* {} meets none of the {} cases that it can take part in.\n", peer.name,
+                       cases);
+  }
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  return fmt::format(
+      "* {} meets {} of the {} cases that it can take part in and `{}` meets, in {:.2g} to {:.2g} "
+      "times its time (median {:.2g}).\n",
+      peer.name, ratios.size(), cases, ours, *least, *most, spread(ratios).median);
+}
+
+std::string in_short(const std::vector<ProblemResult>& results, const std::vector<Peer>& peers) {
+  std::vector<std::string> exact, second;
+  for (const ProblemResult& result : results) {
+    const std::string order = order_text(result, ladder(result.rungs, ours));
+    if (order == "exact") exact.push_back(result.problem.name);
+    if (order == "1.9" || order == "2.0" || order == "2.1") second.push_back(result.problem.name);
+  }
+  std::string text = fmt::format(
+      "* `{}` is exact but for round-off at any number of steps on: {}. It is of second order on: "
+      "{}.\n",
+      ours, exact.empty() ? "none" : fmt::format("{}", fmt::join(exact, ", ")),
+      second.empty() ? "none" : fmt::format("{}", fmt::join(second, ", ")));
+  for (const std::string& setting : {ours, std::string("pinch iterative"), std::string("thesis")}) {
+    text += contender_sentence(results, setting);
+  }
+  for (std::size_t p = 0; p < peers.size(); ++p) {
+    if (peers[p].present()) text += peer_sentence(results, peers[p], p);
+  }
+  return text;
 }
 
 /// A row a contender: errors at some numbers of steps, order, times.
@@ -229,7 +303,7 @@ std::string who_takes_no_part(const ProblemResult& result, const std::vector<Pee
   std::string text;
   for (std::size_t p = 0; p < peers.size(); ++p) {
     if (peers[p].present() && !result.peers[p].cannot.empty()) {
-      text += fmt::format(" {} takes no part: {}.", peers[p].name, result.peers[p].cannot);
+      text += fmt::format(" {} takes no part ({}).", peers[p].name, result.peers[p].cannot);
     }
   }
   return text;
@@ -331,12 +405,13 @@ std::string accuracy_page(const std::vector<ProblemResult>& results, const std::
       "relative to a length that is named with each scene. Time is processor time of the steps a "
       "simulated second, the median of repeats, with sleep and diagnostics off. A setting is left "
       "out at finer steps once a simulated second takes {:g} s (another engine's: {:g} s). Raw "
-      "numbers: `accuracy.csv`.\n\n"
+      "numbers: `accuracy.csv`.\n\n## In short\n\n{}\n"
       "## Which setting is cheapest\n\n"
       "The cheapest of Pinchlab's settings that meets the error, and meets it at all finer steps "
       "too. Of settings within 15 % of the least time the first is named, in the order of the "
       "tables below. \"Not vouched for\": the reference itself is no better.\n\n{}\n",
-      ours_limits.ladder_cpu_s_per_s, peer_limits.ladder_cpu_s_per_s, cheapest_table(results));
+      ours_limits.ladder_cpu_s_per_s, peer_limits.ladder_cpu_s_per_s, in_short(results, peers),
+      cheapest_table(results));
   text += "## Against other engines, at equal error\n\n" + peers_text(peers);
   if (std::any_of(peers.begin(), peers.end(), [](const Peer& p) { return p.present(); })) {
     text +=

@@ -56,6 +56,10 @@ TEST(AccuracyPage, TellsCheapestOrderAndWhatFailed) {
   EXPECT_TRUE(says(page, "| 2.0 | 100 µs |")) << page;
   EXPECT_TRUE(says(page, "not finite")) << page;
   EXPECT_TRUE(says(page, "Nowhere in this run.")) << page;
+  EXPECT_TRUE(says(page, "It is of second order on: made-up.")) << page;
+  EXPECT_TRUE(says(page, "`pinch direct` meets the error in 3 of the 3 cases")) << page;
+  EXPECT_TRUE(says(page, "`thesis` meets the error in 0 of the 3 cases")) << page;
+  EXPECT_TRUE(says(page, "Engine meets 1 of the 3 cases that it can take part in")) << page;
   EXPECT_TRUE(says(page, "100 ms (8 steps), 1e+03 times ours")) << page;
   EXPECT_TRUE(says(page, "`libabsent-dev` was not installed")) << page;
 }
