@@ -38,8 +38,9 @@ double best_error(const std::vector<Rung>& rungs) {
 }
 
 std::string not_reached(const Problem& problem, const std::vector<Rung>& rungs, double error) {
-  if (problem.doubt_m / problem.length_m > error) return "not vouched for";
-  return fmt::format("not reached (best {})", number(best_error(rungs)));
+  const double doubt = problem.doubt_m / problem.length_m;
+  if (doubt > error) return "not vouched for";
+  return fmt::format("not reached (best {})", number(best_error(rungs) + doubt));
 }
 
 std::string wanted_header(double error) {
@@ -190,7 +191,7 @@ std::string where_beaten(const std::vector<ProblemResult>& results,
 
 std::string order_text(const ProblemResult& result, const std::vector<Rung>& rungs) {
   const double doubt = result.problem.doubt_m / result.problem.length_m;
-  const double order = observed_order(rungs, std::max(1e-12, 4.0 * doubt));
+  const double order = observed_order(rungs, std::max(1e-12, doubt));
   if (best_error(rungs) < 1e-9 && rungs.front().trial.error < 1e-9) return "exact";
   if (std::isnan(order)) return "-";
   return std::abs(order) < 0.05 ? "0.0" : fmt::format("{:.1f}", order);
@@ -408,7 +409,8 @@ std::string accuracy_page(const std::vector<ProblemResult>& results, const std::
       "numbers: `accuracy.csv`.\n\n## In short\n\n{}\n"
       "## Which setting is cheapest\n\n"
       "The cheapest of Pinchlab's settings that meets the error, and meets it at all finer steps "
-      "too. Of settings within 15 % of the least time the first is named, in the order of the "
+      "too; what the reference itself may be off by is added to each error. Of settings within 15 "
+      "% of the least time the first is named, in the order of the "
       "tables below. \"Not vouched for\": the reference itself is no better.\n\n{}\n",
       ours_limits.ladder_cpu_s_per_s, peer_limits.ladder_cpu_s_per_s, in_short(results, peers),
       cheapest_table(results));

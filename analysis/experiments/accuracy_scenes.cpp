@@ -19,7 +19,8 @@ constexpr double half_width = 0.05;  // m
 constexpr double pulley_radius = 0.5;
 constexpr double R = pulley_radius + half_width;  // m, to the cable's centre line
 
-Body body(const std::string& name, BodyKind kind, Vec2 position, double radius, double mass) {
+Body body(const std::string& name, BodyKind kind, const Vec2& position, double radius,
+          double mass) {
   Body b;
   b.name = name;
   b.kind = kind;
@@ -37,7 +38,7 @@ Attachment centre_of(int index) {
   return {index, Vec2::Zero()};
 }
 
-Cable cable(Attachment start, std::vector<Wrap> wraps, Attachment end) {
+Cable cable(const Attachment& start, std::vector<Wrap> wraps, const Attachment& end) {
   Cable c;
   c.name = "cable";
   c.half_width = half_width;
