@@ -26,7 +26,7 @@ bool is_friction(const Row& row) {
 void bound_friction(World& world) {
   std::vector<Row>& rows = world.scratch.rows;
   for (Row& row : rows) {
-    if (!is_friction(row)) continue;
+    if (!is_friction(row) || row.repeats >= 0) continue;
     if (row.normal >= 0) row.on = rows[index(row.normal)].on;
     row.bound = row.friction;
     if (row.run >= 0) {
@@ -45,7 +45,7 @@ struct Tolerances {
 };
 
 /// Round-off of the quantities that the checks compare: of speeds, and of positions and lengths,
-/// which the rows' biases divide by the step.
+/// which the rows' biases divide by the step. The errors of a cable's segments add up along it.
 Tolerances tolerances(const World& world) {
   const Scratch& s = world.scratch;
   const Part& part = part_being_solved(world);
@@ -57,14 +57,20 @@ Tolerances tolerances(const World& world) {
         {speed, world.velocity[b].cwiseAbs().maxCoeff(), s.velocity_free[b].cwiseAbs().maxCoeff()});
   }
   for (const int c : cables_of(s.parts, part)) {
-    extent = std::max(extent, world.cables[index(c)].length);
+    const CableState& cable = world.cables[index(c)];
+    const auto segments = static_cast<double>(cable.segments.size());
+    extent = std::max(extent, cable.length * std::max(1.0, 0.1 * segments));
   }
   for (const Row& row : s.rows) {
     impulse = std::max(impulse, std::abs(row.impulse));
     stiffest = std::max(stiffest, row.diagonal);
     if (row.on) speed = std::max(speed, std::abs(row.bias));
   }
-  const double tolerance = 1e-12 * speed + 1e-15 * extent / world.step_length;
+  // What takes many solves is round-off more likely than not: it is given more room with each.
+  constexpr int patience = 4, most_doublings = 10;
+  const int doublings = std::clamp(s.active_set.solves - patience, 0, most_doublings);
+  const double tolerance =
+      std::ldexp(1e-12 * speed + 1e-15 * extent / world.step_length, doublings);
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
@@ -111,6 +117,33 @@ void check(World& world) {
   }
 }
 
+bool is_unilateral(const Row& row) {
+  return row.kind == RowKind::segment || row.kind == RowKind::normal;
+}
+
+/// Whether the solution's negative impulses are round-off: whether, with zero in their place, every
+/// row still holds to within the tolerance. (Of a cable that hardly bears tension the impulses are
+/// uncertain by the tolerance times the matrix' condition, which grows with the square of its
+/// segments.) Leaves zeros in their place if so.
+bool clear_rounding(World& world) {
+  Scratch& s = world.scratch;
+  if (!s.active_set.symmetric) return false;
+  for (const Flip& flip : s.active_set.flips) {
+    if (flip.is_run || flip.on) return false;
+  }
+  const double tolerance = tolerances(world).speed;
+  for (Row& row : s.rows) {
+    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
+  }
+  apply_impulses(world);
+  for (Row& row : s.rows) {
+    row.speed = row_speed(world, row) + row.compliance * row.impulse;
+    if (row.diagonal == 0.0 || (!row.on && !is_unilateral(row))) continue;
+    if (row.speed < -tolerance || (row.on && row.speed > tolerance)) return false;
+  }
+  return true;
+}
+
 void apply(World& world, const Flip& flip) {
   if (flip.is_run) {
     Run& run = world.scratch.active_set.capstan.runs[index(flip.row)];
@@ -133,6 +166,30 @@ void apply(World& world, const Flip& flip) {
 const Flip& choose_flip(const ActiveSet& set, int solve) {
   const auto hop = static_cast<std::uint32_t>(solve) * 2654435761u;
   return set.flips[(hop >> 8) % set.flips.size()];
+}
+
+/// Whether all that the solution asks for is that more rows bear a force.
+bool only_grows(const ActiveSet& set) {
+  return std::all_of(set.flips.begin(), set.flips.end(),
+                     [](const Flip& flip) { return !flip.is_run && flip.on; });
+}
+
+/// Makes the segments taut that lie up to `reach` before or after one that is to be made taut. A
+/// slack cable that is pulled tight grows taut by one segment a solve from where it is pulled; with
+/// a reach that doubles it takes the logarithm of that, and those that are too many slacken again.
+void spread_tautness(World& world, int reach) {
+  std::vector<Row>& rows = world.scratch.rows;
+  for (const Flip& flip : world.scratch.active_set.flips) {
+    const Row& pulled = rows[index(flip.row)];
+    if (pulled.kind != RowKind::segment) continue;
+    const int last = std::min(flip.row + reach, static_cast<int>(rows.size()) - 1);
+    for (int r = std::max(flip.row - reach, 0); r <= last; ++r) {
+      Row& row = rows[index(r)];
+      if (row.kind != RowKind::segment || row.index != pulled.index || row.on) continue;
+      row.on = row.diagonal > 0.0;
+      row.flipped = world.scratch.active_set.solves;
+    }
+  }
 }
 
 /// Friction of bare surfaces that has changed in this step is left out of it: sticking may
@@ -196,6 +253,13 @@ void sweep(World& world) {
 
 void store_states(World& world, double kick) {
   Scratch& s = world.scratch;
+  for (Row& row : s.rows) {
+    if (row.repeated > 0) row.impulse /= 1 + row.repeated;
+    if (row.repeats < 0) continue;
+    const Row& first = s.rows[index(row.repeats)];  // comes before, and has its share by now
+    row.impulse =
+        row.ja.dot(row.a == first.a ? first.ja : first.jb) > 0.0 ? first.impulse : -first.impulse;
+  }
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
       CableState& cable = world.cables[index(row.index)];
@@ -253,7 +317,8 @@ void solve_direct(const Scene& scene, World& world, int part, double kick) {
   constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
   std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
   int left = patience;
-  bool settled = false;
+  int growing = 0, reached = 0;  // solves in succession that ask for more force only, and before
+  bool settled = false, spread = false;
   for (int solves = 1; solves <= most_solves && !settled; ++solves) {
     if (solves == before_freezing) {
       freeze_friction(world);
@@ -264,8 +329,15 @@ void solve_direct(const Scene& scene, World& world, int part, double kick) {
     solve_for_states(world);
     set.solves = solves;
     check(world);
-    settled = set.flips.empty();
+    settled = set.flips.empty() || clear_rounding(world);
     if (settled) break;
+    growing = only_grows(set) ? growing + 1 : 0;
+    if (growing > patience && !spread) {
+      spread_tautness(world, 1 << std::min(growing - patience, 20));
+    } else if (growing == 0 && reached > patience) {
+      spread = true;
+    }
+    reached = growing;
     const bool progress = set.flips.size() < fewest;
     left = progress ? patience : left - 1;
     fewest = std::min(fewest, set.flips.size());

@@ -52,16 +52,6 @@ SweepRow sweep_row(const World& world, const Row& row) {
   return r;
 }
 
-/// dw of one row by a unit impulse on another, through the bodies that they share.
-double coupling(const SweepRow& p, const SweepRow& q) {
-  double sum = 0.0;
-  if (p.a == q.a) sum += p.ja.dot(q.response_a);
-  if (p.a == q.b) sum += p.ja.dot(q.response_b);
-  if (p.b == q.a) sum += p.jb.dot(q.response_a);
-  if (p.b == q.b) sum += p.jb.dot(q.response_b);
-  return sum;
-}
-
 void load(World& world) {
   SweepScratch& s = world.scratch.sweeps;
   const std::size_t bodies = world.velocity.size();
@@ -72,13 +62,11 @@ void load(World& world) {
   }
   s.rows.clear();
   for (const Row& row : world.scratch.rows) s.rows.push_back(sweep_row(world, row));
-  s.coupling.clear();
   CapstanScratch& capstan = world.scratch.active_set.capstan;
   for (Run& run : capstan.runs) {
-    SweepRow &in = s.rows[index(run.row_in)], &out = s.rows[index(run.row_out)];
-    in.by_run = out.by_run = true;
-    s.coupling.push_back(coupling(in, out));
+    s.rows[index(run.row_in)].by_run = s.rows[index(run.row_out)].by_run = true;
     run.speed = 0.0;
+    run.slip = Slip::stick;
     for (int k = run.passages_begin; k < run.passages_end; ++k) {
       const Passage& p = capstan.passages[index(k)];
       if (p.middle_out < 0) continue;
@@ -123,32 +111,6 @@ void relax(SweepScratch& s, SweepRow& row) {
   set_impulse(s, row, std::clamp(unclamped(s, row), least, most));
 }
 
-/// The two segments of a run with the material at rest on the body, solved exactly, each >= 0.
-void relax_sticking(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled) {
-  const double determinant = in.stiffness * out.stiffness - coupled * coupled;
-  if (determinant <= 1e-12 * in.stiffness * out.stiffness) {
-    // One repeats the other (or cannot move anything): both take half.
-    const double most = std::max(in.stiffness, out.stiffness);
-    if (most == 0.0) return;
-    const double w_in = speed(s, in), w_out = speed(s, out);
-    set_impulse(s, in, std::max(0.0, in.impulse - 0.5 * w_in / most));
-    set_impulse(s, out, std::max(0.0, out.impulse - 0.5 * w_out / most));
-    return;
-  }
-  const double w_in = speed(s, in), w_out = speed(s, out);
-  double p_in = in.impulse - (out.stiffness * w_in - coupled * w_out) / determinant;
-  double p_out = out.impulse - (in.stiffness * w_out - coupled * w_in) / determinant;
-  if (p_in < 0.0) {
-    p_in = 0.0;
-    p_out = std::max(0.0, out.impulse - (w_out - coupled * in.impulse) / out.stiffness);
-  } else if (p_out < 0.0) {
-    p_out = 0.0;
-    p_in = std::max(0.0, in.impulse - (w_in - coupled * out.impulse) / in.stiffness);
-  }
-  set_impulse(s, in, p_in);
-  set_impulse(s, out, p_out);
-}
-
 /// What the middle body of a pinch takes from the tension.
 double middle_impulse(const SweepScratch& s, const Passage& p) {
   const double out = p.middle_out >= 0 ? s.rows[index(p.middle_out)].impulse : 0.0;
@@ -188,41 +150,41 @@ SlidingLaw sliding_law(const SweepScratch& s, const CapstanScratch& capstan, con
   return law;
 }
 
-/// Sliding: tensions on the law, one unknown p_in, such that the two segments together have the
-/// material that they need, w_in + w_out = 0. Returns the speed at which what the one lacks slides
-/// over from the other.
-double relax_sliding(SweepScratch& s, SweepRow& in, SweepRow& out, double coupled,
-                     const SlidingLaw& law) {
-  const double by_in = in.stiffness + coupled, by_out = out.stiffness + coupled;
-  const double by_both = by_in + law.factor * by_out;
-  double p_in = (in.impulse + out.impulse - law.offset) / (1.0 + law.factor);
-  if (by_both > 1e-12 * (in.stiffness + law.factor * out.stiffness)) {
-    p_in =
-        (by_in * in.impulse + by_out * (out.impulse - law.offset) - speed(s, in) - speed(s, out)) /
-        by_both;
-  }
-  p_in = std::max({p_in, 0.0, -law.offset / law.factor});
-  set_impulse(s, in, p_in);
-  set_impulse(s, out, std::max(0.0, law.factor * p_in + law.offset));
-  return std::max(-speed(s, out), std::min(speed(s, in), 0.0));
+/// The speed of slip at which the segments' next relaxation would put their tensions on the law,
+/// half of the way there: other rows answer as well, and the whole way overshoots.
+double speed_for_law(const SweepRow& in, const SweepRow& out, double p_in, double p_out,
+                     const SlidingLaw& law, double present) {
+  const double excess = p_out - law.factor * p_in - law.offset;
+  return present + 0.5 * excess / (1.0 / out.stiffness + law.factor / in.stiffness);
 }
 
-void relax_run(World& world, Run& run, double coupled) {
+/// The segments before and after a sliding body at the present slip, then the slip for their
+/// tensions. Slip is relaxed like an impulse: forward as far as the forward law is broken, backward
+/// as far as the backward one is, else none.
+void relax_run(World& world, Run& run) {
   SweepScratch& s = world.scratch.sweeps;
   const CapstanScratch& capstan = world.scratch.active_set.capstan;
   SweepRow &in = s.rows[index(run.row_in)], &out = s.rows[index(run.row_out)];
-  slide(s, capstan, run, 0.0);
-  run.slip = Slip::stick;
-  relax_sticking(s, in, out, coupled);
-  if (run.passages_begin == run.passages_end) return;
-  for (const Slip slip : {Slip::forward, Slip::backward}) {
-    const int way = static_cast<int>(slip);
-    const SlidingLaw law = sliding_law(s, capstan, run, way);
-    if (!(way * (out.impulse - law.factor * in.impulse - law.offset) > 0.0)) continue;
-    run.slip = slip;
-    slide(s, capstan, run, relax_sliding(s, in, out, coupled, law));
-    return;
+  relax(s, in);
+  relax(s, out);
+  const bool sticks = run.passages_begin == run.passages_end;
+  if (sticks || in.stiffness == 0.0 || out.stiffness == 0.0) return;
+  const double p_in = unclamped(s, in), p_out = unclamped(s, out);
+  double slip = 0.0;
+  if (p_in <= 0.0 && p_out <= 0.0) {
+    // Both slack: only what the one lacks slides over from the other.
+    const double w_in = speed(s, in) + run.speed, w_out = speed(s, out) - run.speed;
+    slip = std::max(-w_out, std::min(w_in, 0.0));
+  } else {
+    const auto to_law = [&](int way) {
+      return speed_for_law(in, out, p_in, p_out, sliding_law(s, capstan, run, way), run.speed);
+    };
+    const double forward = to_law(1), backward = to_law(-1);
+    if (forward > 0.0 && backward >= 0.0) slip = forward;
+    if (backward < 0.0 && forward <= 0.0) slip = backward;
   }
+  run.slip = slip > 0.0 ? Slip::forward : slip < 0.0 ? Slip::backward : Slip::stick;
+  slide(s, capstan, run, slip);
 }
 
 /// What the middle bodies of pinches can hold while the tensions before and after the run are what
@@ -273,8 +235,27 @@ void sweep(World& world) {
   for (std::size_t r = 0; r < contacts; ++r) {
     if (!s.rows[r].by_run) relax(s, s.rows[r]);
   }
-  for (std::size_t i = 0; i < runs.size(); ++i) relax_run(world, runs[i], s.coupling[i]);
+  for (Run& run : runs) relax_run(world, run);
   for (std::size_t r = contacts; r < s.rows.size(); ++r) relax(s, s.rows[r]);
+}
+
+/// Sweeps that end before they have converged may leave a run sliding against its friction. It
+/// then sticks for this step: friction must not drive what it should brake.
+void stop_driven_runs(World& world) {
+  SweepScratch& s = world.scratch.sweeps;
+  CapstanScratch& capstan = world.scratch.active_set.capstan;
+  for (Run& run : capstan.runs) {
+    const double in = s.rows[index(run.row_in)].impulse, out = s.rows[index(run.row_out)].impulse;
+    if (run.frictionless || (in == 0.0 && out == 0.0)) continue;
+    double gained = out - in;
+    for (int k = run.passages_begin; k < run.passages_end; ++k) {
+      const Passage& p = capstan.passages[index(k)];
+      if (p.middle >= 0) gained += middle_impulse(s, p);
+    }
+    if (run.speed * gained >= 0.0) continue;
+    slide(s, capstan, run, 0.0);
+    run.slip = Slip::stick;
+  }
 }
 
 /// Velocities, impulses and states. The rows' speeds are those that the unsteered rows see.
@@ -331,6 +312,7 @@ void solve_iterative(const Scene& scene, World& world, int part, double kick) {
   find_runs(scene, world, part_being_solved(world));
   load(world);
   for (int k = 0; k < world.configuration.iterations; ++k) sweep(world);
+  stop_driven_runs(world);
   unload(world);
   store_states(world, kick);
   store_middles(world);

@@ -23,8 +23,8 @@ struct SweepRow {
   int a, b;        // bodies
   int other = -1;  // see Clamp
   Clamp clamp;
-  bool by_run;             // relaxed together with its neighbour across a sliding body
-  Eigen::Vector3d ja, jb;  // w = ja va + jb vb + bias + compliance * impulse
+  bool by_run;                             // relaxed with the body that its cable slides over
+  Eigen::Vector3d ja, jb;                  // w = ja va + jb vb + bias + compliance * impulse
   Eigen::Vector3d response_a, response_b;  // velocity change of the bodies by a unit impulse
   double bias;                             // m/s
   double compliance;                       // 1/kg
@@ -36,16 +36,16 @@ struct SweepRow {
 struct SweepScratch {
   std::vector<SweepRow> rows;  // as Scratch::rows: those of cables, then those of contacts
   std::vector<Eigen::Vector3d> velocity;  // m/s, m/s, rad/s, one a body, and the world's
-  std::vector<double> coupling;           // 1/kg, one a run: between its two segments
 };
 
 /// Does what solve_direct (active_set.h) does, by configuration.iterations sweeps over all rows,
 /// starting from no impulse (thesis: Solver). Of a violated position a row asks to make up a part
 /// only, 0.2 for cables and 0.7 for contacts; one that is not violated may close entirely.
 ///
-/// Two segments that meet on a body over which the cable may slide are relaxed together: sticking,
-/// or where their tensions then break the capstan law, sliding at the law's ratio with one speed of
-/// slip. The more sweeps, the nearer to solve_direct.
+/// Where a cable may slide over a body, the speed of slip is one more unknown: a sweep moves it
+/// until the tensions before and after obey the capstan law. The more sweeps, the nearer to
+/// solve_direct. With a few, tensions are too low and cables give; nothing is kept from step to
+/// step.
 void solve_iterative(const Scene& scene, World& world, int part, double kick);
 
 }  // namespace pinchlab

@@ -80,6 +80,19 @@ bool over_adjacent_span(const World& world, const CableState& cable, std::size_t
   return false;
 }
 
+/// Whether direction u from the body's centre surely misses the cable on link i, of less than half
+/// a turn: by the signs of sin(arc) and sin(wrap - arc), with the tolerance.
+bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  const int after = next_link(cable, static_cast<int>(i));
+  const Vec2& arrives = cable.segments[i].direction;
+  const Vec2& leaves = cable.segments[static_cast<std::size_t>(after)].direction;
+  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
+  const double after_tail = link.orientation * cross(arrives, e);
+  const double before_head = link.orientation * cross(e, leaves);
+  return after_tail < -arc_tolerance || before_head < -arc_tolerance;
+}
+
 /// The turns of link i that `contact` presses, apart from the end at which the other body is the
 /// cable's next or previous one (there the pinch is transitional or made already).
 void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_t i, int other,
@@ -93,18 +106,23 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
            opposite(cable.links[static_cast<std::size_t>(neighbour)], link);
   };
   constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
-  const bool at_end = is_other(before) || is_other(after);
+  const bool after_other = is_other(before), before_other = is_other(after);
+  const bool few = link.wrap < std::numbers::pi;  // less than half a turn: no other turn is near
+  if (few && ((after_other && cable.segments[i].pinched) ||
+              (before_other && cable.segments[static_cast<std::size_t>(after)].pinched))) {
+    return;  // the pinch is there
+  }
   const double width = 2.0 * cable.half_width;
   if (world.configuration.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
     contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
   }
-  if (at_end && link.wrap < std::numbers::pi) return;  // it lies there, and no other turn is near
+  if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
   for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
     const double arc = least + k * turn;
-    if (is_other(before) && arc < near_end) continue;
-    if (is_other(after) && link.wrap - arc < near_end) continue;
+    if (after_other && arc < near_end) continue;
+    if (before_other && link.wrap - arc < near_end) continue;
     if (world.configuration.method == Method::pinch)
       contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;

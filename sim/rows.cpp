@@ -89,6 +89,38 @@ void bound_pinch_friction(const Scene& scene, const World& world, Row& row) {
       scene.bodies[static_cast<std::size_t>(wrapped.body)].cable_friction / points;
 }
 
+/// Where several turns of cable without slip lie under one pinch, their middle rows say the same.
+/// The first stands for all, and its force is shared among them in the end, as by equally stiff
+/// cables; the system then has no repeated rows.
+void find_repeated_middles(World& world) {
+  std::vector<int>& first_middle = world.scratch.middle_row_of_contact;
+  std::vector<Row>& rows = world.scratch.rows;
+  first_middle.assign(world.contacts.size(), -1);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    Row& row = rows[r];
+    if (row.kind != RowKind::pinch_middle || row.friction != infinity) continue;
+    const int contact = world.cables[static_cast<std::size_t>(row.index)]
+                            .links[static_cast<std::size_t>(row.item)]
+                            .contact;
+    if (contact < 0) continue;
+    int& first = first_middle[static_cast<std::size_t>(contact)];
+    if (first < 0) {
+      first = static_cast<int>(r);
+      continue;
+    }
+    Row& other = rows[static_cast<std::size_t>(first)];
+    const bool same_side = row.a == other.a;
+    const Eigen::Vector3d& j = same_side ? other.ja : other.jb;
+    const double sign = row.ja.dot(j) > 0.0 ? 1.0 : -1.0;
+    const Eigen::Vector3d& k = same_side ? other.jb : other.ja;
+    constexpr double rounding = 1e-12;
+    if (!row.ja.isApprox(sign * j, rounding) || !row.jb.isApprox(sign * k, rounding)) continue;
+    row.repeats = first;
+    row.on = false;
+    ++other.repeated;
+  }
+}
+
 }  // namespace
 
 void set_mobilities(const Scene& scene, double kick, std::vector<Mobility>& out) {
@@ -221,9 +253,13 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     friction.diagonal = diagonal_of(friction, world.scratch.mobility);
     world.scratch.rows.push_back(friction);
   }
+  bool middles = false;
   for (Row& row : world.scratch.rows) {
-    if (row.kind == RowKind::pinch_middle) bound_pinch_friction(scene, world, row);
+    if (row.kind != RowKind::pinch_middle) continue;
+    bound_pinch_friction(scene, world, row);
+    middles = true;
   }
+  if (middles && world.configuration.solver == Solver::direct) find_repeated_middles(world);
 }
 
 }  // namespace pinchlab

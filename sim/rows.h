@@ -49,6 +49,8 @@ struct Row {
   Slip slip = Slip::stick;             // active set: friction rows
   int run = -1;                        // pinch_middle: the wrapped body's run, where it may slide
   bool in_group_equation = false;      // pinch_middle: its equation is part of its group's
+  int repeats = -1;                    // pinch_middle: the row that this one repeats, or -1
+  int repeated = 0;                    // pinch_middle: how many rows repeat this one
   int normal = -1;                     // friction rows: the row whose force bounds them, or -1
   double friction = 0.0;               // friction rows: coefficient of the row's own body or pair
   double wrapped_friction = infinity;  // pinch_middle: that of the wrapped body

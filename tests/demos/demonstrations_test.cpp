@@ -120,6 +120,18 @@ TEST_P(Demonstration, HasTheBaselineThatItsRoughnessAllows) {
   }
 }
 
+TEST_P(Demonstration, MovesAlikeWithEitherDetection) {
+  Configuration all_pairs;
+  all_pairs.detection = Detection::all_pairs;
+  World first = make_world(scene_, Method::pinch), second = make_world(scene_, all_pairs);
+  for (int i = 0; i < scene_.frame_count * scene_.steps_per_frame; ++i) {
+    ASSERT_EQ(step(scene_, first), StepStatus::ok);
+    ASSERT_EQ(step(scene_, second), StepStatus::ok);
+    ASSERT_EQ(first.position, second.position) << i;
+    ASSERT_EQ(first.angle, second.angle) << i;
+  }
+}
+
 TEST_P(Demonstration, MovesAsItDidBefore) {
   const std::uint64_t pinch = play(scene_, Method::pinch).hash;
   const std::uint64_t baseline = play(scene_, scene_.baseline).hash;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What no scene may break: length, energy, symmetry, repeatability, finite numbers.
 
-#include <gsl/gsl_rng.h>
-
-#include <memory>
-
+#include "tests/sim/random_scene.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -182,37 +179,6 @@ TEST(Invariants, NotFiniteStopsWithPlaceAndTime) {
 
 /// Random falls of free rollers on wrapped pulleys, under every method: nothing may break.
 class RandomScene : public ::testing::TestWithParam<int> {};
-
-Scene random_scene(int seed) {
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> rng(gsl_rng_alloc(gsl_rng_mt19937),
-                                                              &gsl_rng_free);
-  gsl_rng_set(rng.get(), static_cast<unsigned long>(seed));
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * gsl_rng_uniform(rng.get());
-  };
-  Scene scene;
-  const int pulleys = 3 + static_cast<int>(gsl_rng_uniform_int(rng.get(), 3));
-  const int rollers = 2 + static_cast<int>(gsl_rng_uniform_int(rng.get(), 5));
-  std::vector<Wrap> wraps;
-  for (int i = 0; i < pulleys; ++i) {
-    Body p = body(fmt::format("pulley {}", i), BodyKind::fixed_axle, 1.3 * i,
-                  -0.12 * std::pow(i - 0.5 * (pulleys - 1), 2), uniform(0.37, 0.43), 1.0);
-    p.cable_friction = seed % 3 == 0 ? infinity : uniform(0.0, 0.6);
-    scene.bodies.push_back(p);
-    wraps.push_back({i, -1, 0});
-  }
-  for (int i = 0; i < rollers; ++i) {
-    Body p =
-        body(fmt::format("roller {}", i), BodyKind::free, uniform(-0.3, 1.3 * (pulleys - 1) + 0.3),
-             1.6 + 0.9 * i, uniform(0.15, 0.4), std::pow(10.0, uniform(-1.0, 1.0)));
-    p.cable_friction = seed % 3 == 0 ? infinity : uniform(0.0, 0.6);
-    scene.bodies.push_back(p);
-  }
-  scene.cables.push_back(cable(at(-1.5, -1.5), wraps, at(1.3 * (pulleys - 1) + 1.5, -1.5)));
-  scene.cables[0].slack = uniform(0.0, 0.5);
-  scene.walls.push_back({Vec2(-10.0, -2.5), Vec2(20.0, -2.5), 0.5, 0.0});
-  return scene;
-}
 
 TEST_P(RandomScene, StaysSound) {
   for (const Method method : {Method::pinch, Method::pinch_no_contact, Method::cable}) {
