@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiments/advise.h"
 #include "analysis/experiments/commands.h"
 #include "analysis/input_error.h"
 #include "analysis/power.h"
@@ -358,6 +359,7 @@ int run(int argc, char** argv) {
   add_still(app);
   add_simulate(app);
   experiments::add_bench_commands(app);
+  experiments::add_advise_command(app);
   add_analyse(app);
   add_power(app);
   add_study(app);

@@ -145,7 +145,7 @@ bool spans_in_boxes(const World& world, const BroadPhase& broad) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     const std::size_t first = first_segment(cable);
-    if (sleeps(world, c)) {
+    if (sleeps(world.scratch.parts, c)) {
       box += cable.segments.size() - first;
       continue;
     }
@@ -188,7 +188,7 @@ void find_body_pairs(const Scene& scene, World& world) {
   const Margin margin(scene, world);
   bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
   for (std::size_t b = 0; valid && b < count; ++b) {
-    valid = !can_move(scene.bodies[b]) || is_still(world, static_cast<int>(b)) ||
+    valid = !can_move(scene.bodies[b]) || is_still(world.scratch.parts, static_cast<int>(b)) ||
             holds(broad.boxes[b], world.position[b], reach_of_body(scene, world, margin, b));
   }
   if (valid) return;
@@ -206,8 +206,7 @@ void find_body_pairs(const Scene& scene, World& world) {
 
 void find_span_pairs(const Scene& scene, World& world) {
   BroadPhase& broad = world.scratch.broad_phase;
-  int changes = 0;
-  for (const CableState& cable : world.cables) changes += cable.changes;
+  const int changes = changes_of_cables(world);
   if (!broad.bodies_changed && broad.changes == changes && spans_in_boxes(world, broad)) return;
   broad.bodies_changed = false;
   broad.changes = changes;

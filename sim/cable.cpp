@@ -49,16 +49,6 @@ Vec2 link_centre(const World& world, const Link& link) {
                        s * link.attachment.x() + c * link.attachment.y());
 }
 
-int previous_link(const CableState& cable, int link) {
-  if (link > 0) return link - 1;
-  return cable.closed ? static_cast<int>(cable.links.size()) - 1 : -1;
-}
-
-int next_link(const CableState& cable, int link) {
-  if (link + 1 < static_cast<int>(cable.links.size())) return link + 1;
-  return cable.closed ? 0 : -1;
-}
-
 void update_tangent(const World& world, CableState& cable, std::size_t i) {
   const Link& from = cable.links[tail_link(cable, i)];
   const Link& to = cable.links[i];
@@ -79,6 +69,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
     t.length = 0.0;
     t.pinched = true;
   }
+  segment.moved = true;
   segment.tail_centre = a;
   segment.head_centre = b;
   segment.direction = t.direction;
@@ -107,8 +98,9 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
 
 void update_segments(World& world) {
   world.scratch.released.clear();
+  world.scratch.spans_moved = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(world, c)) continue;
+    if (sleeps(world.scratch.parts, c)) continue;
     CableState& cable = world.cables[c];
     Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
@@ -116,7 +108,11 @@ void update_segments(World& world) {
       const Vec2 to = link_centre(world, cable.links[i]);
       segment.previous_tail = segment.tail;
       segment.previous_head = segment.head;
-      if (from != segment.tail_centre || to != segment.head_centre) update_tangent(world, cable, i);
+      segment.moved = from != segment.tail_centre || to != segment.head_centre;
+      if (segment.moved) {
+        update_tangent(world, cable, i);
+        world.scratch.spans_moved = true;
+      }
       from = to;
     }
     update_wraps_and_rest_lengths(world, cable);
@@ -161,7 +157,7 @@ void remove_link(const World& world, CableState& cable, int link) {
 void remove_links(World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
-    bool changed = !sleeps(world, c);
+    bool changed = !sleeps(world.scratch.parts, c);
     while (changed) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {

@@ -14,14 +14,27 @@ inline double body_angle(const World& world, const Link& link) {
   return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
 }
 
+/// Links inserted and removed so far, of all cables.
+inline int changes_of_cables(const World& world) {
+  int changes = 0;
+  for (const CableState& cable : world.cables) changes += cable.changes;
+  return changes;
+}
+
 /// First segment that exists: 1 in an open cable, 0 in a closed one.
 inline std::size_t first_segment(const CableState& cable) {
   return cable.closed ? 0 : 1;
 }
 
 /// Index of the link before or after `link`, around a closed cable; -1 beyond an end.
-int previous_link(const CableState& cable, int link);
-int next_link(const CableState& cable, int link);
+inline int previous_link(const CableState& cable, int link) {
+  if (link > 0) return link - 1;
+  return cable.closed ? static_cast<int>(cable.links.size()) - 1 : -1;
+}
+inline int next_link(const CableState& cable, int link) {
+  if (link + 1 < static_cast<int>(cable.links.size())) return link + 1;
+  return cable.closed ? 0 : -1;
+}
 
 /// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
 inline bool opposite(const Link& a, const Link& b) {

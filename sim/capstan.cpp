@@ -22,12 +22,6 @@ int sign(Slip slip) {
   return static_cast<int>(slip);
 }
 
-bool slides_somewhere(const Scene& scene, const CableState& cable) {
-  return std::any_of(cable.links.begin(), cable.links.end(), [&scene](const Link& link) {
-    return link.orientation != 0 && scene.bodies[index(link.body)].cable_friction < infinity;
-  });
-}
-
 /// The transitional pinch of segment s, as seen by a body of friction mu at one of its ends.
 void add_pressed_end(const Scratch& scratch, const World& world, const Segment& segment, double mu,
                      std::vector<Passage>& passages) {
@@ -163,6 +157,7 @@ void find_runs(const Scene& scene, World& world, const Part& part) {
   s.segments.clear();
   s.run_before.clear();
   s.cable_begin.assign(1, 0);
+  if (!part.may_slide) return;
   for (const int number : cables_of(scratch.parts, part)) {
     const std::size_t c = index(number);
     const CableState& cable = world.cables[c];

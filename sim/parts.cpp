@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/cable.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -39,8 +40,7 @@ void join(std::vector<int>& root, int a, int b) {
 
 /// The pairs in contact and the changes of all cables; false if they are those of the last time.
 bool structure_changed(const World& world, Parts& parts) {
-  int changes = 0;
-  for (const CableState& cable : world.cables) changes += cable.changes;
+  const int changes = changes_of_cables(world);
   bool same = changes == parts.changes && parts.structure.size() == 2 * world.contacts.size();
   for (std::size_t i = 0; same && i < world.contacts.size(); ++i) {
     same = parts.structure[2 * i] == world.contacts[i].a &&
@@ -116,7 +116,9 @@ void divide(const Scene& scene, const World& world, Parts& parts) {
   int count = 0;
   parts.of_body.assign(index(bodies), -1);
   parts.local.assign(index(bodies), -1);
+  parts.immobile.resize(index(bodies));
   for (int b = 0; b < bodies; ++b) {
+    parts.immobile[index(b)] = !can_move(scene.bodies[index(b)]);
     if (is_static(scene.bodies[index(b)])) continue;
     const int root = find_root(parts.root, b);
     parts.of_body[index(b)] = root == b ? count++ : parts.of_body[index(root)];
@@ -137,19 +139,37 @@ void divide(const Scene& scene, const World& world, Parts& parts) {
       parts.list, static_cast<int>(world.contacts.size()),
       [&](int i) { return parts.of_body[index(body_of_contact(scene, world.contacts[index(i)]))]; },
       &Part::contacts_begin, &Part::contacts_end, parts.contacts);
-  for (const Part& part : parts.list) {
+  for (Part& part : parts.list) {
+    for (const int c : cables_of(parts, part)) {
+      part.may_slide = part.may_slide || slides_somewhere(scene, world.cables[index(c)]);
+    }
     for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
-      parts.local[index(parts.bodies[index(k)])] = k - part.bodies_begin;
+      const std::size_t b = index(parts.bodies[index(k)]);
+      parts.local[b] = k - part.bodies_begin;
+      part.can_move = part.can_move || !parts.immobile[b];
     }
   }
 }
 
 }  // namespace
 
+bool slides_somewhere(const Scene& scene, const CableState& cable) {
+  return std::any_of(cable.links.begin(), cable.links.end(), [&scene](const Link& link) {
+    return link.orientation != 0 && scene.bodies[index(link.body)].cable_friction < infinity;
+  });
+}
+
 void find_parts(const Scene& scene, World& world) {
   Parts& parts = world.scratch.parts;
   if (structure_changed(world, parts)) divide(scene, world, parts);
-  if (!world.configuration.sleep) return;
+  parts.any_moves = false;
+  const auto note_moving = [&parts](const Part& part) {
+    parts.any_moves = parts.any_moves || (!part.asleep && part.can_move);
+  };
+  if (!world.configuration.sleep) {
+    std::for_each(parts.list.begin(), parts.list.end(), note_moving);
+    return;
+  }
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {
     const bool before = part.asleep;
@@ -161,19 +181,8 @@ void find_parts(const Scene& scene, World& world) {
       }
     }
     part.kept = before && part.asleep;
+    note_moving(part);
   }
-}
-
-bool is_still(const World& world, int body) {
-  const Parts& parts = world.scratch.parts;
-  if (parts.of_body.empty()) return false;
-  const int part = parts.of_body[index(body)];
-  return part < 0 || parts.list[index(part)].asleep;
-}
-
-bool sleeps(const World& world, std::size_t cable) {
-  const Parts& parts = world.scratch.parts;
-  return !parts.of_cable.empty() && parts.list[index(parts.of_cable[cable])].asleep;
 }
 
 void note_rest(const Scene& scene, World& world, const Part& part) {

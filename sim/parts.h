@@ -10,12 +10,15 @@
 
 namespace pinchlab {
 
+struct CableState;
 struct World;
 
 struct Part {
   int bodies_begin = 0, bodies_end = 0;      // of Parts::bodies
   int cables_begin = 0, cables_end = 0;      // of Parts::cables
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
+  bool can_move = false;                     // a body of it can do more than turn
+  bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool kept = false;                         // asleep, and was so in the step before
   bool slides = false;                       // by solve: cable may slide over bodies
@@ -30,6 +33,8 @@ struct Parts {
   std::vector<int> of_body;    // part, or -1: fixed
   std::vector<int> of_cable;   // part
   std::vector<int> local;      // place of the body in its part's bodies, or -1: fixed
+  bool any_moves = true;       // a body of a part that is awake can do more than turn
+  std::vector<char> immobile;  // whether the body's centre cannot move
   std::vector<int> structure;  // what the parts were found for: pairs in contact
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found
@@ -55,15 +60,25 @@ inline bool is_static(const Body& body) {
   return body.kind == BodyKind::fixed && !body.driven_angular_velocity;
 }
 
+/// Whether the cable touches a body that it may slide over.
+bool slides_somewhere(const Scene& scene, const CableState& cable);
+
 /// Divides the scene into parts, by its cables and by world.contacts, and finds which of them
 /// sleep.
 void find_parts(const Scene& scene, World& world);
 
-/// Whether the body's part sleeps, or the body is static: it is where it was.
-bool is_still(const World& world, int body);
+/// Whether the body's centre is where it was: it cannot move, or its part sleeps.
+inline bool is_still(const Parts& parts, int body) {
+  if (parts.immobile.empty()) return false;  // not divided yet
+  const auto b = static_cast<std::size_t>(body);
+  return parts.immobile[b] || parts.list[static_cast<std::size_t>(parts.of_body[b])].asleep;
+}
 
 /// Whether the cable's part sleeps.
-bool sleeps(const World& world, std::size_t cable);
+inline bool sleeps(const Parts& parts, std::size_t cable) {
+  return !parts.of_cable.empty() &&
+         parts.list[static_cast<std::size_t>(parts.of_cable[cable])].asleep;
+}
 
 /// Counts for how many steps the bodies of a part have been slower than `rest_speed`, after the
 /// solve. A part with a body that is faster is wide awake.

@@ -136,7 +136,7 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
 /// closes by the second-order gap of a rolling step.
 void remove_open_pinches(World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(world, c)) continue;
+    if (sleeps(world.scratch.parts, c)) continue;
     CableState& cable = world.cables[c];
     for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
       const Link& link = cable.links[static_cast<std::size_t>(i)];
@@ -164,9 +164,13 @@ double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
 }
 
 void find_contacts(const Scene& scene, World& world) {
+  bool& all_kept = world.scratch.contacts_kept;
+  all_kept = !world.scratch.parts.list.empty() && !world.scratch.parts.any_moves;
+  if (all_kept) return;
   std::vector<Contact>& old = world.scratch.old_contacts;
   std::swap(old, world.contacts);
   world.contacts.clear();
+  std::size_t kept = 0;
   const double width = full_width(world);
   const auto less = [](const Contact& p, const Contact& q) {
     return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
@@ -178,10 +182,12 @@ void find_contacts(const Scene& scene, World& world) {
     wanted.b = b;
     wanted.wall = wall;
     const auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
-    if (it != old.end() && !less(wanted, *it)) world.contacts.push_back(*it);
+    if (it == old.end() || less(wanted, *it)) return;
+    world.contacts.push_back(*it);
+    ++kept;
   };
   for (const BodyPair& pair : world.scratch.broad_phase.body_pairs) {
-    if (is_still(world, pair.a) && is_still(world, pair.b)) {
+    if (is_still(world.scratch.parts, pair.a) && is_still(world.scratch.parts, pair.b)) {
       keep(pair.a, pair.b, -1);
       continue;
     }
@@ -203,7 +209,7 @@ void find_contacts(const Scene& scene, World& world) {
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       if (!can_move(scene.bodies[b])) continue;
-      if (is_still(world, static_cast<int>(b))) {
+      if (is_still(world.scratch.parts, static_cast<int>(b))) {
         keep(static_cast<int>(b), -1, static_cast<int>(w));
         continue;
       }
@@ -219,6 +225,7 @@ void find_contacts(const Scene& scene, World& world) {
     }
   }
   if (!scene.walls.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
+  all_kept = kept == world.contacts.size() && kept == old.size();
   auto previous = old.begin();
   for (Contact& contact : world.contacts) {
     while (previous != old.end() && less(*previous, contact)) ++previous;
@@ -233,7 +240,12 @@ void find_contacts(const Scene& scene, World& world) {
 
 void configure_pinches(const Scene& scene, World& world) {
   if (world.configuration.method == Method::cable) return;
+  Scratch& scratch = world.scratch;
+  scratch.pinches_kept = scratch.contacts_kept && !scratch.spans_moved &&
+                         scratch.configured_changes == changes_of_cables(world);
+  if (scratch.pinches_kept) return;
   remove_open_pinches(world);
+  scratch.configured_changes = changes_of_cables(world);
   if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
 
   // Only links of bodies that have contacts matter.
@@ -264,10 +276,15 @@ void configure_pinches(const Scene& scene, World& world) {
       const Link& link = world.cables[c].links[i];
       if (link.orientation == 0 || link.pinch_middle) continue;
       const auto body = static_cast<std::size_t>(link.body);
+      const int after = next_link(world.cables[c], static_cast<int>(i));
+      const bool moved = world.cables[c].segments[i].moved ||
+                         world.cables[c].segments[static_cast<std::size_t>(after)].moved;
       for (int k = contacts_of_body.begin[body]; k < contacts_of_body.begin[body + 1]; ++k) {
         Contact& contact = world.contacts[static_cast<std::size_t>(
             contacts_of_body.items[static_cast<std::size_t>(k)])];
-        if (is_still(world, contact.a) && is_still(world, contact.b)) continue;
+        const bool still =
+            is_still(world.scratch.parts, contact.a) && is_still(world.scratch.parts, contact.b);
+        if (still && !moved) continue;
         const bool is_a = contact.a == link.body;
         find_pinches_on(world, contact, static_cast<int>(c), i, is_a ? contact.b : contact.a,
                         is_a ? contact.normal : Vec2(-contact.normal), found);
@@ -282,10 +299,12 @@ void configure_pinches(const Scene& scene, World& world) {
     insert_pinch(scene, world, world.cables[static_cast<std::size_t>(pinch.cable)],
                  static_cast<std::size_t>(pinch.link), pinch.arc, pinch.body);
   }
+  scratch.configured_changes = changes_of_cables(world);
 }
 
 void assign_contacts(World& world) {
   if (world.configuration.method == Method::cable) return;
+  if (world.scratch.pinches_kept) return;
   if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
   const Parts& parts = world.scratch.parts;
   for (const Part& part : parts.list) {

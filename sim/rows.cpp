@@ -246,7 +246,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     const Vec2 t = left(n);
     Row& friction = world.scratch.rows.emplace_back();
     friction.kind = RowKind::tangent;
-    friction.index = row.index;
+    friction.index = number;
     friction.friction = friction_coefficient;
     friction.slip = contact.slip;
     friction.normal = normal_row_of_contact[i];

@@ -83,6 +83,10 @@ struct RowOrder {
 
 struct Scratch {
   std::vector<Release> released;  // since update_segments
+  bool spans_moved = true;        // any of them, by update_segments
+  bool contacts_kept = false;     // all contacts are those of the step before, by find_contacts
+  bool pinches_kept = false;      // and all pinches, by configure_pinches
+  int configured_changes = -1;    // CableState::changes of all cables when pinches were configured
   BroadPhase broad_phase;
   std::vector<Contact> old_contacts;
   Lists<int> contacts_of_body;

@@ -102,7 +102,6 @@ void add_hit_links(const Scene& scene, World& world) {
     }
     CableState& cable = world.cables[static_cast<std::size_t>(pairs[begin].cable)];
     const auto first = static_cast<std::size_t>(pairs[begin].segment);
-    const bool still = sleeps(world, static_cast<std::size_t>(pairs[begin].cable));
     std::size_t added = 0;
     // Of all hits take the earliest, then test the rest against the parts of the span. A body gets
     // at most one link a span and step, so there are at most end - begin rounds.
@@ -110,9 +109,10 @@ void add_hit_links(const Scene& scene, World& world) {
       again = false;
       Hit earliest;
       for (std::size_t i = begin; i < end; ++i) {
-        if (still && is_still(world, pairs[i].body)) continue;
+        const bool still = is_still(world.scratch.parts, pairs[i].body);
         for (std::size_t part = 0; part <= added; ++part) {
           const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
+          if (still && !cable.segments[s].moved) continue;
           const int head = static_cast<int>(s), tail = previous_link(cable, head);
           if (holds_span(scene, cable, cable.links[s], pairs[i].body) ||
               holds_span(scene, cable, cable.links[static_cast<std::size_t>(tail)],

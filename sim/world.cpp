@@ -312,6 +312,7 @@ World make_world(const Scene& scene, Configuration configuration) {
       world.cables.push_back(make_cable(scene, world, c));
     }
     world.contacts.clear();
+    world.scratch.parts = {};  // nothing is known of the new contacts
     detect(scene, world);
   }
   find_first_tensions(scene, world);

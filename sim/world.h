@@ -46,6 +46,7 @@ struct Segment {
   double rest_length = 0.0;  // m of material; may be negative by round-off when pinched
   double tension = 0.0;      // N, of the last step; in a non-transitional pinch the change
                              // of tension that the middle body takes up
+  bool moved = true;         // in the last step, or made in it; by update_tangent
   bool slack = false;        // by the active set
   bool pinched = false;      // between two touching bodies: zero length, never hit-tested
   int contact = -1;          // pressing a transitional pinch, by confirm_pinches; or -1

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "analysis/experiments/accuracy.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/features.h"
 #include "analysis/experiments/pinch_detection.h"
@@ -33,6 +34,7 @@ constexpr Experiment experiments[] = {
     {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection, true},
     {"features", "What features cost scenes that do not use them, and what sleep saves",
      run_features},
+    {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
     {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Scenes whose motion is known: in closed form, from independent equations of motion, or (the
+// demonstrations) from their own converged solution.
+
+#include <string>
+#include <vector>
+
+#include "analysis/experiments/work_precision.h"
+
+namespace pinchlab::experiments {
+
+Problem atwood();           ///< 1 and 3 kg over a pulley of 2 kg, no slip
+Problem slipping_atwood();  ///< the same with friction 0.05: the cable slips
+Problem pulley_chain();     ///< 1000 and 999 kg over 81 pulleys of 0.1 kg
+Problem swinging_load();    ///< a bob that swings on the cable over two heavy pulleys
+Problem roller_on_drum();   ///< a roller over the crown of a wrapped drum, pinched throughout
+Problem resting_stack();    ///< four pinched pulleys on a wrapped one, and a weight: all at rest
+Problem hanging_load();     ///< 100 kg at rest on two metres of cable
+
+/// All of the above.
+std::vector<Problem> known_problems();
+
+/// A scene against its own solution (pinch, direct) at `steps_per_frame`, over `seconds`: for
+/// scenes whose motion is not known otherwise. All bodies are watched, rims too. Throws SceneError
+/// where the scene cannot exist, std::runtime_error where its solution is not finite.
+Problem own_solution(const std::string& name, const Scene& scene, double seconds,
+                     int steps_per_frame);
+
+}  // namespace pinchlab::experiments

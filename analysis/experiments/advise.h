@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// `pinchlab advise`: the cheapest way to simulate a scene to a wanted error.
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/experiments/work_precision.h"
+
+namespace pinchlab::experiments {
+
+/// What was asked.
+struct Question {
+  std::filesystem::path scene;
+  double error_m = 1e-3;            ///< > 0
+  double seconds = 0.0;             ///< 0: the whole clip
+  bool all = false;                 ///< show every rung, not one a configuration
+  int most_steps = 256;             ///< a frame, that are tried
+  int most_reference_steps = 4096;  ///< a frame, of the scene's own solution
+};
+
+/// What was found.
+struct Advice {
+  Problem problem;          ///< with the scene's own solution; its length is 1 m
+  int reference_steps = 0;  ///< a frame
+  std::vector<Rung> rungs;  ///< empty where the reference cannot vouch for the wanted error
+  int best = -1;            ///< among the rungs, or -1
+};
+
+/// Refines the scene's own solution until it is eight times as sure as the wanted error, or as
+/// fine as allowed, then tries all configurations. Throws SceneFileError, or std::runtime_error
+/// where the scene's own solution is not finite.
+Advice advise(const Question& question);
+
+/// The advice in words, with the table of what was tried.
+std::string advice_text(const Question& question, const Advice& advice);
+
+/// Adds `advise`.
+void add_advise_command(CLI::App& app);
+
+}  // namespace pinchlab::experiments

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/advise.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+
+#include "demos/scene_json.h"
+
+namespace pinchlab::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const atwood_json = R"({"title": "Two loads", "duration_s": 1,
+  "view": {"low_m": [-2, -5], "high_m": [2, 1]},
+  "baseline": {"method": "cable", "reason": "Nothing is pinched."},
+  "bodies": [
+    {"name": "left", "kind": "free", "radius_m": 0.2, "mass_kg": 1, "position_m": [-0.55, -3]},
+    {"name": "right", "kind": "free", "radius_m": 0.2, "mass_kg": 1.5, "position_m": [0.55, -3]},
+    {"name": "pulley", "kind": "fixed_axle", "radius_m": 0.5, "mass_kg": 1, "position_m": [0, 0]}],
+  "cables": [{"name": "cable", "half_width_m": 0.05, "start": {"body": "left"},
+    "wraps": [{"body": "pulley", "turn": "clockwise"}], "end": {"body": "right"}}]})";
+
+const char* const pendulum_json = R"({"title": "Pendulum", "duration_s": 1,
+  "view": {"low_m": [-2, -3], "high_m": [2, 1]},
+  "baseline": {"method": "cable", "reason": "Nothing is pinched."},
+  "bodies": [
+    {"name": "bob", "kind": "free", "radius_m": 0.1, "mass_kg": 1, "position_m": [1.2, -1.6]}],
+  "cables": [{"name": "cable", "half_width_m": 0.05, "start": {"world_m": [0, 0]},
+    "end": {"body": "bob"}}]})";
+
+class Advise : public ::testing::Test {
+ protected:
+  Question ask(const std::string& name, const std::string& json, double error_m) {
+    fs::create_directories(folder_);
+    const fs::path path = folder_ / (name + ".json");
+    std::ofstream(path) << json;
+    Question question;
+    question.scene = path;
+    question.error_m = error_m;
+    question.most_steps = 16;
+    question.most_reference_steps = 1024;
+    return question;
+  }
+  ~Advise() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  fs::path folder_ = fs::path(::testing::TempDir()) / ("advise-" + std::to_string(::getpid()));
+};
+
+// The loads' acceleration is uniform, so that one step a frame is exact with any solver that
+// solves one row exactly; the first of the list wins.
+TEST_F(Advise, OneStepIsEnoughForUniformAcceleration) {
+  const Question question = ask("atwood", atwood_json, 1e-6);
+  const Advice advice = advise(question);
+  ASSERT_GE(advice.best, 0);
+  const Rung& best = advice.rungs[static_cast<std::size_t>(advice.best)];
+  EXPECT_EQ(best.steps_per_frame, 1);
+  EXPECT_LT(best.trial.error, 1e-9);
+  const std::string text = advice_text(question, advice);
+  EXPECT_NE(text.find("Cheapest within 1e-06 m"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 step a frame"), std::string::npos) << text;
+}
+
+TEST_F(Advise, NamesTheFewestStepsThatMeetTheError) {
+  const Question question = ask("pendulum", pendulum_json, 2e-5);
+  const Advice advice = advise(question);
+  ASSERT_GE(advice.best, 1) << advice_text(question, advice);
+  const auto best = static_cast<std::size_t>(advice.best);
+  EXPECT_GT(advice.rungs[best].steps_per_frame, 1);
+  EXPECT_TRUE(meets(advice.problem, advice.rungs[best].trial, question.error_m));
+  EXPECT_EQ(advice.rungs[best - 1].setting, advice.rungs[best].setting);
+  EXPECT_FALSE(meets(advice.problem, advice.rungs[best - 1].trial, question.error_m));
+  const auto rows = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  Question all = question;
+  all.all = true;
+  EXPECT_EQ(rows(advice_text(all, advice)) - rows(advice_text(question, advice)),
+            static_cast<std::ptrdiff_t>(advice.rungs.size() - contenders().size()));
+}
+
+TEST_F(Advise, RefusesWhatTheReferenceCannotVouchFor) {
+  Question question = ask("pendulum", pendulum_json, 1e-11);
+  question.most_reference_steps = 128;
+  const Advice advice = advise(question);
+  EXPECT_EQ(advice.best, -1);
+  EXPECT_TRUE(advice.rungs.empty());
+  const std::string text = advice_text(question, advice);
+  EXPECT_NE(text.find("below what this can vouch for"), std::string::npos) << text;
+  // What it asks for instead is granted.
+  const std::string ask_for = "Ask for ";
+  Question next = question;
+  next.error_m = std::stod(text.substr(text.find(ask_for) + ask_for.size()));
+  EXPECT_FALSE(advise(next).rungs.empty()) << text;
+}
+
+TEST_F(Advise, SaysWhereNothingMeetsTheError) {
+  Question question = ask("pendulum", pendulum_json, 1e-6);
+  question.most_steps = 2;
+  const Advice advice = advise(question);
+  EXPECT_EQ(advice.best, -1);
+  EXPECT_FALSE(advice.rungs.empty());
+  const std::string text = advice_text(question, advice);
+  EXPECT_NE(text.find("None of these keeps within 1e-06 m"), std::string::npos) << text;
+}
+
+TEST_F(Advise, NamesTheFileThatIsWrong) {
+  try {
+    advise(ask("broken", R"({"title": 1})", 1e-3));
+    FAIL() << "was accepted";
+  } catch (const SceneFileError& error) {
+    EXPECT_NE(std::string(error.what()).find("broken.json"), std::string::npos);
+  }
+}
+
+int exit_code(std::vector<std::string> arguments) {
+  CLI::App app;
+  add_advise_command(app);
+  std::reverse(arguments.begin(), arguments.end());
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& error) {
+    return error.get_exit_code();
+  }
+  return 0;
+}
+
+TEST_F(Advise, CommandLineIsStrict) {
+  const std::string scene = ask("pendulum", pendulum_json, 1.0).scene.string();
+  using CLI::ExitCodes;
+  EXPECT_EQ(exit_code({"advise", scene}), static_cast<int>(ExitCodes::RequiredError));
+  EXPECT_EQ(exit_code({"advise", "--error", "1"}), static_cast<int>(ExitCodes::RequiredError));
+  const int invalid = static_cast<int>(ExitCodes::ValidationError);
+  for (const char* error : {"0", "-1", "nan", "inf", "much", "1e-3x"}) {
+    EXPECT_EQ(exit_code({"advise", scene, "--error", error}), invalid) << error;
+  }
+  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--time", "0"}), invalid);
+  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--steps", "4"}),
+            static_cast<int>(ExitCodes::ExtrasError));
+}
+
+}  // namespace
+}  // namespace pinchlab::experiments

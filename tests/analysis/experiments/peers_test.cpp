@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The physics of the other engines' models, where those are installed.
+
+#include "analysis/experiments/peers/peer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "analysis/experiments/accuracy_scenes.h"
+
+namespace pinchlab::experiments {
+namespace {
+
+Peer peer_called(const std::string& name) {
+  for (const Peer& peer : peers()) {
+    if (peer.name == name) return peer;
+  }
+  return {};
+}
+
+/// Least error of all settings at `steps` a frame.
+double best_error(const Peer& peer, const Problem& problem, int steps) {
+  double best = infinity;
+  for (const PeerSetting& setting : peer.settings(problem, true)) {
+    const Trial trial = judge(problem, setting.run(problem, steps));
+    if (trial.finite) best = std::min(best, trial.error);
+  }
+  return best;
+}
+
+TEST(Peers, AreToldApart) {
+  EXPECT_EQ(peers().size(), 2u);
+  for (const Peer& peer : peers()) {
+    EXPECT_FALSE(peer.package.empty());
+    EXPECT_FALSE(peer.model.empty());
+    EXPECT_EQ(peer.present(), static_cast<bool>(peer.settings)) << peer.name;
+  }
+}
+
+TEST(Peers, Box2dChainHoldsItsLoadOnceStepsAreManyEnough) {
+  const Peer peer = peer_called("Box2D");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  const Problem hanging = hanging_load();
+  EXPECT_GT(best_error(peer, hanging, 1), 1e-2);
+  EXPECT_LT(best_error(peer, hanging, 64), 1e-3);
+  EXPECT_LT(best_error(peer, atwood(), 64), 0.05);
+  EXPECT_LT(best_error(peer, slipping_atwood(), 64), 0.05);
+}
+
+TEST(Peers, Box2dSaysWhatIsNotBuilt) {
+  const Peer peer = peer_called("Box2D");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  Problem problem = atwood();
+  EXPECT_EQ(peer.cannot(problem), "");
+  problem.scene.cables[0].closed = true;
+  EXPECT_NE(peer.cannot(problem).find("closed"), std::string::npos);
+  problem = atwood();
+  problem.scene.bodies[2].driven_angular_velocity = 1.0;
+  EXPECT_NE(peer.cannot(problem).find("drives"), std::string::npos);
+}
+
+TEST(Peers, MujocoTendonIsSecondOrderWhenStartedHalfAStepBack) {
+  const Peer peer = peer_called("MuJoCo");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  const Problem problem = swinging_load();
+  std::vector<double> orders;
+  for (const PeerSetting& setting : peer.settings(problem, true)) {
+    const auto run = [&](int steps) { return setting.run(problem, steps); };
+    orders.push_back(
+        observed_order(climb(problem, setting.text, run, 32, Limits{0.0, infinity}), 1e-9));
+  }
+  ASSERT_EQ(orders.size(), 3u);
+  EXPECT_NEAR(orders[0], 1.0, 0.1) << "semi-implicit Euler";
+  EXPECT_GT(orders[1], 1.9) << "as a leapfrog";
+}
+
+TEST(Peers, MujocoTendonCarriesPulleysAsArmature) {
+  const Peer peer = peer_called("MuJoCo");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_LT(best_error(peer, atwood(), 1), 1e-5);
+  EXPECT_LT(best_error(peer, pulley_chain(), 4), 1e-4);
+}
+
+TEST(Peers, MujocoSaysWhatATendonCannotDo) {
+  const Peer peer = peer_called("MuJoCo");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_EQ(peer.cannot(atwood()), "");
+  EXPECT_NE(peer.cannot(slipping_atwood()).find("friction"), std::string::npos);
+  Problem fixed = atwood();
+  fixed.scene.bodies[2].kind = BodyKind::fixed;
+  EXPECT_NE(peer.cannot(fixed).find("friction"), std::string::npos);
+  fixed.scene.bodies[2].cable_friction = 0.0;
+  EXPECT_EQ(peer.cannot(fixed), "");
+  EXPECT_NE(peer.cannot(roller_on_drum()).find("pinched"), std::string::npos);
+  EXPECT_NE(peer.cannot(resting_stack()).find("pinched"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pinchlab::experiments
