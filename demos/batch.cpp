@@ -208,10 +208,12 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
     return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
   }
   const Method pinch = Method::pinch, baseline = scene.baseline;
-  std::vector<ClipPlan> plans = {plan("pinch", {pinch}, ending),
-                                 plan("baseline", {baseline}, ending),
-                                 plan("poster", {pinch, baseline}, ".png")};
-  plans.back().poster = true;
+  std::vector<ClipPlan> plans;
+  if (options.singles) {
+    plans = {plan("pinch", {pinch}, ending), plan("baseline", {baseline}, ending),
+             plan("poster", {pinch, baseline}, ".png")};
+    plans.back().poster = true;
+  }
   if (options.side_by_side) {
     plans.push_back(plan("left-pinch", {pinch, baseline}, ending));
     plans.push_back(plan("left-baseline", {baseline, pinch}, ending));

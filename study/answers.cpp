@@ -54,21 +54,10 @@ ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
   if (trial.kind == TrialKind::attention) {
     entry["expected"] = to_string(trial.pinch);
   }
-  entry["reaction_time_s"] = answer.reaction_time_s;
-  entry["loops_watched"] = answer.loops_watched;
-  entry["focus_lost_count"] = answer.focus_lost_count;
-  entry["dropped_frames"] = answer.dropped_frames;
-  entry["playback_errors"] = answer.playback_errors;
-  entry["clip"] = clip_of(trial, answer.encoding, clips).name();
   entry["shown_utc"] = answered.shown_utc;
-  entry["input"] = answer.input;
-  entry["window_width_px"] = answer.window_width_px;
-  entry["window_height_px"] = answer.window_height_px;
-  entry["clip_width_px"] = answer.clip_width_px;
-  entry["clip_height_px"] = answer.clip_height_px;
-  entry["screen_width_px"] = answer.screen_width_px;
-  entry["screen_height_px"] = answer.screen_height_px;
-  entry["device_pixel_ratio"] = answer.device_pixel_ratio;
+  entry["clip"] = clip_of(trial, answer.encoding, clips).name();
+  entry.update(to_json(answer));
+  entry.erase("encoding");  // the clip's name tells it
   return entry;
 }
 

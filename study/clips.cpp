@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t largest_manifest = 16U << 20U;  // bytes
-constexpr std::uint64_t size_step = 1U << 16U;        // bytes; served sizes are multiples
 
 // The manifest's clips: file name to SHA-256.
 std::map<std::string, std::string> read_hashes(const fs::path& folder) {
@@ -85,19 +84,10 @@ std::unique_ptr<Clip> open_checked(const fs::path& folder, const std::string& na
   return clip;
 }
 
-ClipPair padded(ClipPair pair) {
-  constexpr std::uint64_t head = 16;  // bytes, at most
-  const std::uint64_t larger = std::max(pair.left->file_size(), pair.right->file_size());
-  const std::uint64_t size = (larger + head + size_step - 1) / size_step * size_step;
-  pair.left->pad_to(size);
-  pair.right->pad_to(size);
-  return pair;
-}
-
 ClipPair open_pair(const fs::path& folder, const std::string& left, const std::string& right,
                    Encoding encoding, const std::map<std::string, std::string>& hashes) {
-  return padded({open_checked(folder, left, encoding, hashes),
-                 open_checked(folder, right, encoding, hashes)});
+  return {open_checked(folder, left, encoding, hashes),
+          open_checked(folder, right, encoding, hashes)};
 }
 
 PairFiles open_demonstration(const fs::path& folder, const std::string& name,
@@ -112,6 +102,28 @@ PairFiles open_demonstration(const fs::path& folder, const std::string& name,
     files.webm = open(Encoding::webm);
   }
   return files;
+}
+
+// All clips of an encoding get the size of the largest, so that a size tells neither the side of a
+// method nor which demonstration it is.
+void pad(const Clips& clips) {
+  constexpr std::uint64_t head = 16;  // bytes of padding, at least
+  const auto for_each = [&](Encoding encoding, const auto& visit) {
+    for (const auto& [name, files] : clips) {
+      const ClipPair* pair = encoding == Encoding::mp4 ? &files.mp4
+                             : files.webm              ? &*files.webm
+                                                       : nullptr;
+      if (pair != nullptr) {
+        visit(*pair->left);
+        visit(*pair->right);
+      }
+    }
+  };
+  for (const Encoding encoding : {Encoding::mp4, Encoding::webm}) {
+    std::uint64_t largest = 0;
+    for_each(encoding, [&](const Clip& clip) { largest = std::max(largest, clip.file_size()); });
+    for_each(encoding, [&](Clip& clip) { clip.pad_to(largest + head); });
+  }
 }
 
 }  // namespace
@@ -210,6 +222,7 @@ Clips open_clips(const fs::path& folder, const Config& config) {
         check.name,
         PairFiles{open_pair(folder, check.left, check.right, Encoding::mp4, hashes), std::nullopt});
   }
+  pad(clips);
   return clips;
 }
 

@@ -76,7 +76,10 @@ const std::vector<Column> columns = {
     {"reaction_time_s", "Seconds from the moment the buttons appeared to the choice"},
     {"loops_watched", "Whole loops of the clip before the choice"},
     {"focus_lost_count", "Times the window lost the focus or was hidden"},
+    {"frame_count", "Frames that the browser decoded, dropped ones among them"},
     {"dropped_frames", "Frames that the browser dropped"},
+    {"loop_gap_median_s", "Seconds that a loop took longer than the clip, middle of all loops"},
+    {"loop_gap_max_s", "Seconds that a loop took longer than the clip, at most"},
     {"playback_error_count", "Messages of the player",
      [](const json&, const json& trial) {
        return trial.contains("playback_errors") ? std::to_string(trial["playback_errors"].size())

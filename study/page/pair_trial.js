@@ -113,13 +113,16 @@ class Watch {
     this.focusLost = 0;
     this.errors = [];
     this.isStopped = false;
-    this.last = 0;  // s
+    this.isInterrupted = false;  // since the loop began
+    this.last = null;  // frame that was seen: { time: s of the clip, at: ms of the clock }
+    this.loopGaps = [];  // s
     this.isAway = false;
     this.firstLoop = new Promise((resolve) => { this.loopEnded = resolve; });
     video.addEventListener('error', () => this.note(`error: ${video.error?.code} ${video.error?.message ?? ''}`));
     video.addEventListener('stalled', () => this.note('stalled'));
     this.onAway = () => {
       const isAway = document.hidden || !document.hasFocus();
+      if (document.hidden) this.isInterrupted = true;  // a hidden page is given no frames
       if (isAway && !this.isAway) ++this.focusLost;
       this.isAway = isAway;
     };
@@ -128,23 +131,28 @@ class Watch {
     addEventListener('focus', this.onAway);
     document.addEventListener('visibilitychange', this.onAway);
     if (video.requestVideoFrameCallback) {
-      const onFrame = (now, { mediaTime }) => {
-        this.saw(mediaTime);
+      const onFrame = (now, { mediaTime, expectedDisplayTime }) => {
+        this.saw(mediaTime, expectedDisplayTime);
         if (!this.isStopped) video.requestVideoFrameCallback(onFrame);
       };
       video.requestVideoFrameCallback(onFrame);
     } else {
-      video.addEventListener('timeupdate', () => this.saw(video.currentTime));
+      video.addEventListener('timeupdate', () => this.saw(video.currentTime, null));
     }
   }
 
-  saw(time) {
+  // A frame of the clip's second `time` is on the screen at `at` ms, or null where the browser does not tell.
+  saw(time, at) {
     if (this.isStopped) return;
-    if (time < this.last) {
+    if (this.last && time < this.last.time) {
       ++this.loops;
       this.loopEnded();
+      // How much longer it took than the clip's own time from the one frame to the other.
+      const gap = (at - this.last.at) / 1000 - (this.video.duration - this.last.time + time);
+      if (at !== null && !this.isInterrupted) this.loopGaps.push(gap);
+      this.isInterrupted = false;
     }
-    this.last = time;
+    this.last = { time, at };
   }
 
   note(message) {
@@ -156,14 +164,20 @@ class Watch {
     removeEventListener('blur', this.onAway);
     removeEventListener('focus', this.onAway);
     document.removeEventListener('visibilitychange', this.onAway);
+    const { droppedVideoFrames = 0, totalVideoFrames = 0 } = this.video.getVideoPlaybackQuality?.() ?? {};
+    const gaps = [...this.loopGaps].sort((a, b) => a - b);
     return {
       loops_watched: this.loops,
       focus_lost_count: this.focusLost,
-      dropped_frames: this.video.getVideoPlaybackQuality?.().droppedVideoFrames ?? 0,
+      dropped_frames: droppedVideoFrames,
+      frame_count: totalVideoFrames,
+      ...(gaps.length > 0 && { loop_gap_median_s: median(gaps), loop_gap_max_s: gaps.at(-1) }),
       playback_errors: this.errors,
     };
   }
 }
+
+const median = (sorted) => (sorted[(sorted.length - 1) >> 1] + sorted[sorted.length >> 1]) / 2;
 
 function choose({ choices, spoken }, texts) {
   return new Promise((resolve) => {

@@ -332,6 +332,30 @@ SceneFile small_file() {
   return parse_scene(small_scene().dump(), "01-small.json");
 }
 
+TEST(PlanClips, WhatIsMade) {
+  const SceneFile file = small_file();
+  const auto files = [&](const BatchOptions& options) {
+    std::vector<std::string> names;
+    for (const ClipPlan& plan : plan_clips(file, options)) {
+      names.push_back(plan.file);
+    }
+    return names;
+  };
+  const std::string name = file.scene.name;
+  const std::vector<std::string> singles = {name + ".pinch.mp4", name + ".baseline.mp4",
+                                            name + ".poster.png"};
+  const std::vector<std::string> pairs = {name + ".left-pinch.mp4", name + ".left-baseline.mp4"};
+  BatchOptions options;
+  EXPECT_EQ(files(options), singles);
+  options.singles = false;
+  options.side_by_side = true;
+  EXPECT_EQ(files(options), pairs);
+  options.singles = true;
+  std::vector<std::string> all = singles;
+  all.insert(all.end(), pairs.begin(), pairs.end());
+  EXPECT_EQ(files(options), all);
+}
+
 TEST(PlanClips, OptionsThatCannotBe) {
   const SceneFile file = small_file();
   const auto error = [&](const BatchOptions& options) -> std::string {

@@ -299,13 +299,14 @@ TEST(Export, PsychDs) {
   EXPECT_THROW(write_psych_ds(folder / "answers", folder / "dataset"), std::runtime_error);
 }
 
-TEST(Clips, PairsAreServedInOneSize) {
+TEST(Clips, AllAreServedInOneSize) {
   const fs::path folder = scratch_folder();
   write_clips(folder);
   const Clips clips = open_clips(folder, small_config());
   for (const auto& [name, files] : clips) {
     EXPECT_NE(files.mp4.left->file_size(), files.mp4.right->file_size());
     EXPECT_EQ(files.mp4.left->served_size(), files.mp4.right->served_size());
+    EXPECT_EQ(files.mp4.left->served_size(), clips.begin()->second.mp4.left->served_size());
     const Clip& clip = *files.mp4.left;
     const std::string whole = clip.read(0, clip.served_size() + 10);
     ASSERT_EQ(whole.size(), clip.served_size());
