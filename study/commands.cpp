@@ -20,6 +20,7 @@
 #include "study/page_assets.h"
 #include "study/server.h"
 #include "study/tables.h"
+#include "study/utc.h"
 
 namespace pinchlab::study {
 namespace {

@@ -174,7 +174,7 @@ export function exitButton(texts, onLeave) {
       make('button', { type: 'button', id: 'stay', onclick: () => dialog.close() }, texts.exit_cancel),
       make('button', { type: 'button', id: 'leave', class: 'quiet', onclick() { dialog.close(); onLeave(); } }, texts.exit_confirm)));
   const button = make('button', { type: 'button', id: 'exit', class: 'quiet', onclick: () => dialog.showModal() }, texts.exit);
-  return make('span', {}, button, dialog);
+  return make('span', { class: 'exit' }, button, dialog);
 }
 
 /** The two optional texts. */

@@ -61,24 +61,23 @@ function build(display, { texts, practice, remaining, exit }) {
   video.muted = true;  // the attribute alone does not count for elements that a script makes
   const choices = make('div', { class: 'choices' }, make('p', { class: 'wait' }, texts.watch_first));
   const spoken = make('p', { class: 'spoken', role: 'status' });
-  const left = remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining);
-  const footer = make('footer', {}, make('p', { id: 'remaining' }, left), exit());
-  display.replaceChildren(make('section', { class: 'trial' }, heading,
-    ...(practice ? [make('p', { class: 'practice hint' }, texts.practice)] : []), make('div', { class: 'clips' }, video), choices, spoken, footer));
+  const left = make('p', { id: 'remaining' }, remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining));
+  if (practice) left.append(make('span', { class: 'hint' }, texts.practice));
+  // The style puts how many are left, the question and the exit above the clips; the order here is that of the Tab key.
+  const top = [heading, left, exit()];
+  display.replaceChildren(make('section', { class: 'trial' }, heading, make('div', { class: 'clips' }, video), choices, spoken, ...top.slice(1)));
   heading.focus();
-  return { video, choices, spoken, heading };
+  return { video, choices, spoken, top };
 }
 
 // One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
-function keepFitting({ video, choices }) {
+function keepFitting({ video, choices, top }) {
   const fit = () => {
     if (!video.videoWidth) return;
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
-    const clips = video.parentElement;
-    const others = [...clips.parentElement.children]
-      .filter((element) => element !== clips && getComputedStyle(element).position !== 'absolute')
-      .reduce((sum, element) => sum + element.getBoundingClientRect().height, 24);  // CSS px, with margins
-    const scale = Math.min(1, (innerWidth - 16) / width, (innerHeight - others) / height);
+    const heightOf = (element) => element.getBoundingClientRect().height;
+    const others = Math.max(...top.map(heightOf)) + heightOf(choices);
+    const scale = Math.min(1, innerWidth / width, (innerHeight - others - 8) / height);
     video.style.width = `${width * scale}px`;
     video.style.height = `${height * scale}px`;
     choices.style.maxWidth = `${Math.max(width * scale, 560)}px`;

@@ -205,11 +205,11 @@ test('a browser without H.264 plays the other encoding; practice comes first', (
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
-  assert.match(await page.textContent('.practice'), /practice/);
+  assert.match(await page.textContent('#remaining .hint'), /practice/);
   for (let i = 0; i <= demonstrations.length; ++i) {
     await page.waitForSelector('#left');
     assert.deepEqual(await page.$eval('video', (video) => [video.videoWidth, video.videoHeight]), [640, 320]);
-    assert.equal(await page.locator('.practice').count(), i === 0 ? 1 : 0);
+    assert.equal(await page.locator('#remaining .hint').count(), i === 0 ? 1 : 0);
     await answer(page);
   }
   await page.click('#next');

@@ -6,8 +6,8 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, 
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-const root = new URL('../../..', import.meta.url).pathname;
-const program = process.env.PINCHLAB_PROGRAM;
+export const root = new URL('../../..', import.meta.url).pathname;
+export const program = process.env.PINCHLAB_PROGRAM;
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 process.setMaxListeners(50);
 const skipped = 77;  // what CTest takes for "skipped"
@@ -68,13 +68,15 @@ export function killServers() {
 }
 process.on('exit', killServers);
 
-/** Starts the server, on a port that is free or on `port`. Resolves when it listens. */
-export async function serve(folder, { port = 0, config = {} } = {}) {
+/**
+ * Starts the server, on a port that is free or on `port`, with the short clips or with those of `clipsFolder`. Resolves
+ * when it listens.
+ */
+export async function serve(folder, { port = 0, config = {}, clipsFolder, cwd = folder, answers = join(folder, 'answers') } = {}) {
   const configFile = join(folder, 'study.json');
-  writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations, ...config }));
-  const answers = join(folder, 'answers');
-  const child = spawn(program, ['study', 'serve', '--clips', clips(), '--answers', answers, '--port', String(port), '--seed', '7',
-    '--config', configFile, '--no-webm'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
+  writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations: clipsFolder ? undefined : demonstrations, ...config }));
+  const child = spawn(program, ['study', 'serve', '--clips', clipsFolder ?? clips(), '--answers', answers, '--port', String(port), '--seed', '7',
+    '--config', configFile, '--no-webm'], { cwd, stdio: ['ignore', 'pipe', 'inherit'] });
   running.add(child);
   const server = { child, answers, output: '' };
   server.ended = new Promise((resolve) => { child.on('exit', resolve); });
@@ -141,6 +143,19 @@ export async function answer(page, side = 'left') {
   const remaining = await page.textContent('#remaining');
   await page.click(`#${side}`);
   await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
+}
+
+/** Waits until the clip that is shown has ended `wanted` loops. */
+export function watchLoops(page, wanted) {
+  return page.evaluate((count) => new Promise((resolve) => {
+    const video = document.querySelector('video');
+    let last = 0, ends = 0;
+    video.requestVideoFrameCallback(function note(now, { mediaTime }) {
+      if (mediaTime < last && ++ends === count) return resolve();
+      last = mediaTime;
+      return video.requestVideoFrameCallback(note);
+    });
+  }), wanted);
 }
 
 /** Keeps a screenshot where PINCHLAB_SCREENSHOTS says. */
