@@ -55,6 +55,9 @@ struct ClipPair {
 struct PairFiles {
   ClipPair mp4;
   std::optional<ClipPair> webm;
+  [[nodiscard]] const ClipPair& in(Encoding encoding) const {
+    return encoding == Encoding::mp4 ? mp4 : webm.value();
+  }
 };
 
 /// All pairs of a study, by the name of the demonstration or attention check.

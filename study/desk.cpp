@@ -364,8 +364,12 @@ std::string Desk::save(const std::string& token,
   if (entry->is_gone) {
     return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
   }
-  const auto file = answer_file(entry->session, plan_options(options_.config), options_.clips,
-                                free_text, options_.utc_now(), withdrawal_hash(code));
+  const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
+    const Clip& clip = options_.clips.at(trial.demonstration).in(encoding).at(trial.pinch);
+    return ShownFile{clip.name(), clip.sha256()};
+  };
+  const auto file = answer_file(entry->session, plan_options(options_.config), shown, free_text,
+                                options_.utc_now(), withdrawal_hash(code));
   try {
     save_answers(answer_path(options_.answers, id), file);
   } catch (const std::exception& error) {
@@ -392,11 +396,9 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
   if (found == media_.end()) {
     return nullptr;
   }
-  const PairFiles& files = *found->second.files;
-  if (encoding == Encoding::mp4) {
-    return &files.mp4.at(found->second.side);
-  }
-  return files.webm ? &files.webm->at(found->second.side) : nullptr;
+  const auto& [files, side] = found->second;
+  const bool is_there = encoding == Encoding::mp4 || files->webm;
+  return is_there ? &files->in(encoding).at(side) : nullptr;
 }
 
 Overview Desk::overview() {

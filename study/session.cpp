@@ -161,15 +161,18 @@ ordered_json to_json(const TrialAnswer& answer) {
   return object;
 }
 
+json to_json(const PlannedTrial& trial, const std::string& media) {
+  return {{"kind", to_string(trial.kind)},
+          {"demonstration", trial.demonstration},
+          {"pinch", to_string(trial.pinch)},
+          {"round", trial.round},
+          {"media", media}};
+}
+
 json to_json(const Session& session) {
   json plan = json::array();
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const PlannedTrial& trial = session.plan[i];
-    plan.push_back({{"kind", to_string(trial.kind)},
-                    {"demonstration", trial.demonstration},
-                    {"pinch", to_string(trial.pinch)},
-                    {"round", trial.round},
-                    {"media", session.media[i]}});
+    plan.push_back(to_json(session.plan[i], session.media[i]));
   }
   json answers = json::array();
   for (const AnsweredTrial& trial : session.answers) {

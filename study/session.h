@@ -88,6 +88,9 @@ std::map<std::string, std::string> parse_free_text(const nlohmann::json& body);
 /// An answer with the keys that parse_answer reads, but for the trial's index.
 nlohmann::ordered_json to_json(const TrialAnswer& answer);
 
+/// A trial of a session's plan as its file keeps it.
+nlohmann::json to_json(const PlannedTrial& trial, const std::string& media);
+
 /// A session as its file keeps it, and back. The second throws std::runtime_error if the file is
 /// not one of ours.
 nlohmann::json to_json(const Session& session);

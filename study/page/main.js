@@ -21,7 +21,7 @@ async function begin() {
   const running = await backend.running();
   if (!running) return information(stage, texts, backend);
   if (await askResume(stage, texts)) return backend.resume();
-  await backend.leave();
+  await backend.startAnew();
   return information(stage, texts, backend);
 }
 

@@ -29,6 +29,9 @@ if (!existsSync(join(root, 'study/page/node_modules/jspsych'))) skip('jsPsych is
 
 export const demonstrations = ['01-roll-over', '03-drop', '07-driven-roller'];
 
+// Words of methods, of this project, and of the demonstrations' files.
+export const telling = new RegExp(`pinch|baseline|no_contact|left-|${demonstrations.join('|')}`, 'i');
+
 /** A folder of this test's own, removed at the end. */
 export function scratch() {
   const folder = mkdtempSync(join(tmpdir(), 'study-'));
