@@ -122,6 +122,10 @@ void add_render(CLI::App& app) {
           "Nothing but these, as `study serve` makes them")
       ->excludes(also)
       ->excludes("--method");
+  command
+      ->add_flag("--attention-checks", options->checks,
+                 "Also the clip with pinch joints beside itself upside down, in both orders")
+      ->excludes("--method");
   command->footer(
       "What is up to date is kept. The same input gives the same bytes, for any --jobs.\n\n"
       "Examples:\n"
@@ -408,8 +412,8 @@ void add_study(CLI::App& app) {
     }
     return names;
   };
-  stimuli.render = [](const std::vector<std::string>& names, const std::filesystem::path& folder,
-                      study::Encoding encoding) {
+  stimuli.render = [](const std::vector<std::string>& names, study::PairKind kind,
+                      const std::filesystem::path& folder, study::Encoding encoding) {
     BatchOptions options;
     for (const std::string& name : names) {
       options.scenes.push_back(demos_folder() / (name + ".json"));
@@ -417,7 +421,8 @@ void add_study(CLI::App& app) {
     options.out = folder;
     options.codec = encoding == study::Encoding::mp4 ? Codec::h264 : Codec::vp9;
     options.singles = false;
-    options.side_by_side = true;
+    options.side_by_side = kind == study::PairKind::methods;
+    options.checks = kind == study::PairKind::check;
     if (render_batch(options) > 0) {
       throw std::runtime_error(folder.string() + ": clips are missing; the study cannot begin");
     }

@@ -63,10 +63,13 @@ struct PairFiles {
 /// All pairs of a study, by the name of the demonstration or attention check.
 using Clips = std::map<std::string, PairFiles>;
 
-/// Names of the demonstrations whose two MP4 files a folder's manifest.json lists, in order.
-/// Empty if there is no manifest. Throws std::runtime_error if it is not one of ours.
-std::vector<std::string> paired_demonstrations(const std::filesystem::path& folder,
-                                               Encoding encoding);
+/// What is rendered of a demonstration: its two methods, or an attention check.
+enum class PairKind { methods, check };
+
+/// Names of the demonstrations of which a folder's manifest.json lists both files of that kind, in
+/// order. Empty if there is no manifest. Throws std::runtime_error if it is not one of ours.
+std::vector<std::string> rendered_pairs(const std::filesystem::path& folder, PairKind kind,
+                                        Encoding encoding);
 
 /// Opens all clips that `config` needs and checks each against the manifest's SHA-256. WebM is
 /// offered for the pairs that have it. All clips of an encoding are padded to one size. Throws

@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -44,33 +47,39 @@ Config read_or_default(const fs::path& path) {
 // The demonstrations of a configuration that names none.
 std::vector<std::string> all_demonstrations(const Stimuli& stimuli, const fs::path& clips) {
   std::vector<std::string> names = stimuli.demonstrations();
-  return names.empty() ? paired_demonstrations(clips, Encoding::mp4) : names;
+  return names.empty() ? rendered_pairs(clips, PairKind::methods, Encoding::mp4) : names;
 }
 
 void render_missing(const Stimuli& stimuli, const fs::path& clips, bool no_webm,
                     const Config& config) {
+  std::map<PairKind, std::set<std::string>> needed;
+  needed[PairKind::methods] = {config.demonstrations.begin(), config.demonstrations.end()};
+  needed[PairKind::methods].insert(config.training.begin(), config.training.end());
+  for (const AttentionCheck& check : config.attention_checks) {
+    if (!check.demonstration.empty()) {
+      needed[PairKind::check].insert(check.demonstration);
+    }
+  }
   std::vector<Encoding> encodings = {Encoding::mp4};
   if (!no_webm) {
     encodings.push_back(Encoding::webm);
   }
   const std::vector<std::string> known = stimuli.demonstrations();
   for (const Encoding encoding : encodings) {
-    const std::vector<std::string> present = paired_demonstrations(clips, encoding);
-    std::vector<std::string> missing;
-    for (const auto* names : {&config.demonstrations, &config.training}) {
-      for (const std::string& name : *names) {
-        const bool is_missing = std::ranges::find(present, name) == present.end() &&
-                                std::ranges::find(missing, name) == missing.end();
-        // What cannot be made here is told by open_clips; WebM is only offered where it is.
-        if (is_missing && std::ranges::find(known, name) != known.end()) {
-          missing.push_back(name);
-        }
+    for (const auto& [kind, names] : needed) {
+      const std::vector<std::string> present = rendered_pairs(clips, kind, encoding);
+      std::vector<std::string> missing;
+      // What cannot be made here is told by open_clips; WebM is only offered where it is.
+      std::ranges::copy_if(names, std::back_inserter(missing), [&](const std::string& name) {
+        return std::ranges::find(present, name) == present.end() &&
+               std::ranges::find(known, name) != known.end();
+      });
+      if (!missing.empty()) {
+        fmt::print(stderr, "Rendering the {} that are missing ({}): {}\n",
+                   kind == PairKind::check ? "attention checks" : "side-by-side clips",
+                   to_string(encoding), fmt::join(missing, ", "));
+        stimuli.render(missing, kind, clips, encoding);
       }
-    }
-    if (!missing.empty()) {
-      fmt::print(stderr, "Rendering the side-by-side clips that are missing ({}): {}\n",
-                 to_string(encoding), fmt::join(missing, ", "));
-      stimuli.render(missing, clips, encoding);
     }
   }
 }

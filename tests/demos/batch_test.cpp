@@ -354,6 +354,10 @@ TEST(PlanClips, WhatIsMade) {
   std::vector<std::string> all = singles;
   all.insert(all.end(), pairs.begin(), pairs.end());
   EXPECT_EQ(files(options), all);
+  options.singles = options.side_by_side = false;
+  options.checks = true;
+  EXPECT_EQ(files(options),
+            (std::vector<std::string>{name + ".check-left.mp4", name + ".check-right.mp4"}));
 }
 
 TEST(PlanClips, OptionsThatCannotBe) {

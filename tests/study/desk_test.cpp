@@ -121,7 +121,7 @@ TEST(Desk, AttentionChecksAndTrainingAreKeptApart) {
                std::string("clip ") + side);
   }
   options.config.training = {"03-third"};
-  options.config.attention_checks = {{"upside-down", "check-left.mp4", "check-right.mp4"}};
+  options.config.attention_checks = {{"upside-down", "", "check-left.mp4", "check-right.mp4"}};
   options.clips = open_clips(folder / "clips", options.config);
   Desk desk(std::move(options));
   const std::string token = desk.start("", "");
