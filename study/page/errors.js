@@ -14,19 +14,25 @@ export class Refused extends Error {
 
 export const pause = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
-/** Calls `attempt` until it succeeds or it is clear that it never will; `onTrouble(true)` while it has not. */
+/** What was sent has reached the server, which could not keep it. */
+export class NotKept extends Error {}
+
+/**
+ * Calls `attempt` until it succeeds or it is clear that it never will. `onTrouble` gets the error while it has not, and
+ * null afterwards.
+ */
 export async function insist(attempt, onTrouble) {
   for (let wait = 500; ; wait = Math.min(2 * wait, 5000)) {  // ms
     try {
       const result = await attempt();
-      onTrouble(false);
+      onTrouble(null);
       return result;
     } catch (error) {
       if (error instanceof SessionGone || error instanceof Refused) {
-        onTrouble(false);
+        onTrouble(null);
         throw error;
       }
-      onTrouble(true);
+      onTrouble(error);
       await pause(wait);
     }
   }

@@ -73,7 +73,7 @@ function build(display, { texts, practice, remaining, exit }) {
 // One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
 function keepFitting({ video, choices, top }) {
   const fit = () => {
-    if (!video.videoWidth) return;
+    if (!video.videoWidth) return;  // what stands under the clips would jump
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
     const heightOf = (element) => element.getBoundingClientRect().height;
     const others = Math.max(...top.map(heightOf)) + heightOf(choices);
@@ -81,6 +81,7 @@ function keepFitting({ video, choices, top }) {
     video.style.width = `${width * scale}px`;
     video.style.height = `${height * scale}px`;
     choices.style.maxWidth = `${Math.max(width * scale, 560)}px`;
+    choices.style.visibility = 'visible';
   };
   video.addEventListener('loadedmetadata', fit);
   addEventListener('resize', fit);

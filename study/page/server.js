@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The study's own server. What it has confirmed is on its disk; what it has not is sent again.
 
-import { Refused, SessionGone, insist } from './errors.js';
+import { NotKept, Refused, SessionGone, insist } from './errors.js';
 
 const storageKey = 'study';
 const longestWait = 15000;  // ms, for one reply
@@ -35,6 +35,7 @@ async function request(method, path, body) {
   });
   if (response.status === 401) throw new SessionGone();
   if (response.status >= 400 && response.status < 500 && response.status !== 429) throw new Refused(response.status);
+  if (response.status === 507) throw new NotKept();
   if (!response.ok) throw new Error(`status ${response.status}`);
   return response.json();
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study with short clips, its server, and a browser in front of it.
 
+import assert from 'node:assert/strict';
 import { spawn, execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 export const root = new URL('../../..', import.meta.url).pathname;
-export const program = process.env.PINCHLAB_PROGRAM;
+export const program = process.env.PINCHLAB_PROGRAM ?? join(root, 'build/release/pinchlab');
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 process.setMaxListeners(50);
 const skipped = 77;  // what CTest takes for "skipped"
@@ -25,6 +27,7 @@ try {
 } catch {
   skip('playwright-core is not installed (npm ci --prefix tests/study/browser)');
 }
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 if (!existsSync(join(root, 'study/page/node_modules/jspsych'))) skip('jsPsych is not installed (npm ci --prefix study/page)');
 
 export const demonstrations = ['01-roll-over', '03-drop', '07-driven-roller'];
@@ -53,7 +56,8 @@ export function clips(seconds = 2) {
     }
     const scenes = demonstrations.map((name) => join(made, `${name}.json`));
     for (const codec of ['h264', 'vp9']) {
-      execFileSync(program, ['render', ...scenes, '--out', cache, '--size', '320x320', '--fps', '30', '--side-by-side', '--codec', codec],
+      execFileSync(program, ['render', ...scenes, '--out', cache, '--size', '320x320', '--fps', '30', '--only-side-by-side',
+        '--attention-checks', '--codec', codec],
         { stdio: ['ignore', 'inherit', 'pipe'] });
     }
   } finally {
@@ -146,6 +150,15 @@ export async function answer(page, side = 'left') {
   const remaining = await page.textContent('#remaining');
   await page.click(`#${side}`);
   await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
+}
+
+/** Says that the page has nothing that keeps people out. */
+export async function assertAccessible(page, where) {
+  // By the debugger, which the content security policy does not bind.
+  await page.evaluate(axe);
+  const violations = await page.evaluate(async () => (await window.axe.run()).violations.map(
+    ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(' ')}`));
+  assert.deepEqual(violations, [], where);
 }
 
 /** Waits until the clip that is shown has ended `wanted` loops. */
