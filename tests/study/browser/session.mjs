@@ -194,6 +194,14 @@ test('a small screen is told kindly', () => withStudy({ context: { viewport: { w
   await picture(page, '10-small');
 }));
 
+test('a touch screen is told kindly', () => withStudy({ context: { viewport: { width: 1400, height: 900 }, hasTouch: true, isMobile: true } }, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  assert.match(await page.textContent('#stage'), /computer with a mouse or a keyboard/);
+  assert.equal(await page.isDisabled('#start'), true);
+  await picture(page, '18-touch');
+}));
+
 test('a browser without H.264 plays the other encoding; practice comes first', () => withStudy({ config: { training: ['03-drop'] } }, async (server, context) => {
   await context.addInitScript(() => {
     const canPlayType = HTMLMediaElement.prototype.canPlayType;
