@@ -120,6 +120,14 @@ ordered_json description() {
           {"variableMeasured", variables}};
 }
 
+// Psych-DS recommends one (MISSING_README_DOC).
+constexpr const char* dataset_readme =
+    "# Which cable looks most realistic?\n\n"
+    "Answers of the perception study of Pinchlab, exported by `pinchlab study export --psych-ds`.\n"
+    "`dataset_description.json` says what each column of `data/study-cables_data.csv` means. "
+    "Answers\n"
+    "of the kinds training and attention are no answers of the study.\n";
+
 }  // namespace
 
 ordered_json plan_json(std::uint64_t seed, std::uint64_t participants, const PlanOptions& options) {
@@ -181,6 +189,7 @@ void write_psych_ds(const fs::path& folder, const fs::path& out) {
   }
   fs::create_directories(out / "data");
   write_durably(out / "data" / "study-cables_data.csv", csv);
+  write_durably(out / "README.md", dataset_readme);
   write_durably(out / "dataset_description.json", description().dump(2) + "\n");
 }
 

@@ -4,6 +4,9 @@
 
 #include <sys/stat.h>
 
+#include <regex>
+#include <sstream>
+
 #include "analysis/answers_table.h"
 #include "study/answers.h"
 #include "study/durable_file.h"
@@ -297,6 +300,24 @@ TEST(Export, PsychDs) {
     header += (header.empty() ? "" : ",") + variable["name"].get<std::string>();
   }
   EXPECT_EQ(csv.substr(0, csv.find('\n')), header);
+  // Psych-DS 1.5.1: rules/dataset_metadata.yaml and rules/files/tabular_data/data.yaml
+  for (const char* key : {"@context", "@type", "name", "description", "variableMeasured"}) {
+    EXPECT_TRUE(description.contains(key)) << key;
+  }
+  EXPECT_EQ(description["@context"], "https://schema.org/");
+  EXPECT_EQ(description["@type"], "Dataset");
+  const std::regex data_file(R"(([a-z]+-[a-zA-Z0-9]+)(_[a-z]+-[a-zA-Z0-9]+)*_data\.csv)");
+  int data_files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "dataset" / "data")) {
+    EXPECT_TRUE(std::regex_match(entry.path().filename().string(), data_file)) << entry.path();
+    ++data_files;
+  }
+  EXPECT_EQ(data_files, 1);
+  std::istringstream rows(csv);
+  for (std::string row; std::getline(rows, row);) {
+    EXPECT_EQ(std::ranges::count(row, ','), std::ranges::count(header, ',')) << row;
+  }
+  EXPECT_TRUE(fs::exists(folder / "dataset" / "README.md"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
   EXPECT_THROW(write_psych_ds(folder / "answers", folder / "dataset"), std::runtime_error);
 }
