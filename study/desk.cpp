@@ -273,11 +273,11 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
 Progress Desk::progress_of(const Session& session) const {
   Progress progress;
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const PlannedTrial& trial = session.plan[i];
-    progress.trials.push_back({session.media[i],
-                               options_.clips.at(trial.demonstration).webm.has_value(),
-                               trial.kind == TrialKind::training});
+    progress.trials.push_back({session.media[i], session.plan[i].kind == TrialKind::training});
   }
+  progress.has_webm = std::ranges::all_of(session.plan, [&](const PlannedTrial& trial) {
+    return options_.clips.at(trial.demonstration).webm.has_value();
+  });
   progress.next = session.answers.size();
   return progress;
 }

@@ -40,10 +40,11 @@ struct DeskOptions {
 struct Progress {
   struct Trial {
     std::string media;  ///< opaque name of the clip
-    bool has_webm = false, is_practice = false;
+    bool is_practice = false;
   };
   std::vector<Trial> trials;
-  std::size_t next = 0;  ///< trial to show; trials.size(): all are answered
+  bool has_webm = false;  ///< all of them do: one without would stand out
+  std::size_t next = 0;   ///< trial to show; trials.size(): all are answered
 };
 
 struct Overview {

@@ -135,11 +135,14 @@ json file_entry(const ClipPair& pair) {
 
 // What the page fetches: names of clips and nothing else.
 json plan_for_page(const std::vector<PlannedTrial>& plan, MediaNames& names, const Clips& clips) {
+  const bool has_webm = std::ranges::all_of(plan, [&](const PlannedTrial& trial) {
+    return clips.at(trial.demonstration).webm.has_value();
+  });
   json trials = json::array();
   for (const PlannedTrial& trial : plan) {
     const std::string path = "media/" + names.of(trial);
     json entry = {{"practice", trial.kind == TrialKind::training}, {"mp4", path + ".mp4"}};
-    if (clips.at(trial.demonstration).webm) {
+    if (has_webm) {
       entry["webm"] = path + ".webm";
     }
     trials.push_back(entry);

@@ -100,7 +100,7 @@ json progress_json(const Progress& progress) {
   json trials = json::array();
   for (const Progress::Trial& trial : progress.trials) {
     json entry = {{"practice", trial.is_practice}, {"mp4", "/media/" + trial.media + ".mp4"}};
-    if (trial.has_webm) {
+    if (progress.has_webm) {
       entry["webm"] = "/media/" + trial.media + ".webm";
     }
     trials.push_back(entry);
