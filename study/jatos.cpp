@@ -151,7 +151,8 @@ json plan_for_page(const std::vector<PlannedTrial>& plan, MediaNames& names, con
 }
 
 // The key, read back.
-struct Key {
+// nlohmann's move, which is declared noexcept, checks itself.
+struct Key {  // NOLINT(bugprone-exception-escape)
   std::string study;
   std::uint64_t seed = 0;
   PlanOptions options;
