@@ -162,6 +162,7 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 
 std::string answers_csv(const fs::path& folder) {
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const Column& column : columns) {
     names.emplace_back(column.name);
   }
@@ -171,6 +172,7 @@ std::string answers_csv(const fs::path& folder) {
     analysis::parse_answer_file(file, path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
+      values.reserve(columns.size());
       for (const Column& column : columns) {
         values.push_back(column.value != nullptr ? column.value(file, trial)
                                                  : value_of(trial, column.name));
