@@ -67,8 +67,23 @@ void add_render(CLI::App& app) {
   command->add_option("--jobs", options->jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--side-by-side", options->side_by_side,
-                    "Also each pair in one picture, in both left/right orders (for the study)");
+  CLI::Option* also =
+      command->add_flag("--side-by-side", options->side_by_side,
+                        "Also each pair in one picture, in both left/right orders (for the study)");
+  command
+      ->add_flag_callback(
+          "--only-side-by-side",
+          [options] {
+            options->side_by_side = true;
+            options->singles = false;
+          },
+          "Nothing but these, as `study serve` makes them")
+      ->excludes(also)
+      ->excludes("--method");
+  command
+      ->add_flag("--attention-checks", options->checks,
+                 "Also the clip with pinch joints beside itself upside down, in both orders")
+      ->excludes("--method");
   command->footer(
       "What is up to date is kept. The same input gives the same bytes, for any --jobs.\n\n"
       "Examples:\n"
@@ -326,15 +341,17 @@ void add_study(CLI::App& app) {
     }
     return names;
   };
-  stimuli.render = [](const std::vector<std::string>& names, const std::filesystem::path& folder,
-                      study::Encoding encoding) {
+  stimuli.render = [](const std::vector<std::string>& names, study::PairKind kind,
+                      const std::filesystem::path& folder, study::Encoding encoding) {
     BatchOptions options;
     for (const std::string& name : names) {
       options.scenes.push_back(demos_folder() / (name + ".json"));
     }
     options.out = folder;
     options.codec = encoding == study::Encoding::mp4 ? Codec::h264 : Codec::vp9;
-    options.side_by_side = true;
+    options.singles = false;
+    options.side_by_side = kind == study::PairKind::methods;
+    options.checks = kind == study::PairKind::check;
     if (render_batch(options) > 0) {
       throw std::runtime_error(folder.string() + ": clips are missing; the study cannot begin");
     }

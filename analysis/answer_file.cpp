@@ -37,6 +37,10 @@ void read_circumstances(JsonObject& object, Trial& trial) {
     trial.playback_errors = static_cast<long>(errors.size());
   }
   optional_count(object, "loops_watched");
+  optional_count(object, "frame_count");
+  for (const char* key : {"loop_gap_median_s", "loop_gap_max_s"}) {
+    if (object.has(key)) object.number(key, -1.0, 86400.0);
+  }
   if (object.has("clip")) object.text("clip", 1024);
   if (object.has("shown_utc")) object.utc("shown_utc");
   if (object.has("input")) object.choice("input", {"mouse", "keyboard", "touch"});

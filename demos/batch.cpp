@@ -144,7 +144,7 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
 }
 
 void check_size(const BatchOptions& options) {
-  const int width = options.width * (options.side_by_side ? 2 : 1);  // px
+  const int width = options.width * (options.side_by_side || options.checks ? 2 : 1);  // px
   if (std::min(options.width, options.height) < smallest_frame ||
       std::max(width, options.height) > largest_frame) {
     throw std::invalid_argument(
@@ -196,9 +196,10 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
     clip.role = role;
     clip.source = &source;
     clip.scene = scene;
+    clip.poster = role == "poster";
     clip.methods = std::move(methods);
     clip.video.codec = options.codec;
-    clip.video.width = options.width * (role.starts_with("left-") ? 2 : 1);
+    clip.video.width = options.width * (clip.poster ? 1 : static_cast<int>(clip.methods.size()));
     clip.video.height = options.height;
     clip.video.frames_per_second = scene.frames_per_second;
     return clip;
@@ -208,13 +209,20 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
     return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
   }
   const Method pinch = Method::pinch, baseline = scene.baseline;
-  std::vector<ClipPlan> plans = {plan("pinch", {pinch}, ending),
-                                 plan("baseline", {baseline}, ending),
-                                 plan("poster", {pinch, baseline}, ".png")};
-  plans.back().poster = true;
+  std::vector<ClipPlan> plans;
+  if (options.singles) {
+    plans = {plan("pinch", {pinch}, ending), plan("baseline", {baseline}, ending),
+             plan("poster", {pinch, baseline}, ".png")};
+  }
   if (options.side_by_side) {
     plans.push_back(plan("left-pinch", {pinch, baseline}, ending));
     plans.push_back(plan("left-baseline", {baseline, pinch}, ending));
+  }
+  if (options.checks) {
+    plans.push_back(plan("check-left", {pinch, pinch}, ending));
+    plans.back().upside_down = 1;
+    plans.push_back(plan("check-right", {pinch, pinch}, ending));
+    plans.back().upside_down = 0;
   }
   return plans;
 }

@@ -20,7 +20,9 @@ struct BatchOptions {
   Timing timing;
   Codec codec = Codec::h264;
   int jobs = 0;               ///< worker processes; 0: one a core
-  bool side_by_side = false;  ///< also both left/right orders of each pair in one file
+  bool singles = true;        ///< each method's clip by itself, and the poster
+  bool side_by_side = false;  ///< both left/right orders of each pair in one file
+  bool checks = false;  ///< attention checks: the pinch clip beside itself upside down, both orders
 };
 
 /// The method called `name`, where "baseline" is the scene's own. Throws std::invalid_argument.

@@ -31,6 +31,19 @@ std::size_t frame_bytes(int width, int height) {
   return 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
+// A copy of a frame, with one of its panels turned upside down.
+void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
+          std::vector<std::uint8_t>& turned) {
+  const std::size_t row = frame_bytes(plan.video.width, 1);
+  const std::size_t part = frame_bytes(panel_width(plan), 1);
+  const std::size_t begin = part * static_cast<std::size_t>(panel);
+  const auto height = static_cast<std::size_t>(plan.video.height);
+  turned.assign(rgba, rgba + row * height);
+  for (std::size_t y = 0; y < height; ++y) {
+    std::copy_n(rgba + (height - 1 - y) * row + begin, part, turned.data() + y * row + begin);
+  }
+}
+
 // Returns the hash of the raw frames (RGBA, top row first, one after the other).
 std::string write_video(const ClipPlan& plan, const std::string& path,
                         const std::function<void()>& tick) {
@@ -44,14 +57,23 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   Hash frames(HashKind::murmur3);
+  std::vector<std::uint8_t> turned;
   for (int frame = 0; frame < plan.scene.frame_count; ++frame) {
     for (std::size_t i = 0; i < players.size(); ++i) {
       players[i].advance_to(frame);
       compose(plan.scene, players[i].world(), pictures[i]);
     }
     const std::uint8_t* rgba = canvas.draw(panels);
+    if (plan.upside_down) {
+      turn(plan, *plan.upside_down, rgba, turned);
+      rgba = turned.data();
+    }
     frames.add(std::as_bytes(std::span(rgba, frame_bytes(plan.video.width, plan.video.height))));
-    video.add(rgba, canvas.changed());
+    if (plan.upside_down) {
+      video.add(rgba);
+    } else {
+      video.add(rgba, canvas.changed());
+    }
     tick();
   }
   video.finish();
@@ -106,6 +128,9 @@ ordered_json plan_entry(const ClipPlan& plan) {
       {"frames_per_second", scene.frames_per_second},
       {"steps_per_frame", scene.steps_per_frame},
   };
+  if (plan.upside_down) {
+    entry["upside_down_panel"] = *plan.upside_down;
+  }
   if (plan.poster) {
     entry["time_s"] = static_cast<double>(poster_frame(plan)) / scene.frames_per_second;
   } else {

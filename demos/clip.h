@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,12 +17,15 @@ namespace pinchlab {
 /// Everything that a file's bytes depend on.
 struct ClipPlan {
   std::string file;  ///< name in the output folder, e.g. "03-drop.pinch.mp4"
-  std::string role;  ///< "pinch", "baseline", "left-pinch", "left-baseline", "poster", or a method
+  /// "pinch", "baseline", "left-pinch", "left-baseline", "check-left", "check-right", "poster", or
+  /// a method
+  std::string role;
   const SceneFile* source = nullptr;
-  Scene scene;                  ///< the source's, with the timing to use
-  std::vector<Method> methods;  ///< one a panel, left to right
-  VideoSettings video;          ///< of the whole frame, all panels together
-  bool poster = false;          ///< one frame as PNG, with labels
+  Scene scene;                     ///< the source's, with the timing to use
+  std::vector<Method> methods;     ///< one a panel, left to right
+  std::optional<int> upside_down;  ///< panel that is shown so, in attention checks
+  VideoSettings video;             ///< of the whole frame, all panels together
+  bool poster = false;             ///< one frame as PNG, with labels
 };
 
 /// px of one panel.

@@ -27,11 +27,6 @@ ordered_json plan_entry(const PlanOptions& options) {
           {"attention_checks", options.attention_checks.size()}};
 }
 
-const Clip& clip_of(const PlannedTrial& trial, Encoding encoding, const Clips& clips) {
-  const PairFiles& files = clips.at(trial.demonstration);
-  return (encoding == Encoding::mp4 ? files.mp4 : files.webm.value()).at(trial.pinch);
-}
-
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
   if (trial.kind == TrialKind::attention) {
@@ -42,7 +37,7 @@ std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
 }
 
 ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
-                         const AnsweredTrial& answered, const Clips& clips) {
+                         const AnsweredTrial& answered, const std::string& clip) {
   const TrialAnswer& answer = answered.answer;
   const auto [left, right] = sides(trial);
   ordered_json entry = {{"position", position},
@@ -54,21 +49,10 @@ ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
   if (trial.kind == TrialKind::attention) {
     entry["expected"] = to_string(trial.pinch);
   }
-  entry["reaction_time_s"] = answer.reaction_time_s;
-  entry["loops_watched"] = answer.loops_watched;
-  entry["focus_lost_count"] = answer.focus_lost_count;
-  entry["dropped_frames"] = answer.dropped_frames;
-  entry["playback_errors"] = answer.playback_errors;
-  entry["clip"] = clip_of(trial, answer.encoding, clips).name();
   entry["shown_utc"] = answered.shown_utc;
-  entry["input"] = answer.input;
-  entry["window_width_px"] = answer.window_width_px;
-  entry["window_height_px"] = answer.window_height_px;
-  entry["clip_width_px"] = answer.clip_width_px;
-  entry["clip_height_px"] = answer.clip_height_px;
-  entry["screen_width_px"] = answer.screen_width_px;
-  entry["screen_height_px"] = answer.screen_height_px;
-  entry["device_pixel_ratio"] = answer.device_pixel_ratio;
+  entry["clip"] = clip;
+  entry.update(to_json(answer));
+  entry.erase("encoding");  // the clip's name tells it
   return entry;
 }
 
@@ -84,7 +68,8 @@ void check(const std::string& bytes, const fs::path& path) {
 
 }  // namespace
 
-ordered_json answer_file(const Session& session, const PlanOptions& options, const Clips& clips,
+ordered_json answer_file(const Session& session, const PlanOptions& options,
+                         const ShownFiles& shown,
                          const std::map<std::string, std::string>& free_text,
                          const std::string& saved_utc, const std::string& code_hash) {
   if (!is_finished(session)) {
@@ -95,9 +80,9 @@ ordered_json answer_file(const Session& session, const PlanOptions& options, con
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
     const PlannedTrial& trial = session.plan[i];
     const Encoding encoding = session.answers[i].answer.encoding;
-    hashes[trial.demonstration][variant(trial, encoding)] =
-        clip_of(trial, encoding, clips).sha256();
-    trials.push_back(trial_entry(trial, i + 1, session.answers[i], clips));
+    const ShownFile file = shown(trial, encoding);
+    hashes[trial.demonstration][variant(trial, encoding)] = file.sha256;
+    trials.push_back(trial_entry(trial, i + 1, session.answers[i], file.name));
   }
   return {{"format", "pinchlab-answers"},
           {"version", 1},

@@ -3,6 +3,7 @@
 // The answers as they are kept: one whole file a participant (analysis/answers.schema.json).
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,10 +15,16 @@
 
 namespace pinchlab::study {
 
+/// A file that was shown.
+struct ShownFile {
+  std::string name, sha256;
+};
+using ShownFiles = std::function<ShownFile(const PlannedTrial&, Encoding)>;
+
 /// The answer file of a finished session. `code_hash` is withdrawal_hash() of the participant's
 /// code.
 nlohmann::ordered_json answer_file(const Session& session, const PlanOptions& options,
-                                   const Clips& clips,
+                                   const ShownFiles& shown,
                                    const std::map<std::string, std::string>& free_text,
                                    const std::string& saved_utc, const std::string& code_hash);
 

@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t largest_manifest = 16U << 20U;  // bytes
-constexpr std::uint64_t size_step = 1U << 16U;        // bytes; served sizes are multiples
 
 // The manifest's clips: file name to SHA-256.
 std::map<std::string, std::string> read_hashes(const fs::path& folder) {
@@ -52,9 +51,13 @@ std::map<std::string, std::string> read_hashes(const fs::path& folder) {
   return hashes;
 }
 
-std::string file_name(const std::string& demonstration, Side pinch, Encoding encoding) {
-  return fmt::format("{}.left-{}.{}", demonstration, pinch == Side::left ? "pinch" : "baseline",
-                     to_string(encoding));
+// The file that has the method under test, or the right answer, on this side.
+std::string file_name(const std::string& demonstration, PairKind kind, Side side,
+                      Encoding encoding) {
+  const char* role = kind == PairKind::check ? (side == Side::left ? "check-left" : "check-right")
+                     : side == Side::left    ? "left-pinch"
+                                             : "left-baseline";
+  return fmt::format("{}.{}.{}", demonstration, role, to_string(encoding));
 }
 
 // What tells a player to skip the padding: an MP4 box of type "free" (ISO/IEC 14496-12, 8.1.2), or
@@ -85,33 +88,46 @@ std::unique_ptr<Clip> open_checked(const fs::path& folder, const std::string& na
   return clip;
 }
 
-ClipPair padded(ClipPair pair) {
-  constexpr std::uint64_t head = 16;  // bytes, at most
-  const std::uint64_t larger = std::max(pair.left->file_size(), pair.right->file_size());
-  const std::uint64_t size = (larger + head + size_step - 1) / size_step * size_step;
-  pair.left->pad_to(size);
-  pair.right->pad_to(size);
-  return pair;
-}
-
 ClipPair open_pair(const fs::path& folder, const std::string& left, const std::string& right,
                    Encoding encoding, const std::map<std::string, std::string>& hashes) {
-  return padded({open_checked(folder, left, encoding, hashes),
-                 open_checked(folder, right, encoding, hashes)});
+  return {open_checked(folder, left, encoding, hashes),
+          open_checked(folder, right, encoding, hashes)};
 }
 
-PairFiles open_demonstration(const fs::path& folder, const std::string& name,
-                             const std::map<std::string, std::string>& hashes) {
+PairFiles open_rendered(const fs::path& folder, const std::string& name, PairKind kind,
+                        const std::map<std::string, std::string>& hashes) {
   const auto open = [&](Encoding encoding) {
-    return open_pair(folder, file_name(name, Side::left, encoding),
-                     file_name(name, Side::right, encoding), encoding, hashes);
+    return open_pair(folder, file_name(name, kind, Side::left, encoding),
+                     file_name(name, kind, Side::right, encoding), encoding, hashes);
   };
   PairFiles files{open(Encoding::mp4), std::nullopt};
-  if (hashes.contains(file_name(name, Side::left, Encoding::webm)) &&
-      hashes.contains(file_name(name, Side::right, Encoding::webm))) {
+  if (hashes.contains(file_name(name, kind, Side::left, Encoding::webm)) &&
+      hashes.contains(file_name(name, kind, Side::right, Encoding::webm))) {
     files.webm = open(Encoding::webm);
   }
   return files;
+}
+
+// All clips of an encoding get the size of the largest, so that a size tells neither the side of a
+// method nor which demonstration it is.
+void pad(const Clips& clips) {
+  constexpr std::uint64_t head = 16;  // bytes of padding, at least
+  const auto for_each = [&](Encoding encoding, const auto& visit) {
+    for (const auto& [name, files] : clips) {
+      const ClipPair* pair = encoding == Encoding::mp4 ? &files.mp4
+                             : files.webm              ? &*files.webm
+                                                       : nullptr;
+      if (pair != nullptr) {
+        visit(*pair->left);
+        visit(*pair->right);
+      }
+    }
+  };
+  for (const Encoding encoding : {Encoding::mp4, Encoding::webm}) {
+    std::uint64_t largest = 0;
+    for_each(encoding, [&](const Clip& clip) { largest = std::max(largest, clip.file_size()); });
+    for_each(encoding, [&](Clip& clip) { clip.pad_to(largest + head); });
+  }
 }
 
 }  // namespace
@@ -166,9 +182,9 @@ std::string Clip::read(std::uint64_t offset, std::size_t length) const {
   return bytes;
 }
 
-std::vector<std::string> paired_demonstrations(const fs::path& folder, Encoding encoding) {
+std::vector<std::string> rendered_pairs(const fs::path& folder, PairKind kind, Encoding encoding) {
   const std::map<std::string, std::string> hashes = read_hashes(folder);
-  const std::string ending = fmt::format(".left-pinch.{}", to_string(encoding));
+  const std::string ending = file_name("", kind, Side::left, encoding);
   std::vector<std::string> names;
   for (const auto& [file, sha] : hashes) {
     const std::string name =
@@ -176,7 +192,7 @@ std::vector<std::string> paired_demonstrations(const fs::path& folder, Encoding 
     if (name.empty()) {
       continue;
     }
-    const std::string other = file_name(name, Side::right, encoding);
+    const std::string other = file_name(name, kind, Side::right, encoding);
     if (hashes.contains(other) && fs::exists(folder / file) && fs::exists(folder / other)) {
       names.push_back(name);
     }
@@ -186,18 +202,22 @@ std::vector<std::string> paired_demonstrations(const fs::path& folder, Encoding 
 
 Clips open_clips(const fs::path& folder, const Config& config) {
   const std::map<std::string, std::string> hashes = read_hashes(folder);
-  const std::vector<std::string> known = paired_demonstrations(folder, Encoding::mp4);
+  const auto open = [&](const std::string& name, PairKind kind) {
+    const std::vector<std::string> known = rendered_pairs(folder, kind, Encoding::mp4);
+    if (std::ranges::find(known, name) == known.end()) {
+      throw std::runtime_error(
+          fmt::format("{}: has no {} of `{}`{}; pinchlab render {} makes them", folder.string(),
+                      kind == PairKind::check ? "attention check" : "side-by-side clips", name,
+                      analysis::did_you_mean(name, known),
+                      kind == PairKind::check ? "--attention-checks" : "--side-by-side"));
+    }
+    return open_rendered(folder, name, kind, hashes);
+  };
   Clips clips;
   for (const auto* names : {&config.demonstrations, &config.training}) {
     for (const std::string& name : *names) {
-      if (std::ranges::find(known, name) == known.end()) {
-        throw std::runtime_error(
-            fmt::format("{}: has no side-by-side clips of `{}`{}; pinchlab render --side-by-side "
-                        "makes them",
-                        folder.string(), name, analysis::did_you_mean(name, known)));
-      }
       if (!clips.contains(name)) {
-        clips.emplace(name, open_demonstration(folder, name, hashes));
+        clips.emplace(name, open(name, PairKind::methods));
       }
     }
   }
@@ -206,10 +226,13 @@ Clips open_clips(const fs::path& folder, const Config& config) {
       throw std::runtime_error(fmt::format(
           "attention check `{}` has the name of a demonstration; give it another", check.name));
     }
-    clips.emplace(
-        check.name,
-        PairFiles{open_pair(folder, check.left, check.right, Encoding::mp4, hashes), std::nullopt});
+    clips.emplace(check.name,
+                  check.demonstration.empty()
+                      ? PairFiles{open_pair(folder, check.left, check.right, Encoding::mp4, hashes),
+                                  std::nullopt}
+                      : open(check.demonstration, PairKind::check));
   }
+  pad(clips);
   return clips;
 }
 

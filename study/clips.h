@@ -19,7 +19,7 @@ enum class Encoding { mp4, webm };
 const char* to_string(Encoding encoding);  ///< "mp4", "webm": also the ending of the file
 
 /// One file that participants are shown, open and checked. What is served is the file followed by
-/// padding that a player skips, so that the sizes of a pair's two files tell nothing.
+/// padding that a player skips, so that all clips of a study have the same size.
 class Clip {
  public:
   /// Opens the file, and takes its SHA-256. Throws std::runtime_error.
@@ -55,18 +55,25 @@ struct ClipPair {
 struct PairFiles {
   ClipPair mp4;
   std::optional<ClipPair> webm;
+  [[nodiscard]] const ClipPair& in(Encoding encoding) const {
+    return encoding == Encoding::mp4 ? mp4 : webm.value();
+  }
 };
 
 /// All pairs of a study, by the name of the demonstration or attention check.
 using Clips = std::map<std::string, PairFiles>;
 
-/// Names of the demonstrations whose two MP4 files a folder's manifest.json lists, in order.
-/// Empty if there is no manifest. Throws std::runtime_error if it is not one of ours.
-std::vector<std::string> paired_demonstrations(const std::filesystem::path& folder,
-                                               Encoding encoding);
+/// What is rendered of a demonstration: its two methods, or an attention check.
+enum class PairKind { methods, check };
+
+/// Names of the demonstrations of which a folder's manifest.json lists both files of that kind, in
+/// order. Empty if there is no manifest. Throws std::runtime_error if it is not one of ours.
+std::vector<std::string> rendered_pairs(const std::filesystem::path& folder, PairKind kind,
+                                        Encoding encoding);
 
 /// Opens all clips that `config` needs and checks each against the manifest's SHA-256. WebM is
-/// offered for the pairs that have it. Throws std::runtime_error with the file and the cure.
+/// offered for the pairs that have it. All clips of an encoding are padded to one size. Throws
+/// std::runtime_error with the file and the cure.
 Clips open_clips(const std::filesystem::path& folder, const Config& config);
 
 }  // namespace pinchlab::study

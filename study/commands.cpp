@@ -8,8 +8,11 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -17,9 +20,12 @@
 #include "study/config.h"
 #include "study/desk.h"
 #include "study/durable_file.h"
+#include "study/jatos.h"
 #include "study/page_assets.h"
 #include "study/server.h"
+#include "study/study_file.h"
 #include "study/tables.h"
+#include "study/utc.h"
 
 namespace pinchlab::study {
 namespace {
@@ -41,32 +47,39 @@ Config read_or_default(const fs::path& path) {
 // The demonstrations of a configuration that names none.
 std::vector<std::string> all_demonstrations(const Stimuli& stimuli, const fs::path& clips) {
   std::vector<std::string> names = stimuli.demonstrations();
-  return names.empty() ? paired_demonstrations(clips, Encoding::mp4) : names;
+  return names.empty() ? rendered_pairs(clips, PairKind::methods, Encoding::mp4) : names;
 }
 
-void render_missing(const Stimuli& stimuli, const ServeOptions& options, const Config& config) {
+void render_missing(const Stimuli& stimuli, const fs::path& clips, bool no_webm,
+                    const Config& config) {
+  std::map<PairKind, std::set<std::string>> needed;
+  needed[PairKind::methods] = {config.demonstrations.begin(), config.demonstrations.end()};
+  needed[PairKind::methods].insert(config.training.begin(), config.training.end());
+  for (const AttentionCheck& check : config.attention_checks) {
+    if (!check.demonstration.empty()) {
+      needed[PairKind::check].insert(check.demonstration);
+    }
+  }
   std::vector<Encoding> encodings = {Encoding::mp4};
-  if (!options.no_webm) {
+  if (!no_webm) {
     encodings.push_back(Encoding::webm);
   }
   const std::vector<std::string> known = stimuli.demonstrations();
   for (const Encoding encoding : encodings) {
-    const std::vector<std::string> present = paired_demonstrations(options.clips, encoding);
-    std::vector<std::string> missing;
-    for (const auto* names : {&config.demonstrations, &config.training}) {
-      for (const std::string& name : *names) {
-        const bool is_missing = std::ranges::find(present, name) == present.end() &&
-                                std::ranges::find(missing, name) == missing.end();
-        // What cannot be made here is told by open_clips; WebM is only offered where it is.
-        if (is_missing && std::ranges::find(known, name) != known.end()) {
-          missing.push_back(name);
-        }
+    for (const auto& [kind, names] : needed) {
+      const std::vector<std::string> present = rendered_pairs(clips, kind, encoding);
+      std::vector<std::string> missing;
+      // What cannot be made here is told by open_clips; WebM is only offered where it is.
+      std::ranges::copy_if(names, std::back_inserter(missing), [&](const std::string& name) {
+        return std::ranges::find(present, name) == present.end() &&
+               std::ranges::find(known, name) != known.end();
+      });
+      if (!missing.empty()) {
+        fmt::print(stderr, "Rendering the {} that are missing ({}): {}\n",
+                   kind == PairKind::check ? "attention checks" : "side-by-side clips",
+                   to_string(encoding), fmt::join(missing, ", "));
+        stimuli.render(missing, kind, clips, encoding);
       }
-    }
-    if (!missing.empty()) {
-      fmt::print(stderr, "Rendering the side-by-side clips that are missing ({}): {}\n",
-                 to_string(encoding), fmt::join(missing, ", "));
-      stimuli.render(missing, options.clips, encoding);
     }
   }
 }
@@ -104,12 +117,27 @@ void tell(const std::string& line) {
   std::fflush(stdout);
 }
 
-void serve(const ServeOptions& options, const Stimuli& stimuli) {
+// The page has to be there, the demonstrations named, and their clips made.
+Clips prepare(Config& config, const Stimuli& stimuli, const fs::path& clips, bool no_webm) {
   if (!has_page()) {
     throw std::runtime_error(
         "this program was built without the page, because npm had not installed jsPsych; run: npm "
         "ci --prefix study/page, then build again");
   }
+  if (config.demonstrations.empty()) {
+    config.demonstrations = all_demonstrations(stimuli, clips);
+  }
+  if (config.demonstrations.empty()) {
+    throw std::runtime_error(fmt::format(
+        "{}: has no side-by-side clips, and there is no folder demos here to render them from; go "
+        "to the project's folder, or run pinchlab render --side-by-side",
+        clips.string()));
+  }
+  render_missing(stimuli, clips, no_webm, config);
+  return open_clips(clips, config);
+}
+
+void serve(const ServeOptions& options, const Stimuli& stimuli) {
   DeskOptions desk_options;
   desk_options.config = read_or_default(options.config);
   Config& config = desk_options.config;
@@ -119,20 +147,9 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   if (config.one_time_links && config.participant_limit == 0) {
     throw std::invalid_argument(
         "one-time links need to know for how many: give --participants, or participant_limit in "
-        "the "
-        "configuration");
+        "the configuration");
   }
-  if (config.demonstrations.empty()) {
-    config.demonstrations = all_demonstrations(stimuli, options.clips);
-  }
-  if (config.demonstrations.empty()) {
-    throw std::runtime_error(fmt::format(
-        "{}: has no side-by-side clips, and there is no folder demos here to render them from; go "
-        "to the project's folder, or run pinchlab render --side-by-side",
-        options.clips.string()));
-  }
-  render_missing(stimuli, options, config);
-  desk_options.clips = open_clips(options.clips, config);
+  desk_options.clips = prepare(config, stimuli, options.clips, options.no_webm);
   desk_options.answers = options.answers;
   if (options.has_seed) {
     desk_options.seed = options.seed;
@@ -255,8 +272,7 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
     if (config.demonstrations.empty()) {
       throw std::runtime_error(
           "there is no folder demos here; go to the project's folder, or name the demonstrations "
-          "in "
-          "a configuration");
+          "in a configuration");
     }
     const PlanOptions plan = plan_options(config);
     if (!options->json.empty()) {
@@ -277,38 +293,106 @@ fs::path existing_folder(const fs::path& folder) {
   return folder;
 }
 
-void add_export(CLI::App& study) {
-  struct Options {
-    fs::path answers, csv, psych_ds;
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* command = study.add_subcommand("export", "Answers for other programs");
-  command->add_option("--answers", options->answers, "Folder of the answers")
+struct ExportOptions {
+  fs::path answers, csv, psych_ds;
+  fs::path jatos, clips, config;
+  std::uint64_t participants = 0, seed = 0;
+  bool has_seed = false, no_webm = false;
+};
+
+void export_study(const ExportOptions& options, const Stimuli& stimuli) {
+  if (!options.csv.empty()) {
+    write_text(options.csv, answers_csv(existing_folder(options.answers)));
+  }
+  if (!options.psych_ds.empty()) {
+    write_psych_ds(existing_folder(options.answers), options.psych_ds);
+  }
+  if (!options.jatos.empty()) {
+    Config config = read_or_default(options.config);
+    const Clips clips = prepare(config, stimuli, options.clips, options.no_webm);
+    export_jatos(config, clips, options.has_seed ? options.seed : random_seed(),
+                 options.participants, options.jatos);
+    fmt::print("{}: for JATOS, Import Study\n{}: keep it, `study import` needs it\n",
+               options.jatos.string(), key_path(options.jatos).string());
+  }
+}
+
+void add_export(CLI::App& study, const Stimuli& stimuli) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* command = study.add_subcommand(
+      "export", "Answers for other programs; or the study itself, for a JATOS server");
+  CLI::Option* answers =
+      command->add_option("--answers", options->answers, "Folder of the answers")->type_name("DIR");
+  CLI::Option_group* what = command->add_option_group("what");
+  what->add_option("--csv", options->csv, "Tidy table, one row a trial; - is standard output")
+      ->type_name("FILE.csv")
+      ->needs(answers);
+  what->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
       ->type_name("DIR")
-      ->required();
-  CLI::Option* csv =
+      ->needs(answers);
+  CLI::Option* jatos =
+      what->add_option("--jatos", options->jatos, "Study archive; its key goes to FILE.key.json")
+          ->type_name("FILE.jzip");
+  what->require_option(1);
+  CLI::Option* clips =
       command
-          ->add_option("--csv", options->csv, "Tidy table, one row a trial; - is standard output")
-          ->type_name("FILE.csv");
-  CLI::Option* psych_ds =
-      command->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
-          ->type_name("DIR");
-  csv->excludes(psych_ds);
+          ->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
+          ->type_name("DIR")
+          ->needs(jatos);
+  CLI::Option* participants =
+      command->add_option("--participants", options->participants, "For how many to plan")
+          ->type_name("N")
+          ->check(CLI::Range(1, 10000))
+          ->needs(jatos);
+  jatos->needs(clips)->needs(participants);
+  add_seed(*command, options->seed, "Seed of the plan [a random one]");
+  command->get_option("--seed")->needs(jatos);
+  add_config(*command, options->config);
+  command->get_option("--config")->needs(jatos);
+  command
+      ->add_flag("--no-webm", options->no_webm,
+                 "Do not render a second encoding for browsers without H.264")
+      ->needs(jatos);
   command->footer(
       "Examples:\n"
       "  pinchlab study export --answers answers --csv answers.csv\n"
-      "  pinchlab study export --answers answers --psych-ds dataset");
+      "  pinchlab study export --answers answers --psych-ds dataset\n"
+      "  pinchlab study export --jatos study.jzip --clips clips --participants 40");
+  command->callback([options, command, stimuli] {
+    options->has_seed = command->count("--seed") > 0;
+    export_study(*options, stimuli);
+  });
+}
+
+void add_import(CLI::App& study) {
+  struct Options {
+    std::vector<fs::path> results;
+    fs::path key, answers;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      study.add_subcommand("import", "Answers that were given on a JATOS server, as answer files");
+  command
+      ->add_option("--jatos", options->results,
+                   "Result data from JATOS as text, or folders that hold it as .txt")
+      ->type_name("RESULTS")
+      ->required();
+  command->add_option("--key", options->key, "What `study export --jatos` wrote beside the archive")
+      ->type_name("FILE.key.json")
+      ->required();
+  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
+      ->type_name("DIR")
+      ->required();
+  command->footer(
+      "In JATOS: Results, Export Results, Data Only, Plain Text. Who is in the folder already is "
+      "not "
+      "imported\nagain. Remove who withdrew in JATOS too, or the next import brings the answers "
+      "back.\n\n"
+      "Example:\n"
+      "  pinchlab study import --jatos results.txt --key study.key.json --answers answers");
   command->callback([options] {
-    if (options->csv.empty() && options->psych_ds.empty()) {
-      throw CLI::RequiredError("--csv or --psych-ds");
-    }
-    existing_folder(options->answers);
-    if (!options->csv.empty()) {
-      write_text(options->csv, answers_csv(options->answers));
-    }
-    if (!options->psych_ds.empty()) {
-      write_psych_ds(options->answers, options->psych_ds);
-    }
+    const Imported imported = import_jatos(options->results, options->key, options->answers);
+    fmt::print("{} participants imported, {} were there already\n", imported.added, imported.known);
   });
 }
 
@@ -346,7 +430,8 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
           ->require_subcommand(1);
   add_serve(*study, stimuli);
   add_plan(*study, stimuli);
-  add_export(*study);
+  add_export(*study, stimuli);
+  add_import(*study);
   add_withdraw(*study);
 }
 

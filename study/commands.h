@@ -17,8 +17,8 @@ struct Stimuli {
   /// The demonstrations there are to show; empty if there is no folder of them here.
   std::function<std::vector<std::string>()> demonstrations;
   /// Makes the side-by-side clips of some of them. Throws std::runtime_error.
-  std::function<void(const std::vector<std::string>& names, const std::filesystem::path& folder,
-                     Encoding encoding)>
+  std::function<void(const std::vector<std::string>& names, PairKind kind,
+                     const std::filesystem::path& folder, Encoding encoding)>
       render;
 };
 

@@ -37,6 +37,14 @@ void check_keys(const json& object, const std::string& place,
   }
 }
 
+void check_demonstration(JsonObject& object, const std::string& key, const std::string& name) {
+  const std::string why = analysis::why_not_a_name(name);
+  if (!why.empty() || name.find('/') != std::string::npos) {
+    object.fail(key, fmt::format("`{}` is no name of a demonstration{}{}", name.substr(0, 60),
+                                 why.empty() ? "" : ": ", why));
+  }
+}
+
 std::vector<std::string> read_names(JsonObject& object, const std::string& key) {
   std::vector<std::string> names;
   for (const json& entry : object.array(key, most_trials)) {
@@ -44,11 +52,7 @@ std::vector<std::string> read_names(JsonObject& object, const std::string& key) 
       object.fail(key, "must hold names of demonstrations, such as \"03-drop\"");
     }
     names.push_back(entry.get<std::string>());
-    const std::string why = analysis::why_not_a_name(names.back());
-    if (!why.empty() || names.back().find('/') != std::string::npos) {
-      object.fail(key, fmt::format("`{}` is no name of a demonstration{}{}",
-                                   names.back().substr(0, 60), why.empty() ? "" : ": ", why));
-    }
+    check_demonstration(object, key, names.back());
     if (std::count(names.begin(), names.end(), names.back()) > 1) {
       object.fail(key, fmt::format("`{}` stands twice; to show it more often, use repetitions",
                                    names.back()));
@@ -68,21 +72,34 @@ std::string read_clip_name(JsonObject& object, const std::string& key) {
   return name;
 }
 
+AttentionCheck read_own_check(const json& document, const std::string& file,
+                              const std::string& pointer) {
+  check_keys(document, fmt::format("{}: {}", file, pointer), {"name", "left", "right"});
+  JsonObject entry(document, file, pointer);
+  AttentionCheck check;
+  check.name = entry.name("name");
+  check.left = read_clip_name(entry, "left");
+  check.right = read_clip_name(entry, "right");
+  if (check.left == check.right) {
+    entry.fail("right", "the same file as left; its right answer must be on the other side");
+  }
+  return check;
+}
+
 std::vector<AttentionCheck> read_checks(JsonObject& object, const std::string& file) {
   std::vector<AttentionCheck> checks;
   std::set<std::string> names;
   const json& entries = object.array("attention_checks", 100);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const std::string pointer = fmt::format("/attention_checks/{}", i);
-    check_keys(entries[i], fmt::format("{}: {}", file, pointer), {"name", "left", "right"});
-    JsonObject entry(entries[i], file, pointer);
-    checks.push_back(
-        {entry.name("name"), read_clip_name(entry, "left"), read_clip_name(entry, "right")});
-    if (!names.insert(checks.back().name).second) {
-      entry.fail("name", fmt::format("`{}` stands twice", checks.back().name));
+    if (entries[i].is_string()) {
+      const auto demonstration = entries[i].get<std::string>();
+      check_demonstration(object, "attention_checks", demonstration);
+      checks.push_back({demonstration + "-upside-down", demonstration, "", ""});
+    } else {
+      checks.push_back(read_own_check(entries[i], file, fmt::format("/attention_checks/{}", i)));
     }
-    if (checks.back().left == checks.back().right) {
-      entry.fail("right", "the same file as left; its right answer must be on the other side");
+    if (!names.insert(checks.back().name).second) {
+      object.fail("attention_checks", fmt::format("`{}` stands twice", checks.back().name));
     }
   }
   return checks;

@@ -12,11 +12,12 @@
 
 namespace pinchlab::study {
 
-/// A pair of the researcher's own with an obvious answer: two side-by-side files in the clips'
-/// folder that differ in the side of the right answer.
+/// A pair with an obvious answer: a demonstration beside itself upside down, or two side-by-side
+/// files of the researcher's own in the clips' folder that differ in the side of the right answer.
 struct AttentionCheck {
   std::string name;
-  std::string left, right;  ///< file names: right answer on the left, on the right
+  std::string demonstration;  ///< that is shown beside itself; empty: a pair of one's own
+  std::string left, right;    ///< files of one's own: right answer on the left, on the right
 };
 
 struct Config {

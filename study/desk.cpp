@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/desk.h"
 
-#include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <stdexcept>
 
 #include "analysis/input_error.h"
@@ -17,6 +11,7 @@
 #include "study/answers.h"
 #include "study/durable_file.h"
 #include "study/secrets.h"
+#include "study/utc.h"
 
 namespace pinchlab::study {
 namespace {
@@ -26,28 +21,6 @@ using nlohmann::json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 constexpr std::chrono::hours longest_idle{24};
-
-// What a study is counterbalanced by: participants of two plans must not come into one folder.
-json fingerprint(const Config& config) {
-  const PlanOptions options = plan_options(config);
-  return {{"demonstrations", options.demonstrations},
-          {"training", options.training},
-          {"attention_checks", options.attention_checks},
-          {"repetitions", options.repetitions},
-          {"both_orders", options.both_orders}};
-}
-
-std::chrono::sys_seconds parse_utc(const std::string& text) {
-  const auto number = [&](std::size_t at, std::size_t length) {
-    int value = 0;
-    std::from_chars(text.data() + at, text.data() + at + length, value);
-    return value;
-  };
-  using namespace std::chrono;
-  const year_month_day date{year(number(0, 4)), month(static_cast<unsigned>(number(5, 2))),
-                            day(static_cast<unsigned>(number(8, 2)))};
-  return sys_days(date) + hours(number(11, 2)) + minutes(number(14, 2)) + seconds(number(17, 2));
-}
 
 // "<id>.<secret>"
 std::pair<std::string, std::string> split(const std::string& token) {
@@ -73,91 +46,23 @@ std::string printable(const std::string& text) {
 
 }  // namespace
 
-std::string utc_now() {
-  using namespace std::chrono;
-  const auto now = floor<milliseconds>(system_clock::now());
-  return fmt::format("{:%FT%T}.{:03}Z", fmt::gmtime(system_clock::to_time_t(now)),
-                     (now - floor<seconds>(now)).count());
-}
-
-Desk::Desk(DeskOptions options)
-    : options_(std::move(options)), running_folder_(options_.answers / ".running") {
+Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   if (!options_.utc_now) {
     options_.utc_now = &utc_now;
   }
   if (!options_.tell) {
     options_.tell = [](const std::string&) {};
   }
-  fs::create_directories(running_folder_);
-  lock_folder();
-  try {
-    read_study_file();
-    read_finished();
-    read_running();
-  } catch (...) {
-    ::close(lock_);
-    throw;
+  std::error_code problem;
+  fs::create_directories(running_folder(options_.answers), problem);
+  if (problem) {
+    throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
+                                         options_.answers.string(), problem.message()));
   }
-}
-
-Desk::~Desk() {
-  ::close(lock_);
-}
-
-// The lock is on the folder itself and goes with the process.
-void Desk::lock_folder() {
-  lock_ = ::open(running_folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) {
-    throw std::runtime_error(running_folder_.string() + ": is not a folder that can be used");
-  }
-  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock_);
-    throw std::runtime_error(
-        fmt::format("{}: another server is using this folder; stop it or use another --answers",
-                    options_.answers.string()));
-  }
-}
-
-void Desk::read_study_file() {
-  const fs::path path = running_folder_ / "study.json";
-  if (!fs::exists(path)) {
-    std::uint64_t random = 0;
-    const std::string digits = random_hex(6);
-    std::from_chars(digits.data(), digits.data() + digits.size(), random, 16);
-    seed_ = options_.seed.value_or(random);
-    link_secret_ = random_hex(32);
-    write_study_file();
-    return;
-  }
-  const json file = analysis::read_json_file(path, largest_file);
-  analysis::JsonObject study(file, path.string(), "");
-  study.choice("format", {"pinchlab-running 1"});
-  seed_ = static_cast<std::uint64_t>(study.whole("seed", 0, static_cast<long>(largest_seed)));
-  link_secret_ = study.text("link_secret", 64);
-  for (const json& number : study.array("used_links", 1000000)) {
-    used_links_.insert(number.get<std::uint64_t>());
-  }
-  if (options_.seed && *options_.seed != seed_) {
-    throw std::runtime_error(
-        fmt::format("{}: the study in this folder has the seed {}, not {}; leave --seed out, or "
-                    "use another --answers",
-                    options_.answers.string(), seed_, *options_.seed));
-  }
-  if (study.need("plan") != fingerprint(options_.config)) {
-    throw std::runtime_error(
-        fmt::format("{}: the study in this folder shows something else; use its configuration, or "
-                    "another --answers",
-                    options_.answers.string()));
-  }
-}
-
-void Desk::write_study_file() const {
-  const json file = {{"format", "pinchlab-running 1"},
-                     {"seed", seed_},
-                     {"link_secret", link_secret_},
-                     {"used_links", used_links_},
-                     {"plan", fingerprint(options_.config)}};
-  write_durably(running_folder_ / "study.json", file.dump(2) + "\n");
+  lock_.emplace(options_.answers);
+  study_ = open_study_file(options_.answers, options_.config, options_.seed);
+  read_finished();
+  read_running();
 }
 
 void Desk::read_finished() {
@@ -175,7 +80,7 @@ void Desk::read_finished() {
 }
 
 void Desk::read_running() {
-  for (const fs::directory_entry& file : fs::directory_iterator(running_folder_)) {
+  for (const fs::directory_entry& file : fs::directory_iterator(running_folder(options_.answers))) {
     const fs::path& path = file.path();
     if (path.extension() != ".json" || path.filename() == "study.json") {
       continue;
@@ -245,7 +150,7 @@ void Desk::drop_idle() {
 }
 
 std::string Desk::link_of(std::uint64_t number) const {
-  return sha256(fmt::format("link {} {}", link_secret_, number)).substr(0, 32);
+  return sha256(fmt::format("link {} {}", study_.link_secret, number)).substr(0, 32);
 }
 
 std::vector<std::string> Desk::links() const {
@@ -264,7 +169,7 @@ std::uint64_t Desk::number_for(const std::string& link) {
   if (options_.config.one_time_links) {
     for (std::uint64_t number = 0; number < limit; ++number) {
       if (equal_in_constant_time(link, link_of(number))) {
-        if (taken_.contains(number) || used_links_.contains(number)) {
+        if (taken_.contains(number) || study_.used_links.contains(number)) {
           throw Refused(403, "this link was used");
         }
         return number;
@@ -289,7 +194,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent) 
   Session& session = entry->session;
   session.id = random_hex(8);
   session.secret_sha256 = sha256(secret);
-  session.seed = seed_;
+  session.seed = study_.seed;
   session.language = options_.config.language;
   session.user_agent = printable(user_agent);
   session.started_utc = session.last_seen_utc = options_.utc_now();
@@ -299,7 +204,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent) 
       throw Refused(503, "too many participants at a time");
     }
     session.number = number_for(link);
-    session.plan = make_plan(seed_, session.number, plan_options(options_.config));
+    session.plan = make_plan(study_.seed, session.number, plan_options(options_.config));
     for (std::size_t i = 0; i < session.plan.size(); ++i) {
       session.media.push_back(random_hex(16));
     }
@@ -310,14 +215,14 @@ std::string Desk::start(const std::string& link, const std::string& user_agent) 
     write_durably(session_path(session.id), to_json(session).dump());
     const std::scoped_lock lock(mutex_);
     if (options_.config.one_time_links) {
-      used_links_.insert(session.number);
-      write_study_file();
+      study_.used_links.insert(session.number);
+      write_study_file(options_.answers, options_.config, study_);
     }
     add(entry);
   } catch (const std::exception& error) {
     const std::scoped_lock lock(mutex_);
     taken_.erase(session.number);
-    used_links_.erase(session.number);
+    study_.used_links.erase(session.number);
     options_.tell(fmt::format("a participant could not start: {}", error.what()));
     throw Refused(503, "the disk does not take it");
   }
@@ -368,11 +273,11 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
 Progress Desk::progress_of(const Session& session) const {
   Progress progress;
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const PlannedTrial& trial = session.plan[i];
-    progress.trials.push_back({session.media[i],
-                               options_.clips.at(trial.demonstration).webm.has_value(),
-                               trial.kind == TrialKind::training});
+    progress.trials.push_back({session.media[i], session.plan[i].kind == TrialKind::training});
   }
+  progress.has_webm = std::ranges::all_of(session.plan, [&](const PlannedTrial& trial) {
+    return options_.clips.at(trial.demonstration).webm.has_value();
+  });
   progress.next = session.answers.size();
   return progress;
 }
@@ -459,8 +364,12 @@ std::string Desk::save(const std::string& token,
   if (entry->is_gone) {
     return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
   }
-  const auto file = answer_file(entry->session, plan_options(options_.config), options_.clips,
-                                free_text, options_.utc_now(), withdrawal_hash(code));
+  const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
+    const Clip& clip = options_.clips.at(trial.demonstration).in(encoding).at(trial.pinch);
+    return ShownFile{clip.name(), clip.sha256()};
+  };
+  const auto file = answer_file(entry->session, plan_options(options_.config), shown, free_text,
+                                options_.utc_now(), withdrawal_hash(code));
   try {
     save_answers(answer_path(options_.answers, id), file);
   } catch (const std::exception& error) {
@@ -487,11 +396,9 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
   if (found == media_.end()) {
     return nullptr;
   }
-  const PairFiles& files = *found->second.files;
-  if (encoding == Encoding::mp4) {
-    return &files.mp4.at(found->second.side);
-  }
-  return files.webm ? &files.webm->at(found->second.side) : nullptr;
+  const auto& [files, side] = found->second;
+  const bool is_there = encoding == Encoding::mp4 || files->webm;
+  return is_there ? &files->in(encoding).at(side) : nullptr;
 }
 
 Overview Desk::overview() {
@@ -515,7 +422,7 @@ Overview Desk::overview() {
 }
 
 fs::path Desk::session_path(const std::string& id) const {
-  return running_folder_ / (id + ".json");
+  return running_folder(options_.answers) / (id + ".json");
 }
 
 }  // namespace pinchlab::study

@@ -22,6 +22,7 @@
 #include "study/clips.h"
 #include "study/config.h"
 #include "study/session.h"
+#include "study/study_file.h"
 
 namespace pinchlab::study {
 
@@ -39,10 +40,11 @@ struct DeskOptions {
 struct Progress {
   struct Trial {
     std::string media;  ///< opaque name of the clip
-    bool has_webm = false, is_practice = false;
+    bool is_practice = false;
   };
   std::vector<Trial> trials;
-  std::size_t next = 0;  ///< trial to show; trials.size(): all are answered
+  bool has_webm = false;  ///< all of them do: one without would stand out
+  std::size_t next = 0;   ///< trial to show; trials.size(): all are answered
 };
 
 struct Overview {
@@ -56,19 +58,13 @@ struct Overview {
   std::size_t finished = 0, left = 0;  ///< left: since the server started
 };
 
-/// The present moment as "2026-11-20T12:05:01.250Z".
-std::string utc_now();
-
 class Desk {
  public:
   /// Takes up the participants who were running. Throws std::runtime_error if the folder cannot be
   /// used, is in use by another server, or belongs to a study with another seed or plan.
   explicit Desk(DeskOptions options);
-  ~Desk();
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
 
-  [[nodiscard]] std::uint64_t seed() const { return seed_; }
+  [[nodiscard]] std::uint64_t seed() const { return study_.seed; }
   [[nodiscard]] const Config& config() const { return options_.config; }
 
   /// One-time links' secrets, by participant number; empty if the study has none.
@@ -106,9 +102,6 @@ class Desk {
     Side side;
   };
 
-  void lock_folder();
-  void read_study_file();
-  void write_study_file() const;
   void read_finished();
   void read_running();
   void add(const std::shared_ptr<Entry>& entry);
@@ -123,15 +116,12 @@ class Desk {
   [[nodiscard]] std::filesystem::path session_path(const std::string& id) const;
 
   DeskOptions options_;
-  std::filesystem::path running_folder_;
-  int lock_ = -1;
-  std::uint64_t seed_ = 0;
-  std::string link_secret_;
+  std::optional<FolderLock> lock_;
   std::mutex mutex_;  // of all below; never held while waiting for an entry's
+  StudyFile study_;   // its seed never changes
   std::map<std::string, std::shared_ptr<Entry>> entries_;
   std::map<std::string, Media> media_;
-  std::set<std::uint64_t> taken_;       // numbers of running and finished participants
-  std::set<std::uint64_t> used_links_;  // their numbers
+  std::set<std::uint64_t> taken_;  // numbers of running and finished participants
   std::size_t finished_ = 0, left_ = 0;
 };
 

@@ -100,40 +100,12 @@ json progress_json(const Progress& progress) {
   json trials = json::array();
   for (const Progress::Trial& trial : progress.trials) {
     json entry = {{"practice", trial.is_practice}, {"mp4", "/media/" + trial.media + ".mp4"}};
-    if (trial.has_webm) {
+    if (progress.has_webm) {
       entry["webm"] = "/media/" + trial.media + ".webm";
     }
     trials.push_back(entry);
   }
   return {{"trials", trials}, {"next", progress.next}};
-}
-
-std::string html_escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    html += c == '&'   ? "&amp;"
-            : c == '<' ? "&lt;"
-            : c == '>' ? "&gt;"
-            : c == '"' ? "&quot;"
-                       : std::string(1, c);
-  }
-  return html;
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos;
-       at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
-// A page with its language and title in place, so that they are right before any script runs.
-std::string html_page(const Config& config, const char* path) {
-  const PageAsset* asset = find_asset(path);
-  std::string html(asset == nullptr ? std::string_view() : asset->bytes);
-  html = replaced(html, "{{language}}", html_escaped(config.language));
-  return replaced(html, "{{title}}", html_escaped(config.texts.at("title")));
 }
 
 // The library takes ranges as they come; this makes them what RFC 9110, 14.1.2 says. False: there
@@ -222,7 +194,8 @@ struct Server::Implementation {
     for (const auto& [path, file] :
          {std::pair{"/", "index.html"}, {"/researcher", "researcher.html"}}) {
       http.Get(path, [this, name = file](const Request&, Response& response) {
-        response.set_content(html_page(desk.config(), name), "text/html; charset=utf-8");
+        response.set_content(html_page(name, desk.config(), "server", ""),
+                             "text/html; charset=utf-8");
       });
     }
   }

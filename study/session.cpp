@@ -12,10 +12,12 @@ namespace {
 using analysis::InputError;
 using analysis::JsonObject;
 using nlohmann::json;
+using nlohmann::ordered_json;
 
 constexpr std::size_t longest_free_text = 20000;  // bytes
 constexpr std::size_t longest_error = 500;        // bytes
 constexpr long most_counted = 1000000;
+constexpr long most_frames = 1000000000;
 constexpr long most_pixels = 100000;
 
 Side side_from(const std::string& word) {
@@ -32,6 +34,11 @@ int whole(JsonObject& object, const char* key, long high) {
   return static_cast<int>(object.whole(key, 0, high));
 }
 
+// A browser may round its clock, so that a gap is a little less than nothing.
+std::optional<double> optional_seconds(JsonObject& object, const char* key) {
+  return object.has(key) ? std::optional(object.number(key, -1, 86400)) : std::nullopt;
+}
+
 // The answer proper, without what goes around it; used for requests and for session files.
 TrialAnswer read_answer(JsonObject& object) {
   TrialAnswer answer;
@@ -39,7 +46,10 @@ TrialAnswer read_answer(JsonObject& object) {
   answer.reaction_time_s = object.number("reaction_time_s", 0, 86400);
   answer.loops_watched = whole(object, "loops_watched", most_counted);
   answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
-  answer.dropped_frames = whole(object, "dropped_frames", most_counted);
+  answer.frame_count = whole(object, "frame_count", most_frames);
+  answer.dropped_frames = whole(object, "dropped_frames", most_frames);
+  answer.loop_gap_median_s = optional_seconds(object, "loop_gap_median_s");
+  answer.loop_gap_max_s = optional_seconds(object, "loop_gap_max_s");
   for (const json& entry : object.array("playback_errors", 100)) {
     if (!entry.is_string() || entry.get_ref<const std::string&>().size() > longest_error) {
       object.fail("playback_errors", "must hold short strings");
@@ -57,24 +67,6 @@ TrialAnswer read_answer(JsonObject& object) {
   answer.screen_height_px = whole(object, "screen_height_px", most_pixels);
   answer.device_pixel_ratio = object.number("device_pixel_ratio", 0.01, 100);
   return answer;
-}
-
-json answer_to_json(const TrialAnswer& answer) {
-  return {{"choice", to_string(answer.choice)},
-          {"reaction_time_s", answer.reaction_time_s},
-          {"loops_watched", answer.loops_watched},
-          {"focus_lost_count", answer.focus_lost_count},
-          {"dropped_frames", answer.dropped_frames},
-          {"playback_errors", answer.playback_errors},
-          {"input", answer.input},
-          {"encoding", to_string(answer.encoding)},
-          {"window_width_px", answer.window_width_px},
-          {"window_height_px", answer.window_height_px},
-          {"clip_width_px", answer.clip_width_px},
-          {"clip_height_px", answer.clip_height_px},
-          {"screen_width_px", answer.screen_width_px},
-          {"screen_height_px", answer.screen_height_px},
-          {"device_pixel_ratio", answer.device_pixel_ratio}};
 }
 
 template <class Read>
@@ -149,19 +141,42 @@ std::map<std::string, std::string> parse_free_text(const json& body) {
   });
 }
 
+ordered_json to_json(const TrialAnswer& answer) {
+  ordered_json object = {
+      {"choice", to_string(answer.choice)},    {"reaction_time_s", answer.reaction_time_s},
+      {"loops_watched", answer.loops_watched}, {"focus_lost_count", answer.focus_lost_count},
+      {"frame_count", answer.frame_count},     {"dropped_frames", answer.dropped_frames}};
+  if (answer.loop_gap_median_s) object["loop_gap_median_s"] = *answer.loop_gap_median_s;
+  if (answer.loop_gap_max_s) object["loop_gap_max_s"] = *answer.loop_gap_max_s;
+  object.update({{"playback_errors", answer.playback_errors},
+                 {"input", answer.input},
+                 {"encoding", to_string(answer.encoding)},
+                 {"window_width_px", answer.window_width_px},
+                 {"window_height_px", answer.window_height_px},
+                 {"clip_width_px", answer.clip_width_px},
+                 {"clip_height_px", answer.clip_height_px},
+                 {"screen_width_px", answer.screen_width_px},
+                 {"screen_height_px", answer.screen_height_px},
+                 {"device_pixel_ratio", answer.device_pixel_ratio}});
+  return object;
+}
+
+json to_json(const PlannedTrial& trial, const std::string& media) {
+  return {{"kind", to_string(trial.kind)},
+          {"demonstration", trial.demonstration},
+          {"pinch", to_string(trial.pinch)},
+          {"round", trial.round},
+          {"media", media}};
+}
+
 json to_json(const Session& session) {
   json plan = json::array();
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const PlannedTrial& trial = session.plan[i];
-    plan.push_back({{"kind", to_string(trial.kind)},
-                    {"demonstration", trial.demonstration},
-                    {"pinch", to_string(trial.pinch)},
-                    {"round", trial.round},
-                    {"media", session.media[i]}});
+    plan.push_back(to_json(session.plan[i], session.media[i]));
   }
   json answers = json::array();
   for (const AnsweredTrial& trial : session.answers) {
-    answers.push_back(answer_to_json(trial.answer));
+    answers.push_back(json(to_json(trial.answer)));
     answers.back()["shown_utc"] = trial.shown_utc;
   }
   return {{"format", "pinchlab-session 1"},

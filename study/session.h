@@ -30,7 +30,12 @@ struct Refused : std::runtime_error {
 struct TrialAnswer {
   Side choice = Side::left;
   double reaction_time_s = 0;  ///< s, since the buttons appeared
-  int loops_watched = 0, focus_lost_count = 0, dropped_frames = 0;
+  int loops_watched = 0, focus_lost_count = 0;
+  int frame_count = 0;     ///< decoded, dropped ones among them
+  int dropped_frames = 0;  ///< of these
+  /// s, how much longer than the clip itself a loop took to begin anew; none where the browser
+  /// tells no times of frames
+  std::optional<double> loop_gap_median_s, loop_gap_max_s;
   std::vector<std::string> playback_errors;
   std::string input;  ///< "mouse", "keyboard" or "touch"
   Encoding encoding = Encoding::mp4;
@@ -79,6 +84,12 @@ SentAnswer parse_answer(const nlohmann::json& body);
 
 /// The optional texts at the end. Throws Refused(422).
 std::map<std::string, std::string> parse_free_text(const nlohmann::json& body);
+
+/// An answer with the keys that parse_answer reads, but for the trial's index.
+nlohmann::ordered_json to_json(const TrialAnswer& answer);
+
+/// A trial of a session's plan as its file keeps it.
+nlohmann::json to_json(const PlannedTrial& trial, const std::string& media);
 
 /// A session as its file keeps it, and back. The second throws std::runtime_error if the file is
 /// not one of ours.

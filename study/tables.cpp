@@ -76,7 +76,10 @@ const std::vector<Column> columns = {
     {"reaction_time_s", "Seconds from the moment the buttons appeared to the choice"},
     {"loops_watched", "Whole loops of the clip before the choice"},
     {"focus_lost_count", "Times the window lost the focus or was hidden"},
+    {"frame_count", "Frames that the browser decoded, dropped ones among them"},
     {"dropped_frames", "Frames that the browser dropped"},
+    {"loop_gap_median_s", "Seconds that a loop took longer than the clip, middle of all loops"},
+    {"loop_gap_max_s", "Seconds that a loop took longer than the clip, at most"},
     {"playback_error_count", "Messages of the player",
      [](const json&, const json& trial) {
        return trial.contains("playback_errors") ? std::to_string(trial["playback_errors"].size())
@@ -117,6 +120,14 @@ ordered_json description() {
           {"variableMeasured", variables}};
 }
 
+// Psych-DS recommends one (MISSING_README_DOC).
+constexpr const char* dataset_readme =
+    "# Which cable looks most realistic?\n\n"
+    "Answers of the perception study of Pinchlab, exported by `pinchlab study export --psych-ds`.\n"
+    "`dataset_description.json` says what each column of `data/study-cables_data.csv` means. "
+    "Answers\n"
+    "of the kinds training and attention are no answers of the study.\n";
+
 }  // namespace
 
 ordered_json plan_json(std::uint64_t seed, std::uint64_t participants, const PlanOptions& options) {
@@ -151,6 +162,7 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 
 std::string answers_csv(const fs::path& folder) {
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const Column& column : columns) {
     names.emplace_back(column.name);
   }
@@ -160,6 +172,7 @@ std::string answers_csv(const fs::path& folder) {
     analysis::parse_answer_file(file, path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
+      values.reserve(columns.size());
       for (const Column& column : columns) {
         values.push_back(column.value != nullptr ? column.value(file, trial)
                                                  : value_of(trial, column.name));
@@ -178,6 +191,7 @@ void write_psych_ds(const fs::path& folder, const fs::path& out) {
   }
   fs::create_directories(out / "data");
   write_durably(out / "data" / "study-cables_data.csv", csv);
+  write_durably(out / "README.md", dataset_readme);
   write_durably(out / "dataset_description.json", description().dump(2) + "\n");
 }
 

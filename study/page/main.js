@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The study from beginning to end, as a jsPsych timeline.
 
+import { NotKept } from './errors.js';
 import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, thanks } from './pages.js';
 import { PairTrial } from './pair_trial.js';
 
@@ -9,8 +10,8 @@ const notice = document.getElementById('notice');
 const { connect } = await import(document.documentElement.dataset.backend);
 
 let texts = null;
-const backend = connect((isTrouble) => {
-  const text = isTrouble ? texts?.connection_lost ?? '…' : '';
+const backend = connect((trouble) => {
+  const text = trouble ? texts?.[trouble instanceof NotKept ? 'not_kept' : 'connection_lost'] ?? '…' : '';
   if (notice.textContent !== text) notice.textContent = text;
 });
 ({ texts } = await backend.study());
@@ -21,7 +22,7 @@ async function begin() {
   const running = await backend.running();
   if (!running) return information(stage, texts, backend);
   if (await askResume(stage, texts)) return backend.resume();
-  await backend.leave();
+  await backend.startAnew();
   return information(stage, texts, backend);
 }
 

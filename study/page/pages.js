@@ -2,7 +2,7 @@
 // Everything around the trials. A page is a function that fills an element and returns a promise of
 // what the participant did there.
 
-import { SessionGone, Refused } from './server.js';
+import { Refused, SessionGone } from './errors.js';
 
 const smallest = { width: 1280, height: 720 };  // px, of the screen
 const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars besides the window
@@ -174,7 +174,7 @@ export function exitButton(texts, onLeave) {
       make('button', { type: 'button', id: 'stay', onclick: () => dialog.close() }, texts.exit_cancel),
       make('button', { type: 'button', id: 'leave', class: 'quiet', onclick() { dialog.close(); onLeave(); } }, texts.exit_confirm)));
   const button = make('button', { type: 'button', id: 'exit', class: 'quiet', onclick: () => dialog.showModal() }, texts.exit);
-  return make('span', {}, button, dialog);
+  return make('span', { class: 'exit' }, button, dialog);
 }
 
 /** The two optional texts. */
@@ -236,11 +236,9 @@ export function save(stage, texts, backend, freeText, onLeave) {
 export function thanks(stage, texts, code) {
   const copy = make('button', {
     type: 'button', class: 'quiet',
-    async onclick() {
-      await navigator.clipboard?.writeText(code);
-      copy.textContent = texts.copied;
-    },
+    onclick: () => navigator.clipboard.writeText(code).then(() => { copy.textContent = texts.copied; }, console.warn),
   }, texts.copy);
+  copy.hidden = !navigator.clipboard;  // as on pages without TLS
   sheet(stage, texts.saved_heading, make('p', {}, texts.saved_body),
     ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []));
 }

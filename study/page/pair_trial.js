@@ -61,27 +61,27 @@ function build(display, { texts, practice, remaining, exit }) {
   video.muted = true;  // the attribute alone does not count for elements that a script makes
   const choices = make('div', { class: 'choices' }, make('p', { class: 'wait' }, texts.watch_first));
   const spoken = make('p', { class: 'spoken', role: 'status' });
-  const left = remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining);
-  const footer = make('footer', {}, make('p', { id: 'remaining' }, left), exit());
-  display.replaceChildren(make('section', { class: 'trial' }, heading,
-    ...(practice ? [make('p', { class: 'practice hint' }, texts.practice)] : []), make('div', { class: 'clips' }, video), choices, spoken, footer));
+  const left = make('p', { id: 'remaining' }, remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining));
+  if (practice) left.append(make('span', { class: 'hint' }, texts.practice));
+  // The style puts how many are left, the question and the exit above the clips; the order here is that of the Tab key.
+  const top = [heading, left, exit()];
+  display.replaceChildren(make('section', { class: 'trial' }, heading, make('div', { class: 'clips' }, video), choices, spoken, ...top.slice(1)));
   heading.focus();
-  return { video, choices, spoken, heading };
+  return { video, choices, spoken, top };
 }
 
 // One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
-function keepFitting({ video, choices }) {
+function keepFitting({ video, choices, top }) {
   const fit = () => {
-    if (!video.videoWidth) return;
+    if (!video.videoWidth) return;  // what stands under the clips would jump
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
-    const clips = video.parentElement;
-    const others = [...clips.parentElement.children]
-      .filter((element) => element !== clips && getComputedStyle(element).position !== 'absolute')
-      .reduce((sum, element) => sum + element.getBoundingClientRect().height, 24);  // CSS px, with margins
-    const scale = Math.min(1, (innerWidth - 16) / width, (innerHeight - others) / height);
+    const heightOf = (element) => element.getBoundingClientRect().height;
+    const others = Math.max(...top.map(heightOf)) + heightOf(choices);
+    const scale = Math.min(1, innerWidth / width, (innerHeight - others - 8) / height);
     video.style.width = `${width * scale}px`;
     video.style.height = `${height * scale}px`;
     choices.style.maxWidth = `${Math.max(width * scale, 560)}px`;
+    choices.style.visibility = 'visible';
   };
   video.addEventListener('loadedmetadata', fit);
   addEventListener('resize', fit);
@@ -113,13 +113,16 @@ class Watch {
     this.focusLost = 0;
     this.errors = [];
     this.isStopped = false;
-    this.last = 0;  // s
+    this.isInterrupted = false;  // since the loop began
+    this.last = null;  // frame that was seen: { time: s of the clip, at: ms of the clock }
+    this.loopGaps = [];  // s
     this.isAway = false;
     this.firstLoop = new Promise((resolve) => { this.loopEnded = resolve; });
     video.addEventListener('error', () => this.note(`error: ${video.error?.code} ${video.error?.message ?? ''}`));
     video.addEventListener('stalled', () => this.note('stalled'));
     this.onAway = () => {
       const isAway = document.hidden || !document.hasFocus();
+      if (document.hidden) this.isInterrupted = true;  // a hidden page is given no frames
       if (isAway && !this.isAway) ++this.focusLost;
       this.isAway = isAway;
     };
@@ -128,23 +131,28 @@ class Watch {
     addEventListener('focus', this.onAway);
     document.addEventListener('visibilitychange', this.onAway);
     if (video.requestVideoFrameCallback) {
-      const onFrame = (now, { mediaTime }) => {
-        this.saw(mediaTime);
+      const onFrame = (now, { mediaTime, expectedDisplayTime }) => {
+        this.saw(mediaTime, expectedDisplayTime);
         if (!this.isStopped) video.requestVideoFrameCallback(onFrame);
       };
       video.requestVideoFrameCallback(onFrame);
     } else {
-      video.addEventListener('timeupdate', () => this.saw(video.currentTime));
+      video.addEventListener('timeupdate', () => this.saw(video.currentTime, null));
     }
   }
 
-  saw(time) {
+  // A frame of the clip's second `time` is on the screen at `at` ms, or null where the browser does not tell.
+  saw(time, at) {
     if (this.isStopped) return;
-    if (time < this.last) {
+    if (this.last && time < this.last.time) {
       ++this.loops;
       this.loopEnded();
+      // How much longer it took than the clip's own time from the one frame to the other.
+      const gap = (at - this.last.at) / 1000 - (this.video.duration - this.last.time + time);
+      if (at !== null && !this.isInterrupted) this.loopGaps.push(gap);
+      this.isInterrupted = false;
     }
-    this.last = time;
+    this.last = { time, at };
   }
 
   note(message) {
@@ -156,14 +164,20 @@ class Watch {
     removeEventListener('blur', this.onAway);
     removeEventListener('focus', this.onAway);
     document.removeEventListener('visibilitychange', this.onAway);
+    const { droppedVideoFrames = 0, totalVideoFrames = 0 } = this.video.getVideoPlaybackQuality?.() ?? {};
+    const gaps = [...this.loopGaps].sort((a, b) => a - b);
     return {
       loops_watched: this.loops,
       focus_lost_count: this.focusLost,
-      dropped_frames: this.video.getVideoPlaybackQuality?.().droppedVideoFrames ?? 0,
+      dropped_frames: droppedVideoFrames,
+      frame_count: totalVideoFrames,
+      ...(gaps.length > 0 && { loop_gap_median_s: median(gaps), loop_gap_max_s: gaps.at(-1) }),
       playback_errors: this.errors,
     };
   }
 }
+
+const median = (sorted) => (sorted[(sorted.length - 1) >> 1] + sorted[sorted.length >> 1]) / 2;
 
 function choose({ choices, spoken }, texts) {
   return new Promise((resolve) => {

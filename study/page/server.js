@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The study's own server. What it has confirmed is on its disk; what it has not is sent again.
 
+import { NotKept, Refused, SessionGone, insist } from './errors.js';
+
 const storageKey = 'study';
 const longestWait = 15000;  // ms, for one reply
-
-/** The session ended, here or in another window. */
-export class SessionGone extends Error {}
-
-/** The server will not do that, and would not the next time; `status` is HTTP's. */
-export class Refused extends Error {
-  constructor(status) {
-    super(`refused (${status})`);
-    this.status = status;
-  }
-}
-
-const pause = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
 // Where storage is forbidden, the session lasts as long as the page.
 const stored = {
@@ -46,37 +35,21 @@ async function request(method, path, body) {
   });
   if (response.status === 401) throw new SessionGone();
   if (response.status >= 400 && response.status < 500 && response.status !== 429) throw new Refused(response.status);
+  if (response.status === 507) throw new NotKept();
   if (!response.ok) throw new Error(`status ${response.status}`);
   return response.json();
 }
 
-// Again and again until the server has confirmed it; `onTrouble(true)` while it has not.
-async function insist(method, path, body, onTrouble) {
-  for (let wait = 500; ; wait = Math.min(2 * wait, 5000)) {
-    try {
-      const result = await request(method, path, body);
-      onTrouble(false);
-      return result;
-    } catch (error) {
-      if (error instanceof SessionGone || error instanceof Refused) {
-        onTrouble(false);
-        throw error;
-      }
-      onTrouble(true);
-      await pause(wait);
-    }
-  }
-}
-
 export function connect(onTrouble) {
+  const confirmed = (method, path, body) => insist(() => request(method, path, body), onTrouble);
   return {
-    study: () => insist('GET', 'api/study', null, onTrouble),
+    study: () => confirmed('GET', 'api/study', null),
 
     /** The session that was begun before, or null. */
     async running() {
       if (!stored.read()) return null;
       try {
-        return await insist('GET', 'api/session', null, onTrouble);
+        return await confirmed('GET', 'api/session', null);
       } catch (error) {
         if (!(error instanceof SessionGone)) throw error;
         stored.write(null);
@@ -91,13 +64,13 @@ export function connect(onTrouble) {
       return session;
     },
 
-    resume: () => insist('POST', 'api/resume', {}, onTrouble),
-    show: (index) => insist('POST', 'api/show', { index }, onTrouble),
+    resume: () => confirmed('POST', 'api/resume', {}),
+    show: (index) => confirmed('POST', 'api/show', { index }),
 
     async answer(sent) {
       const { token, answers } = stored.read();
       stored.write({ token, answers: [...answers.filter(({ index }) => index !== sent.index), sent] });
-      await insist('POST', 'api/answer', sent, onTrouble);
+      await confirmed('POST', 'api/answer', sent);
     },
 
     /** One attempt; what can be tried again is for the page to say. */
@@ -109,6 +82,10 @@ export function connect(onTrouble) {
 
     /** What this browser knows, for a participant whose answers the server does not take. */
     download: (freeText) => ({ ...stored.read(), free_text: freeText }),
+
+    async startAnew() {
+      await this.leave();
+    },
 
     async leave() {
       try {

@@ -157,6 +157,42 @@ TEST(Batch, ReadsBackAsVideo) {
   EXPECT_EQ(frames, 15);
 }
 
+// Mean difference of a panel of a wide frame from a frame, levels of 255.
+double panel_difference(const std::vector<std::uint8_t>& wide, std::size_t panel,
+                        const std::vector<std::uint8_t>& frame, bool is_turned) {
+  constexpr std::size_t side = 64, row = 4 * side;  // px, bytes
+  double sum = 0;
+  for (std::size_t y = 0; y < side; ++y) {
+    const std::size_t from = is_turned ? side - 1 - y : y;
+    for (std::size_t x = 0; x < row; ++x) {
+      sum += std::abs(wide[(2 * y + panel) * row + x] - frame[from * row + x]);
+    }
+  }
+  return sum / static_cast<double>(side * row);
+}
+
+// Antialiasing differs a little from place to place, so that panels are not equal to the last bit.
+TEST(Batch, AttentionChecksShowTheClipBesideItselfUpsideDown) {
+  const fs::path folder = folder_with_demos();
+  ASSERT_EQ(run_program(folder, render_with({"--attention-checks", "--codec", "ffv1"})).exit_code,
+            0);
+  VideoReader single((folder / "clips/02-short.pinch.mkv").string());
+  VideoReader left((folder / "clips/02-short.check-left.mkv").string());
+  VideoReader right((folder / "clips/02-short.check-right.mkv").string());
+  int frames = 0;
+  while (const auto frame = single.next()) {
+    const auto left_frame = left.next(), right_frame = right.next();
+    ASSERT_TRUE(left_frame && right_frame);
+    EXPECT_LT(panel_difference(left_frame->rgba, 0, frame->rgba, false), 0.2);
+    EXPECT_LT(panel_difference(left_frame->rgba, 1, frame->rgba, true), 0.2);
+    EXPECT_LT(panel_difference(right_frame->rgba, 0, frame->rgba, true), 0.2);
+    EXPECT_LT(panel_difference(right_frame->rgba, 1, frame->rgba, false), 0.2);
+    EXPECT_GT(panel_difference(left_frame->rgba, 1, frame->rgba, false), 1.0);
+    ++frames;
+  }
+  EXPECT_EQ(frames, 15);
+}
+
 TEST(Batch, SecondRunMakesNothing) {
   const fs::path folder = folder_with_demos();
   ASSERT_EQ(run_program(folder, render).exit_code, 0);
@@ -330,6 +366,34 @@ TEST(Batch, ForeignManifestIsNotOverwritten) {
 
 SceneFile small_file() {
   return parse_scene(small_scene().dump(), "01-small.json");
+}
+
+TEST(PlanClips, WhatIsMade) {
+  const SceneFile file = small_file();
+  const auto files = [&](const BatchOptions& options) {
+    std::vector<std::string> names;
+    for (const ClipPlan& plan : plan_clips(file, options)) {
+      names.push_back(plan.file);
+    }
+    return names;
+  };
+  const std::string name = file.scene.name;
+  const std::vector<std::string> singles = {name + ".pinch.mp4", name + ".baseline.mp4",
+                                            name + ".poster.png"};
+  const std::vector<std::string> pairs = {name + ".left-pinch.mp4", name + ".left-baseline.mp4"};
+  BatchOptions options;
+  EXPECT_EQ(files(options), singles);
+  options.singles = false;
+  options.side_by_side = true;
+  EXPECT_EQ(files(options), pairs);
+  options.singles = true;
+  std::vector<std::string> all = singles;
+  all.insert(all.end(), pairs.begin(), pairs.end());
+  EXPECT_EQ(files(options), all);
+  options.singles = options.side_by_side = false;
+  options.checks = true;
+  EXPECT_EQ(files(options),
+            (std::vector<std::string>{name + ".check-left.mp4", name + ".check-right.mp4"}));
 }
 
 TEST(PlanClips, OptionsThatCannotBe) {

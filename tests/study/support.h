@@ -70,21 +70,15 @@ inline DeskOptions desk_options(const std::filesystem::path& folder) {
 }
 
 inline nlohmann::json answer_body(std::size_t index, const char* choice = "left") {
-  return {{"index", index},
-          {"choice", choice},
-          {"reaction_time_s", 1.25},
-          {"loops_watched", 2},
-          {"focus_lost_count", 0},
-          {"dropped_frames", 3},
-          {"playback_errors", nlohmann::json::array()},
-          {"input", "mouse"},
-          {"encoding", "mp4"},
-          {"window_width_px", 1280},
-          {"window_height_px", 720},
-          {"clip_width_px", 1200},
-          {"clip_height_px", 600},
-          {"screen_width_px", 1920},
-          {"screen_height_px", 1080},
+  return {{"index", index},          {"choice", choice},
+          {"reaction_time_s", 1.25}, {"loops_watched", 2},
+          {"focus_lost_count", 0},   {"frame_count", 900},
+          {"dropped_frames", 3},     {"loop_gap_median_s", 0.001},
+          {"loop_gap_max_s", 0.017}, {"playback_errors", nlohmann::json::array()},
+          {"input", "mouse"},        {"encoding", "mp4"},
+          {"window_width_px", 1280}, {"window_height_px", 720},
+          {"clip_width_px", 1200},   {"clip_height_px", 600},
+          {"screen_width_px", 1920}, {"screen_height_px", 1080},
           {"device_pixel_ratio", 1}};
 }
 

@@ -3,10 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, demonstrations, killServers, open, scratch, serve } from './support.mjs';
-
-// Words of methods, of this project, and of the demonstrations' files.
-const telling = new RegExp(`pinch|baseline|no_contact|left-|${demonstrations.join('|')}`, 'i');
+import { answer, answersIn, browse, consent, demonstrations, killServers, open, scratch, serve, telling } from './support.mjs';
 
 // Takes the whole study and returns all that the browser received and what is left in it.
 async function takePart(server) {

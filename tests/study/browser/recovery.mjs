@@ -2,9 +2,11 @@
 // Reloads, lost connections, killed servers, full disks: nothing that was confirmed is lost.
 
 import assert from 'node:assert/strict';
-import { readFileSync, renameSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
 
 async function answerAll(page, count = demonstrations.length) {
   for (let i = 0; i < count; ++i) {
@@ -34,6 +36,7 @@ test('a reload asks, and goes on at the same trial', () => withBrowser(async (co
   await answer(page);
   await page.reload();
   await page.waitForSelector('#continue');
+  await assertAccessible(page, 'resume');
   await picture(page, '11-resume');
   await page.click('#continue');
   await page.waitForSelector('video');
@@ -74,6 +77,7 @@ test('a server killed between trials loses nobody', () => withBrowser(async (con
   await server.kill();
   await page.click('#right');
   await page.waitForFunction(() => /connection/.test(document.querySelector('#notice').textContent));
+  await assertAccessible(page, 'no connection');
   await picture(page, '12-connection');
   server = await serve(folder, { port: server.port });
   await page.waitForFunction(() => document.querySelector('#remaining')?.textContent === 'The last one');
@@ -97,6 +101,7 @@ test('a server killed before and after saving: saved once, with one code', () =>
   await page.click('#save');
   await page.waitForSelector('#retry');
   assert.match(await page.textContent('#stage'), /not saved yet/);
+  await assertAccessible(page, 'not saved');
   await picture(page, '13-not-saved');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
   const kept = JSON.parse(readFileSync(await download.path(), 'utf8'));
@@ -141,4 +146,77 @@ test('a folder that is gone: told, tried again, saved when it is back', () => wi
   assert.equal(answersIn(server).length, 1);
   assert.match(server.output, /NOT SAVED/);
   await server.kill();
+}));
+
+// A small disk at `folder`, or why there can be none.
+function mountSmallDisk(folder) {
+  mkdirSync(folder, { recursive: true });
+  try {
+    execFileSync('mount', ['-t', 'tmpfs', '-o', 'size=256k', 'tmpfs', folder], { stdio: 'pipe' });
+    return '';
+  } catch (error) {
+    return `no disk can be mounted here: ${error.stderr}`;
+  }
+}
+
+// Answers and saves while the disk takes nothing, and again when it does.
+async function withDisk(context, folder, breakIt, mendIt) {
+  const server = await serve(folder);
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await page.waitForSelector('#left');
+  breakIt();
+  await page.click('#right');
+  await page.waitForFunction(() => /cannot be stored/.test(document.querySelector('#notice').textContent));
+  await assertAccessible(page, 'not kept');
+  await picture(page, '14-not-kept');
+  assert.equal(await page.textContent('#remaining'), '3 left to answer', 'it does not go on');
+  mendIt();
+  await page.waitForFunction(() => document.querySelector('#remaining').textContent === '2 left to answer');
+  assert.equal(await page.textContent('#notice'), '');
+  await answerAll(page, 2);
+  breakIt();
+  await page.click('#save');
+  await page.waitForSelector('#retry');
+  await page.click('#retry');
+  await page.waitForSelector('#retry');
+  assert.equal(await page.locator('#code').count(), 0);
+  assert.deepEqual(answersIn(server), []);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
+  assert.equal(JSON.parse(readFileSync(await download.path(), 'utf8')).answers.length, 3, 'what can be downloaded is complete');
+  mendIt();
+  await page.waitForSelector('#code');
+  assert.deepEqual(answersIn(server).map(({ trials }) => trials.map(({ choice }) => choice)), [['right', 'left', 'left']]);
+  assert.match(server.output, /NOT SAVED.*(No space left|Read-only)/);
+  await server.kill();
+}
+
+test('a full disk: told, nothing lost, saved when there is room', (t) => withBrowser(async (context) => {
+  const folder = scratch();
+  const answers = join(folder, 'answers');
+  const why = mountSmallDisk(answers);
+  if (why) return t.skip(why);
+  const ballast = join(answers, 'ballast');
+  const fill = () => assert.throws(() => { for (;;) writeFileSync(ballast, 'x'.repeat(1024), { flag: 'a' }); }, /ENOSPC/);
+  try {
+    return await withDisk(context, folder, fill, () => rmSync(ballast));
+  } finally {
+    killServers();
+    execFileSync('umount', ['--lazy', answers]);
+  }
+}));
+
+test('a disk that becomes read-only: told, nothing lost, saved when it is not any more', (t) => withBrowser(async (context) => {
+  const folder = scratch();
+  const answers = join(folder, 'answers');
+  const why = mountSmallDisk(answers);
+  if (why) return t.skip(why);
+  const remount = (how) => execFileSync('mount', ['-o', `remount,${how}`, answers]);
+  try {
+    return await withDisk(context, folder, () => remount('ro'), () => remount('rw'));
+  } finally {
+    killServers();
+    execFileSync('umount', ['--lazy', answers]);
+  }
 }));

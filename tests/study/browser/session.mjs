@@ -2,20 +2,8 @@
 // Whole sessions as participants have them.
 
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
-
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-async function assertAccessible(page, where) {
-  // By the debugger, which the content security policy does not bind.
-  await page.evaluate(axe);
-  const violations = await page.evaluate(async () => (await window.axe.run()).violations.map(
-    ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(' ')}`));
-  assert.deepEqual(violations, [], where);
-}
+import { answer, answersIn, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
 
 async function withStudy(options, body) {
   const server = await serve(scratch(), options);
@@ -36,7 +24,15 @@ test('with the mouse, from beginning to end, every page accessible', () => withS
   await page.click('#start');
   assert.match(await page.textContent('#stage'), /tick the box/, 'no consent, no start');
   assert.deepEqual(openSessions(server), []);
+  await page.route('**/media/**', async (route) => {
+    await page.waitForSelector('progress');
+    await assertAccessible(page, 'loading');
+    await picture(page, '2-loading');
+    await route.continue();
+  }, { times: 1 });
   await consent(page);
+  await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.5);
+  await assertAccessible(page, 'first loop');
   await picture(page, '2-first-loop');
   const choices = [];
   for (let i = 0; i < demonstrations.length; ++i) {
@@ -171,6 +167,7 @@ test('leaving asks once and keeps nothing', () => withStudy({}, async (server, c
   await page.waitForSelector('#left');
   await answer(page);
   await page.click('#exit');
+  await assertAccessible(page, 'exit');
   await picture(page, '8-exit');
   await page.keyboard.press('ArrowRight');
   await page.click('#stay');
@@ -179,6 +176,7 @@ test('leaving asks once and keeps nothing', () => withStudy({}, async (server, c
   await page.click('#exit');
   await page.click('#leave');
   await page.waitForFunction(() => /left the study/.test(document.querySelector('h1').textContent));
+  await assertAccessible(page, 'left');
   await picture(page, '9-left');
   assert.deepEqual(openSessions(server), []);
   assert.deepEqual(answersIn(server), []);
@@ -192,7 +190,16 @@ test('a small screen is told kindly', () => withStudy({ context: { viewport: { w
   await page.waitForSelector('#start');
   assert.match(await page.textContent('#stage'), /too small/);
   assert.equal(await page.isDisabled('#start'), true);
+  await assertAccessible(page, 'small');
   await picture(page, '10-small');
+}));
+
+test('a touch screen is told kindly', () => withStudy({ context: { viewport: { width: 1400, height: 900 }, hasTouch: true, isMobile: true } }, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  assert.match(await page.textContent('#stage'), /computer with a mouse or a keyboard/);
+  assert.equal(await page.isDisabled('#start'), true);
+  await picture(page, '18-touch');
 }));
 
 test('a browser without H.264 plays the other encoding; practice comes first', () => withStudy({ config: { training: ['03-drop'] } }, async (server, context) => {
@@ -205,11 +212,11 @@ test('a browser without H.264 plays the other encoding; practice comes first', (
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
-  assert.match(await page.textContent('.practice'), /practice/);
+  assert.match(await page.textContent('#remaining .hint'), /practice/);
   for (let i = 0; i <= demonstrations.length; ++i) {
     await page.waitForSelector('#left');
     assert.deepEqual(await page.$eval('video', (video) => [video.videoWidth, video.videoHeight]), [640, 320]);
-    assert.equal(await page.locator('.practice').count(), i === 0 ? 1 : 0);
+    assert.equal(await page.locator('#remaining .hint').count(), i === 0 ? 1 : 0);
     await answer(page);
   }
   await page.click('#next');

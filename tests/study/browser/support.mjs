@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A study with short clips, its server, and a browser in front of it.
 
+import assert from 'node:assert/strict';
 import { spawn, execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-const root = new URL('../../..', import.meta.url).pathname;
-const program = process.env.PINCHLAB_PROGRAM;
+export const root = new URL('../../..', import.meta.url).pathname;
+export const program = process.env.PINCHLAB_PROGRAM ?? join(root, 'build/release/pinchlab');
 const chromiumPath = process.env.CHROMIUM ?? '/usr/bin/chromium';
 process.setMaxListeners(50);
 const skipped = 77;  // what CTest takes for "skipped"
@@ -25,9 +27,13 @@ try {
 } catch {
   skip('playwright-core is not installed (npm ci --prefix tests/study/browser)');
 }
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 if (!existsSync(join(root, 'study/page/node_modules/jspsych'))) skip('jsPsych is not installed (npm ci --prefix study/page)');
 
 export const demonstrations = ['01-roll-over', '03-drop', '07-driven-roller'];
+
+// Words of methods, of this project, and of the demonstrations' files.
+export const telling = new RegExp(`pinch|baseline|no_contact|left-|${demonstrations.join('|')}`, 'i');
 
 /** A folder of this test's own, removed at the end. */
 export function scratch() {
@@ -50,7 +56,8 @@ export function clips(seconds = 2) {
     }
     const scenes = demonstrations.map((name) => join(made, `${name}.json`));
     for (const codec of ['h264', 'vp9']) {
-      execFileSync(program, ['render', ...scenes, '--out', cache, '--size', '320x320', '--fps', '30', '--side-by-side', '--codec', codec],
+      execFileSync(program, ['render', ...scenes, '--out', cache, '--size', '320x320', '--fps', '30', '--only-side-by-side',
+        '--attention-checks', '--codec', codec],
         { stdio: ['ignore', 'inherit', 'pipe'] });
     }
   } finally {
@@ -68,13 +75,15 @@ export function killServers() {
 }
 process.on('exit', killServers);
 
-/** Starts the server, on a port that is free or on `port`. Resolves when it listens. */
-export async function serve(folder, { port = 0, config = {} } = {}) {
+/**
+ * Starts the server, on a port that is free or on `port`, with the short clips or with those of `clipsFolder`. Resolves
+ * when it listens.
+ */
+export async function serve(folder, { port = 0, config = {}, clipsFolder, cwd = folder, answers = join(folder, 'answers') } = {}) {
   const configFile = join(folder, 'study.json');
-  writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations, ...config }));
-  const answers = join(folder, 'answers');
-  const child = spawn(program, ['study', 'serve', '--clips', clips(), '--answers', answers, '--port', String(port), '--seed', '7',
-    '--config', configFile, '--no-webm'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'] });
+  writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations: clipsFolder ? undefined : demonstrations, ...config }));
+  const child = spawn(program, ['study', 'serve', '--clips', clipsFolder ?? clips(), '--answers', answers, '--port', String(port), '--seed', '7',
+    '--config', configFile, '--no-webm'], { cwd, stdio: ['ignore', 'pipe', 'inherit'] });
   running.add(child);
   const server = { child, answers, output: '' };
   server.ended = new Promise((resolve) => { child.on('exit', resolve); });
@@ -141,6 +150,28 @@ export async function answer(page, side = 'left') {
   const remaining = await page.textContent('#remaining');
   await page.click(`#${side}`);
   await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
+}
+
+/** Says that the page has nothing that keeps people out. */
+export async function assertAccessible(page, where) {
+  // By the debugger, which the content security policy does not bind.
+  await page.evaluate(axe);
+  const violations = await page.evaluate(async () => (await window.axe.run()).violations.map(
+    ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(' ')}`));
+  assert.deepEqual(violations, [], where);
+}
+
+/** Waits until the clip that is shown has ended `wanted` loops. */
+export function watchLoops(page, wanted) {
+  return page.evaluate((count) => new Promise((resolve) => {
+    const video = document.querySelector('video');
+    let last = 0, ends = 0;
+    video.requestVideoFrameCallback(function note(now, { mediaTime }) {
+      if (mediaTime < last && ++ends === count) return resolve();
+      last = mediaTime;
+      return video.requestVideoFrameCallback(note);
+    });
+  }), wanted);
 }
 
 /** Keeps a screenshot where PINCHLAB_SCREENSHOTS says. */

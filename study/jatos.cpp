@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/jatos.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "analysis/input_error.h"
+#include "analysis/json_object.h"
+#include "study/answers.h"
+#include "study/durable_file.h"
+#include "study/page_assets.h"
+#include "study/secrets.h"
+#include "study/session.h"
+#include "study/zip.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using analysis::InputError;
+using analysis::JsonObject;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr const char* folder_name = "moving_cables";  // participants can see it
+constexpr std::size_t largest_key = 512U << 20U;      // bytes
+
+// RFC 9562, version 4.
+std::string random_uuid() {
+  std::string hex = random_hex(16);
+  hex[12] = '4';
+  hex[16] = "89ab"[static_cast<unsigned char>(hex[16]) % 4];
+  return fmt::format("{}-{}-{}-{}-{}", hex.substr(0, 8), hex.substr(8, 4), hex.substr(12, 4),
+                     hex.substr(16, 4), hex.substr(20));
+}
+
+// A clip's random names. A demonstration that is shown several times has another name each time, so
+// that a name does not tell that the sides are the same.
+class MediaNames {
+ public:
+  const std::string& of(const PlannedTrial& trial) {
+    std::string& name = names_[{trial.demonstration, trial.pinch, trial.kind, trial.round}];
+    if (name.empty()) {
+      name = random_hex(16);
+    }
+    return name;
+  }
+  /// What each name stands for, in the order of the names.
+  [[nodiscard]] std::map<std::string, std::pair<std::string, Side>> meanings() const {
+    std::map<std::string, std::pair<std::string, Side>> result;
+    for (const auto& [shown, name] : names_) {
+      result[name] = {std::get<0>(shown), std::get<1>(shown)};
+    }
+    return result;
+  }
+
+ private:
+  std::map<std::tuple<std::string, Side, TrialKind, int>, std::string> names_;
+};
+
+// What JATOS knows of the study; `input` reaches the page as jatos.componentJsonInput. A string in
+// a string: so JATOS keeps inputs.
+ordered_json study_properties(const Config& config, const std::string& uuid, const json& input) {
+  const ordered_json component = {{"uuid", random_uuid()},
+                                  {"title", config.texts.at("title")},
+                                  {"htmlFilePath", "index.html"},
+                                  {"reloadable", true},
+                                  {"active", true},
+                                  {"comments", ""},
+                                  {"jsonData", input.dump()}};
+  const ordered_json batch = {
+      {"uuid", random_uuid()},
+      {"title", "Default"},
+      {"active", true},
+      {"maxActiveMembers", nullptr},
+      {"maxTotalMembers", nullptr},
+      {"maxTotalWorkers", nullptr},
+      {"allowedWorkerTypes",
+       {"Jatos", "PersonalSingle", "PersonalMultiple", "GeneralSingle", "GeneralMultiple"}},
+      {"comments", nullptr},
+      {"jsonData", nullptr}};
+  return {{"version", "3"},
+          {"data",
+           {{"uuid", uuid},
+            {"title", config.texts.at("title")},
+            {"description", ""},
+            {"groupStudy", false},
+            {"dirName", folder_name},
+            {"comments", ""},
+            {"jsonData", nullptr},
+            {"componentList", ordered_json::array({component})},
+            {"batchList", ordered_json::array({batch})}}}};
+}
+
+void add_page(ZipWriter& zip, const Config& config) {
+  const std::string folder = std::string(folder_name) + "/";
+  for (const PageAsset& asset : page_assets()) {
+    const bool is_ours_only = asset.path.starts_with("researcher") ||
+                              asset.path.starts_with("texts/") || asset.path == "server.js" ||
+                              asset.path == "index.html";
+    if (!is_ours_only) {
+      zip.add(folder + std::string(asset.path), asset.bytes);
+    }
+  }
+  // JATOS serves jatos.js itself, beside the assets.
+  zip.add(folder + "index.html", html_page("index.html", config, "jatos_server",
+                                           "<script src=\"jatos.js\"></script>\n  "));
+}
+
+void add_clips(ZipWriter& zip, const Clips& clips, const MediaNames& names) {
+  for (const auto& [name, meaning] : names.meanings()) {
+    const auto& [demonstration, side] = meaning;
+    const PairFiles& files = clips.at(demonstration);
+    for (const Encoding encoding : {Encoding::mp4, Encoding::webm}) {
+      if (encoding == Encoding::mp4 || files.webm) {
+        const Clip& clip = files.in(encoding).at(side);
+        zip.add(fmt::format("{}/media/{}.{}", folder_name, name, to_string(encoding)),
+                clip.read(0, clip.served_size()));
+      }
+    }
+  }
+}
+
+json file_entry(const ClipPair& pair) {
+  const auto entry = [](const Clip& clip) {
+    return json{{"name", clip.name()}, {"sha256", clip.sha256()}};
+  };
+  return {{"left", entry(*pair.left)}, {"right", entry(*pair.right)}};
+}
+
+// What the page fetches: names of clips and nothing else.
+json plan_for_page(const std::vector<PlannedTrial>& plan, MediaNames& names, const Clips& clips) {
+  const bool has_webm = std::ranges::all_of(plan, [&](const PlannedTrial& trial) {
+    return clips.at(trial.demonstration).webm.has_value();
+  });
+  json trials = json::array();
+  for (const PlannedTrial& trial : plan) {
+    const std::string path = "media/" + names.of(trial);
+    json entry = {{"practice", trial.kind == TrialKind::training}, {"mp4", path + ".mp4"}};
+    if (has_webm) {
+      entry["webm"] = path + ".webm";
+    }
+    trials.push_back(entry);
+  }
+  return trials;
+}
+
+// The key, read back.
+// nlohmann's move, which is declared noexcept, checks itself.
+struct Key {  // NOLINT(bugprone-exception-escape)
+  std::string study;
+  std::uint64_t seed = 0;
+  PlanOptions options;
+  json files, plans;
+};
+
+std::vector<std::string> read_names(JsonObject& object, const std::string& key) {
+  std::vector<std::string> names;
+  for (const json& name : object.array(key, 10000)) {
+    if (!name.is_string()) {
+      object.fail(key, "must hold names");
+    }
+    names.push_back(name.get<std::string>());
+  }
+  return names;
+}
+
+Key read_key(const fs::path& path) {
+  const json document = analysis::read_json_file(path, largest_key);
+  JsonObject object(document, path.string(), "");
+  object.choice("format", {"pinchlab-jatos-key 1"});
+  Key key;
+  key.study = object.name("study");
+  key.seed = static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
+  JsonObject options = object.object("options");
+  key.options.demonstrations = read_names(options, "demonstrations");
+  key.options.training = read_names(options, "training");
+  key.options.attention_checks = read_names(options, "attention_checks");
+  key.options.repetitions = static_cast<int>(options.whole("repetitions", 1, 50));
+  key.options.both_orders = options.flag("both_orders");
+  options.finish();
+  key.files = object.need("files");
+  key.plans = object.array("plans", 1000000);
+  object.finish();
+  return key;
+}
+
+struct Result {
+  std::string id;
+  ordered_json file;
+};
+
+// One line of the results: what jatos_server.js submitted.
+Result read_result(const std::string& line, const std::string& place, const Key& key) {
+  json document;
+  try {
+    document = json::parse(line);
+  } catch (const json::exception&) {
+    throw InputError(place, "is not JSON; export the results from JATOS as text, data only");
+  }
+  JsonObject object(document, place, "");
+  object.choice("format", {"study-answers 1"});
+  if (object.name("study") != key.study) {
+    throw InputError(place, "belongs to another archive; give the key that was made with it");
+  }
+  const long number = object.whole("number", 0, static_cast<long>(key.plans.size()) - 1);
+  const std::string code_hash = withdrawal_hash(object.text("withdrawal_code", 64));
+  if (code_hash.empty()) {
+    object.fail("withdrawal_code", "is no withdrawal code");
+  }
+  const std::string saved_utc = object.utc("saved_utc");
+  // The rest is what a session file of our own server holds, and is checked as such.
+  const json session_document = {{"format", "pinchlab-session 1"},
+                                 {"id", object.name("participant")},
+                                 {"secret_sha256", std::string(64, '0')},
+                                 {"number", number},
+                                 {"seed", key.seed},
+                                 {"language", object.need("language")},
+                                 {"user_agent", object.need("user_agent")},
+                                 {"started_utc", object.need("started_utc")},
+                                 {"last_seen_utc", saved_utc},
+                                 {"resumed_count", object.need("resumed_count")},
+                                 {"shown_utc", ""},
+                                 {"plan", key.plans[static_cast<std::size_t>(number)]},
+                                 {"answers", object.need("answers")}};
+  const json free_text = {{"free_text", object.need("free_text")}};
+  object.finish();
+  try {
+    const Session session = session_from_json(session_document);
+    if (session.id.size() != 16 ||
+        session.id.find_first_not_of("0123456789abcdef") != std::string::npos) {
+      throw std::runtime_error("participant: must be 16 hexadecimal digits");
+    }
+    const auto shown = [&key](const PlannedTrial& trial, Encoding encoding) {
+      const json& file =
+          key.files.at(trial.demonstration).at(to_string(encoding)).at(to_string(trial.pinch));
+      return ShownFile{file.at("name"), file.at("sha256")};
+    };
+    return {session.id, answer_file(session, key.options, shown, parse_free_text(free_text),
+                                    saved_utc, code_hash)};
+  } catch (const std::exception& error) {
+    throw InputError(place, error.what());
+  }
+}
+
+std::vector<fs::path> text_files(const std::vector<fs::path>& paths) {
+  std::vector<fs::path> files;
+  for (const fs::path& path : paths) {
+    if (!fs::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
+      if (entry.is_regular_file() && entry.path().extension() == ".txt") {
+        files.push_back(entry.path());
+      }
+    }
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+fs::path key_path(const fs::path& archive) {
+  return fs::path(archive).replace_extension(".key.json");
+}
+
+void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
+                  std::uint64_t participants, const fs::path& archive) {
+  if (fs::exists(key_path(archive))) {
+    throw std::runtime_error(
+        fmt::format("{}: is there already, and answers to its archive need it; choose another name",
+                    key_path(archive).string()));
+  }
+  const PlanOptions options = plan_options(config);
+  const std::string uuid = random_uuid();
+  MediaNames names;
+  ZipWriter zip(archive);
+  add_page(zip, config);
+  json plans = json::array();
+  for (std::uint64_t number = 0; number < participants; ++number) {
+    const std::vector<PlannedTrial> plan = make_plan(seed, number, options);
+    zip.add(fmt::format("{}/plans/{}.json", folder_name, number),
+            plan_for_page(plan, names, clips).dump());
+    plans.push_back(json::array());
+    for (const PlannedTrial& trial : plan) {
+      plans.back().push_back(to_json(trial, names.of(trial)));
+    }
+  }
+  add_clips(zip, clips, names);
+  const json input = {{"study", uuid},
+                      {"participants", participants},
+                      {"language", config.language},
+                      {"texts", config.texts}};
+  zip.add(std::string(folder_name) + ".jas", study_properties(config, uuid, input).dump());
+
+  json files = json::object();
+  for (const auto& [name, pair] : clips) {
+    files[name]["mp4"] = file_entry(pair.mp4);
+    if (pair.webm) {
+      files[name]["webm"] = file_entry(*pair.webm);
+    }
+  }
+  const ordered_json key = {{"format", "pinchlab-jatos-key 1"},
+                            {"study", uuid},
+                            {"seed", seed},
+                            {"options",
+                             {{"demonstrations", options.demonstrations},
+                              {"training", options.training},
+                              {"attention_checks", options.attention_checks},
+                              {"repetitions", options.repetitions},
+                              {"both_orders", options.both_orders}}},
+                            {"files", files},
+                            {"plans", plans}};
+  // The key first: an archive without one would be worthless.
+  write_durably(key_path(archive), key.dump(1) + "\n");
+  try {
+    zip.finish();
+  } catch (const std::exception&) {
+    remove_durably(key_path(archive));
+    throw;
+  }
+}
+
+Imported import_jatos(const std::vector<fs::path>& results, const fs::path& key_file,
+                      const fs::path& answers) {
+  const Key key = read_key(key_file);
+  std::vector<Result> all;
+  for (const fs::path& path : text_files(results)) {
+    std::istringstream lines(read_whole(path));
+    std::string line;
+    for (int i = 1; std::getline(lines, line); ++i) {
+      if (line.find_first_not_of(" \t\r") != std::string::npos) {
+        all.push_back(read_result(line, fmt::format("{}:{}", path.string(), i), key));
+      }
+    }
+  }
+  fs::create_directories(answers);
+  Imported imported;
+  for (const Result& result : all) {
+    const fs::path path = answer_path(answers, result.id);
+    if (fs::exists(path)) {
+      ++imported.known;
+      continue;
+    }
+    save_answers(path, result.file);
+    ++imported.added;
+  }
+  return imported;
+}
+
+}  // namespace pinchlab::study

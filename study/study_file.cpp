@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/study_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <stdexcept>
+
+#include "analysis/json_object.h"
+#include "study/durable_file.h"
+#include "study/secrets.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t largest_file = 16U << 20U;  // bytes
+constexpr std::size_t most_links = 1000000;
+
+// What a study is counterbalanced by: participants of two plans must not come into one folder.
+json fingerprint(const Config& config) {
+  const PlanOptions options = plan_options(config);
+  return {{"demonstrations", options.demonstrations},
+          {"training", options.training},
+          {"attention_checks", options.attention_checks},
+          {"repetitions", options.repetitions},
+          {"both_orders", options.both_orders}};
+}
+
+fs::path study_path(const fs::path& answers) {
+  return running_folder(answers) / "study.json";
+}
+
+}  // namespace
+
+fs::path running_folder(const fs::path& answers) {
+  return answers / ".running";
+}
+
+std::uint64_t random_seed() {
+  std::uint64_t seed = 0;
+  const std::string digits = random_hex(6);
+  std::from_chars(digits.data(), digits.data() + digits.size(), seed, 16);
+  return seed;
+}
+
+StudyFile open_study_file(const fs::path& answers, const Config& config,
+                          std::optional<std::uint64_t> seed) {
+  const fs::path path = study_path(answers);
+  StudyFile study;
+  if (!fs::exists(path)) {
+    study.seed = seed.value_or(random_seed());
+    study.link_secret = random_hex(32);
+    write_study_file(answers, config, study);
+    return study;
+  }
+  const json file = analysis::read_json_file(path, largest_file);
+  analysis::JsonObject object(file, path.string(), "");
+  object.choice("format", {"pinchlab-running 1"});
+  study.seed = static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
+  study.link_secret = object.text("link_secret", 64);
+  for (const json& number : object.array("used_links", most_links)) {
+    if (!number.is_number_unsigned()) {
+      object.fail("used_links", "must hold participants' numbers");
+    }
+    study.used_links.insert(number.get<std::uint64_t>());
+  }
+  if (seed && *seed != study.seed) {
+    throw std::runtime_error(
+        fmt::format("{}: the study in this folder has the seed {}, not {}; leave --seed out, or "
+                    "use another --answers",
+                    answers.string(), study.seed, *seed));
+  }
+  if (object.need("plan") != fingerprint(config)) {
+    throw std::runtime_error(
+        fmt::format("{}: the study in this folder shows something else; use its configuration, or "
+                    "another --answers",
+                    answers.string()));
+  }
+  return study;
+}
+
+void write_study_file(const fs::path& answers, const Config& config, const StudyFile& study) {
+  const json file = {{"format", "pinchlab-running 1"},
+                     {"seed", study.seed},
+                     {"link_secret", study.link_secret},
+                     {"used_links", study.used_links},
+                     {"plan", fingerprint(config)}};
+  write_durably(study_path(answers), file.dump(2) + "\n");
+}
+
+FolderLock::FolderLock(const fs::path& answers)
+    : folder_(::open(running_folder(answers).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_ < 0) {
+    throw std::runtime_error(running_folder(answers).string() +
+                             ": is not a folder that can be used");
+  }
+  if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(folder_);
+    throw std::runtime_error(
+        fmt::format("{}: another server is using this folder; stop it or use another --answers",
+                    answers.string()));
+  }
+}
+
+FolderLock::~FolderLock() {
+  ::close(folder_);
+}
+
+}  // namespace pinchlab::study

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a study in a folder of answers is from its first start on: ANSWERS/.running/study.json, and
+// the lock that keeps a second server out.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "study/config.h"
+
+namespace pinchlab::study {
+
+struct StudyFile {
+  std::uint64_t seed = 0;
+  std::string link_secret;             ///< that one-time links follow from
+  std::set<std::uint64_t> used_links;  ///< by participant number
+};
+
+/// Where a study keeps what is not finished.
+std::filesystem::path running_folder(const std::filesystem::path& answers);
+
+/// A seed from the kernel's random numbers, 0 to 2^48 - 1.
+std::uint64_t random_seed();
+
+/// Reads the file, or makes it with `seed` (random if none). Throws std::runtime_error with the
+/// cure if the study there has another seed or would show something else.
+StudyFile open_study_file(const std::filesystem::path& answers, const Config& config,
+                          std::optional<std::uint64_t> seed);
+
+void write_study_file(const std::filesystem::path& answers, const Config& config,
+                      const StudyFile& study);
+
+/// One server at a time in a folder. The lock is on the folder itself and goes with the process.
+class FolderLock {
+ public:
+  /// Throws std::runtime_error if another process has it.
+  explicit FolderLock(const std::filesystem::path& answers);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_;
+};
+
+}  // namespace pinchlab::study

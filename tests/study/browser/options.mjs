@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a configuration turns on.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { answer, answersIn, assertAccessible, browse, consent, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+
+async function withStudy(config, body) {
+  const server = await serve(scratch(), { config });
+  const { browser, context } = await browse();
+  try {
+    await body(server, context, browser);
+  } finally {
+    await browser.close();
+    killServers();
+  }
+}
+
+test('practice and an attention check, by their names alone', () => withStudy({ training: ['01-roll-over'], attention_checks: ['03-drop'] }, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  for (let i = 0; i < 5; ++i) {
+    await page.waitForSelector('#left');
+    if (i === 0) {
+      await assertAccessible(page, 'practice');
+      await picture(page, '15-practice');
+    }
+    assert.equal(await page.locator('#remaining .hint').count(), i === 0 ? 1 : 0, 'only practice is said to be such');
+    await picture(page, `16-trial-${i}`);
+    await answer(page);
+  }
+  await page.click('#next');
+  await page.click('#save');
+  await page.waitForSelector('#code');
+  const [{ trials }] = answersIn(server);
+  assert.deepEqual(trials.map(({ kind }) => kind).sort(), ['attention', 'main', 'main', 'main', 'training']);
+  assert.equal(trials[0].kind, 'training');
+  assert.ok(trials[1].kind !== 'attention', 'a check is never the first that counts');
+  const check = trials.find(({ kind }) => kind === 'attention');
+  assert.equal(check.demonstration, '03-drop-upside-down');
+  assert.equal(check.clip, `03-drop.check-${check.expected}.mp4`);
+  assert.deepEqual([check.left, check.right], ['check', 'check']);
+  assert.deepEqual(page.problems, []);
+}));
+
+test('one-time links: who has one starts, once', () => withStudy({ one_time_links: true, participant_limit: 2 }, async (server, context, browser) => {
+  const links = [...server.output.matchAll(/One-time link +(\S+)/g)].map(([, link]) => link);
+  assert.equal(new Set(links).size, 2);
+  const refusal = async (address) => {
+    const other = await browser.newContext();
+    const page = await open(other, address);
+    await page.waitForSelector('#start');
+    await page.check('#consent');
+    await page.click('#start');
+    await page.waitForFunction(() => document.querySelector('.wrong[role=alert]').textContent !== '');
+    await assertAccessible(page, 'refused');
+    await picture(page, '17-link');
+    const text = await page.textContent('.wrong[role=alert]');
+    await other.close();
+    return text;
+  };
+  assert.match(await refusal(server.address), /personal link/);
+  const page = await open(context, links[1]);
+  await page.waitForSelector('#start');
+  await consent(page);
+  assert.match(await refusal(links[1]), /used already/, 'while it is running');
+  await page.reload();
+  await page.click('#continue');
+  for (let i = 0; i < 3; ++i) {
+    await page.waitForSelector('#left');
+    await answer(page);
+  }
+  await page.click('#next');
+  await page.click('#save');
+  await page.waitForSelector('#code');
+  assert.equal(answersIn(server)[0].participant_number, 1, 'the number is the link’s');
+  assert.match(await refusal(links[1]), /used already/, 'after it was saved');
+  assert.match(await refusal(new URL(`?link=${'0'.repeat(32)}`, server.address).href), /used already/, 'a link that nobody was given');
+  assert.deepEqual(openSessions(server), []);
+}));

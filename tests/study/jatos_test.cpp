@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Archives for JATOS, and results that come back from it.
+#include "study/jatos.h"
+
+#include <zlib.h>
+
+#include <map>
+#include <set>
+
+#include "analysis/answer_file.h"
+#include "analysis/json_object.h"
+#include "study/answers.h"
+#include "study/durable_file.h"
+#include "study/zip.h"
+#include "tests/study/support.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::uint64_t number(const std::string& bytes, std::size_t at, unsigned size) {
+  std::uint64_t value = 0;
+  for (unsigned i = size; i > 0; --i) {
+    value = (value << 8U) | static_cast<unsigned char>(bytes.at(at + i - 1));
+  }
+  return value;
+}
+
+std::string inflated(std::string packed, std::size_t size) {
+  std::string bytes(size, '\0');
+  z_stream stream = {};
+  EXPECT_EQ(inflateInit2(&stream, -MAX_WBITS), Z_OK);
+  stream.next_in = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = static_cast<uInt>(size);
+  // With nothing to write, the end is still to be read.
+  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
+  inflateEnd(&stream);
+  return bytes;
+}
+
+// The entries of an archive as its central directory has them.
+std::map<std::string, std::string> unzip(const fs::path& path) {
+  const std::string zip = read_whole(path);
+  const std::size_t end = zip.rfind("PK\x05\x06");
+  std::map<std::string, std::string> entries;
+  std::size_t at = number(zip, end + 16, 4);
+  for (std::uint64_t i = 0; i < number(zip, end + 10, 2); ++i) {
+    EXPECT_EQ(zip.substr(at, 4), "PK\x01\x02");
+    const std::uint64_t name_length = number(zip, at + 28, 2);
+    const std::string name = zip.substr(at + 46, name_length);
+    const std::uint64_t local = number(zip, at + 42, 4);
+    EXPECT_EQ(zip.substr(local + 6, 24), zip.substr(at + 8, 24)) << "both heads of " << name;
+    const std::string bytes = inflated(
+        zip.substr(local + 30 + name_length, number(zip, at + 20, 4)), number(zip, at + 24, 4));
+    const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    EXPECT_EQ(crc, number(zip, at + 16, 4)) << name;
+    entries[name] = bytes;
+    at += 46 + name_length;
+  }
+  return entries;
+}
+
+// What the page submits for somebody with this plan.
+json result(const json& input, int participant_number, std::size_t trials, const std::string& id) {
+  json answers = json::array();
+  for (std::size_t i = 0; i < trials; ++i) {
+    answers.push_back(answer_body(0, i % 2 == 0 ? "left" : "right"));
+    answers.back().erase("index");
+    answers.back()["shown_utc"] = "2026-11-20T12:05:01.250Z";
+  }
+  return {{"format", "study-answers 1"},
+          {"study", input["study"]},
+          {"participant", id},
+          {"number", participant_number},
+          {"language", "en"},
+          {"user_agent", "browser"},
+          {"started_utc", "2026-11-20T12:05:00.000Z"},
+          {"saved_utc", "2026-11-20T12:15:00.000Z"},
+          {"resumed_count", 0},
+          {"withdrawal_code", "7K3M-9Q2X-0BVA"},
+          {"free_text", {{"thoughts", "none"}}},
+          {"answers", answers}};
+}
+
+struct Exported {
+  fs::path folder;
+  std::map<std::string, std::string> entries;
+  json input;
+};
+
+Exported exported(const Config& config) {
+  Exported exported;
+  exported.folder = scratch_folder();
+  write_clips(exported.folder / "clips");
+  export_jatos(config, open_clips(exported.folder / "clips", config), 7, 4,
+               exported.folder / "study.jzip");
+  exported.entries = unzip(exported.folder / "study.jzip");
+  const json jas = json::parse(exported.entries.at("moving_cables.jas"));
+  exported.input = json::parse(jas["data"]["componentList"][0]["jsonData"].get<std::string>());
+  return exported;
+}
+
+TEST(Zip, EntriesComeBack) {
+  const fs::path path = scratch_folder() / "a.zip";
+  std::string noise(300000, '\0');
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    noise[i] = static_cast<char>((i * i * 2654435761U) >> 13U);
+  }
+  const std::map<std::string, std::string> entries = {
+      {"a/empty", ""}, {"a/noise", noise}, {"b", std::string(1000000, 'x')}, {"å.txt", "text"}};
+  {
+    ZipWriter zip(path);
+    for (const auto& [name, bytes] : entries) {
+      zip.add(name, bytes);
+    }
+    EXPECT_FALSE(fs::exists(path)) << "not before it is complete";
+    zip.finish();
+  }
+  EXPECT_EQ(unzip(path), entries);
+  { ZipWriter interrupted(path.parent_path() / "b.zip"); }
+  EXPECT_FALSE(fs::exists(path.parent_path() / "b.zip"));
+  EXPECT_FALSE(fs::exists(path.parent_path() / "b.zip.partial"));
+  EXPECT_THROW(ZipWriter(path.parent_path() / "none" / "c.zip"), std::runtime_error);
+}
+
+TEST(Jatos, PlansNameClipsThatTellNothing) {
+  Config config = small_config();
+  config.repetitions = 2;
+  const Exported study = exported(config);
+  const json key = analysis::read_json_file(study.folder / "study.key.json", 1U << 20U);
+  std::set<std::size_t> sizes;
+  for (int participant = 0; participant < 4; ++participant) {
+    const json plan = json::parse(
+        study.entries.at("moving_cables/plans/" + std::to_string(participant) + ".json"));
+    const std::vector<PlannedTrial> expected =
+        make_plan(7, static_cast<std::uint64_t>(participant), plan_options(config));
+    ASSERT_EQ(plan.size(), expected.size());
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+      const auto media = plan[i]["mp4"].get<std::string>();
+      EXPECT_TRUE(names.insert(media).second) << "a name that is shown twice";
+      const std::string& clip = study.entries.at("moving_cables/" + media);
+      sizes.insert(clip.size());
+      // It is the clip that the plan asks for.
+      const std::string side = expected[i].pinch == Side::left ? "pinch" : "baseline";
+      const std::string file = read_whole(study.folder / "clips" /
+                                          (expected[i].demonstration + ".left-" + side + ".mp4"));
+      EXPECT_EQ(clip.substr(0, file.size()), file);
+      EXPECT_EQ(
+          "media/" +
+              key["plans"][static_cast<std::size_t>(participant)][i]["media"].get<std::string>() +
+              ".mp4",
+          media);
+    }
+  }
+  EXPECT_EQ(sizes.size(), 1U);
+  for (const auto& [name, bytes] : study.entries) {
+    for (const char* word : {"pinch", "baseline", "01-first", "02-second", "03-third"}) {
+      EXPECT_EQ(name.find(word), std::string::npos) << name;
+      if (!name.ends_with("jspsych.js")) {
+        EXPECT_EQ(bytes.find(word), std::string::npos) << name << " holds " << word;
+      }
+    }
+  }
+}
+
+TEST(Jatos, ResultsBecomeAnswerFiles) {
+  const Exported study = exported(small_config());
+  const fs::path results = study.folder / "results";
+  fs::create_directories(results / "study_result_1" / "comp-result_1");
+  write_text(results / "study_result_1" / "comp-result_1" / "data.txt",
+             result(study.input, 2, 3, "0123456789abcdef").dump());
+  write_text(results / "more.txt",
+             "\n" + result(study.input, 3, 3, "0123456789abcde0").dump() + "\n\n");
+  const auto bring = [&] {
+    return import_jatos({results}, study.folder / "study.key.json", study.folder / "answers");
+  };
+  EXPECT_EQ(bring().added, 2);
+  EXPECT_EQ(bring().known, 2) << "a second time changes nothing";
+  const json file = json::parse(read_whole(study.folder / "answers" / "0123456789abcdef.json"));
+  analysis::parse_answer_file(file, "answers");
+  const std::vector<PlannedTrial> plan = make_plan(7, 2, plan_options(small_config()));
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    EXPECT_EQ(file["trials"][i]["demonstration"], plan[i].demonstration);
+    EXPECT_EQ(file["trials"][i]["left"], plan[i].pinch == Side::left ? "pinch" : "baseline");
+    EXPECT_EQ(file["trials"][i]["choice"], i % 2 == 0 ? "left" : "right");
+  }
+  EXPECT_EQ(withdraw(study.folder / "answers", "7K3M-9Q2X-0BVA"), "0123456789abcde0")
+      << "both have the code of this test; the first goes";
+}
+
+TEST(Jatos, WhatCannotBeIsToldAndNothingIsWritten) {
+  const Exported study = exported(small_config());
+  const auto error = [&](const std::string& text) -> std::string {
+    write_text(study.folder / "results.txt", text);
+    try {
+      import_jatos({study.folder / "results.txt"}, study.folder / "study.key.json",
+                   study.folder / "answers");
+    } catch (const std::exception& problem) {
+      return problem.what();
+    }
+    return "no error";
+  };
+  const json good = result(study.input, 0, 3, "0123456789abcdef");
+  const auto with = [&](const char* key, const json& value) {
+    json document = good;
+    document[key] = value;
+    return good.dump() + "\n" + document.dump();
+  };
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {good.dump() + "\nnonsense", "results.txt:2: is not JSON"},
+      {with("number", 4), "results.txt:2"},
+      {with("study", "another"), "belongs to another archive"},
+      {with("participant", "../escape"), "results.txt:2"},
+      {with("withdrawal_code", "x"), "no withdrawal code"},
+      {with("answers", json::array()), "left to answer"},
+      {with("extra", 1), "extra"},
+  };
+  for (const auto& [text, message] : bad) {
+    EXPECT_NE(error(text).find(message), std::string::npos) << error(text);
+    EXPECT_FALSE(fs::exists(study.folder / "answers"));
+  }
+  EXPECT_EQ(error(good.dump()), "no error");
+}
+
+TEST(Jatos, AKeyIsNotWrittenOver) {
+  const Exported study = exported(small_config());
+  const Config config = small_config();
+  EXPECT_THROW(export_jatos(config, open_clips(study.folder / "clips", config), 7, 4,
+                            study.folder / "study.jzip"),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pinchlab::study
