@@ -139,7 +139,7 @@ TEST(DisconnectedScene, SleepsWithoutDisturbingWhatMoves) {
     }
   }
   int asleep = 0;
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with, c);
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with.scratch.parts, c);
   EXPECT_EQ(asleep, count - moving);
 }
 
