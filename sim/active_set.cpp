@@ -308,9 +308,10 @@ void solve_direct(const Scene& scene, World& world, int part, double kick) {
   ActiveSet& set = s.active_set;
   set.part = part;
   set.solves = 0;
-  release_bodies(world);
-  if (s.rows.empty()) return;
-
+  if (s.rows.empty()) {
+    release_bodies(world);
+    return;
+  }
   order_rows(world, part);
   find_runs(scene, world, part_being_solved(world));
   // All contradicted states flip while that makes progress, then one at a time.

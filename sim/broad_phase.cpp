@@ -207,7 +207,10 @@ void find_body_pairs(const Scene& scene, World& world) {
 void find_span_pairs(const Scene& scene, World& world) {
   BroadPhase& broad = world.scratch.broad_phase;
   const int changes = changes_of_cables(world);
-  if (!broad.bodies_changed && broad.changes == changes && spans_in_boxes(world, broad)) return;
+  if (!broad.bodies_changed && broad.changes == changes &&
+      (!world.scratch.spans_moved || spans_in_boxes(world, broad))) {
+    return;
+  }
   broad.bodies_changed = false;
   broad.changes = changes;
   list_span_pairs(scene, world, broad);

@@ -80,13 +80,18 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   segment.head = tangent_point(b, to.signed_radius(), t.direction);
 }
 
-void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
+namespace {
+
+void update_wraps(CableState& cable) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Link& link = cable.links[i];
     if (link.orientation != 0) {
       link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
     }
   }
+}
+
+void update_rest_lengths(const World& world, CableState& cable) {
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
     const std::size_t from = tail_link(cable, i);
     cable.segments[i].rest_length =
@@ -96,12 +101,20 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
   }
 }
 
+}  // namespace
+
+void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
+  update_wraps(cable);
+  update_rest_lengths(world, cable);
+}
+
 void update_segments(World& world) {
   world.scratch.released.clear();
   world.scratch.spans_moved = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(world.scratch.parts, c)) continue;
     CableState& cable = world.cables[c];
+    bool moved = false;
     Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       Segment& segment = cable.segments[i];
@@ -111,11 +124,13 @@ void update_segments(World& world) {
       segment.moved = from != segment.tail_centre || to != segment.head_centre;
       if (segment.moved) {
         update_tangent(world, cable, i);
-        world.scratch.spans_moved = true;
+        moved = true;
       }
       from = to;
     }
-    update_wraps_and_rest_lengths(world, cable);
+    if (moved) update_wraps(cable);
+    update_rest_lengths(world, cable);
+    world.scratch.spans_moved = world.scratch.spans_moved || moved;
   }
 }
 

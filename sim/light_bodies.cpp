@@ -80,12 +80,8 @@ void steady_light_bodies(const Scene& scene, World& world, const Part& part, dou
   Scratch& scratch = world.scratch;
   const std::span<const int> bodies = bodies_of(scratch.parts, part);
   if (!scratch.span_masses.empty()) restore(scene, bodies, kick, scratch);
-  double lightest = infinity;
-  for (const int b : bodies) {
-    const Body& body = scene.bodies[static_cast<std::size_t>(b)];
-    if (can_move(body)) lightest = std::min(lightest, body.mass);
-  }
-  const double least = negligible * lightest / (2.0 * world.step_length * world.step_length);
+  if (!part.can_move) return;
+  const double least = negligible * part.lightest / (2.0 * world.step_length * world.step_length);
   bool any = false;
   for (const int c : cables_of(scratch.parts, part)) {
     const CableState& cable = world.cables[static_cast<std::size_t>(c)];

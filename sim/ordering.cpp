@@ -9,9 +9,7 @@ namespace {
 
 /// The body's place in its part, or -1: what it does is not up to the rows.
 int mobile(const Scratch& s, int body) {
-  return body >= 0 && s.mobility[static_cast<std::size_t>(body)].any()
-             ? s.parts.local[static_cast<std::size_t>(body)]
-             : -1;
+  return body >= 0 ? s.parts.mobile[static_cast<std::size_t>(body)] : -1;
 }
 
 void list_rows_of_bodies(Scratch& s, std::size_t bodies) {

@@ -116,6 +116,7 @@ void divide(const Scene& scene, const World& world, Parts& parts) {
   int count = 0;
   parts.of_body.assign(index(bodies), -1);
   parts.local.assign(index(bodies), -1);
+  parts.mobile.assign(index(bodies), -1);
   parts.immobile.resize(index(bodies));
   for (int b = 0; b < bodies; ++b) {
     parts.immobile[index(b)] = !can_move(scene.bodies[index(b)]);
@@ -145,7 +146,11 @@ void divide(const Scene& scene, const World& world, Parts& parts) {
     }
     for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
       const std::size_t b = index(parts.bodies[index(k)]);
+      const Body& body = scene.bodies[b];
       parts.local[b] = k - part.bodies_begin;
+      const bool turns = body.kind != BodyKind::fixed && !body.driven_angular_velocity;
+      if (can_move(body) || turns) parts.mobile[b] = parts.local[b];
+      if (can_move(body)) part.lightest = std::min(part.lightest, body.mass);
       part.can_move = part.can_move || !parts.immobile[b];
     }
   }

@@ -17,6 +17,7 @@ struct Part {
   int bodies_begin = 0, bodies_end = 0;      // of Parts::bodies
   int cables_begin = 0, cables_end = 0;      // of Parts::cables
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
+  double lightest = infinity;                // kg, of the bodies that can do more than turn
   bool can_move = false;                     // a body of it can do more than turn
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
@@ -35,6 +36,7 @@ struct Parts {
   std::vector<int> local;      // place of the body in its part's bodies, or -1: fixed
   bool any_moves = true;       // a body of a part that is awake can do more than turn
   std::vector<char> immobile;  // whether the body's centre cannot move
+  std::vector<int> mobile;     // `local` of bodies that impulses can move or turn, or -1
   std::vector<int> structure;  // what the parts were found for: pairs in contact
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found

@@ -119,8 +119,9 @@ void find_repeated_middles(World& world) {
     const Eigen::Vector3d& j = same_side ? other.ja : other.jb;
     const double sign = row.ja.dot(j) > 0.0 ? 1.0 : -1.0;
     const Eigen::Vector3d& k = same_side ? other.jb : other.ja;
-    constexpr double rounding = 1e-12;
-    if (!row.ja.isApprox(sign * j, rounding) || !row.jb.isApprox(sign * k, rounding)) continue;
+    const double difference =
+        (row.ja - sign * j).cwiseAbs().maxCoeff() + (row.jb - sign * k).cwiseAbs().maxCoeff();
+    if (difference > 1e-12) continue;  // cables of different widths
     row.repeats = first;
     row.on = false;
     ++other.repeated;

@@ -17,7 +17,6 @@ struct Mobility {
   double xx = 0.0, xy = 0.0, yy = 0.0;  // 1/kg, symmetric: a rail body moves along its axis only
   double angular = 0.0;                 // 1/(kg m^2)
 
-  bool any() const { return xx != 0.0 || yy != 0.0 || angular != 0.0; }
   Eigen::Vector3d operator*(const Eigen::Vector3d& j) const {
     return {xx * j.x() + xy * j.y(), xy * j.x() + yy * j.y(), angular * j.z()};
   }
@@ -35,14 +34,13 @@ enum class RowKind {
 /// compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind;
-  int index = -1;      // contact; or cable
-  int item = -1;       // segment, or middle link
-  int a = -1, b = -1;  // bodies, -1: none
-  Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = Eigen::Vector3d::Zero();  // (x, y, angle)
-  Eigen::Vector3d ra = Eigen::Vector3d::Zero(), rb = Eigen::Vector3d::Zero();  // mobility * J^T, by
-                                                                               // weigh
-  double bias = 0.0;                                                           // m/s
-  double compliance = 0.0;                                                     // 1/kg
+  int index = -1;                      // contact; or cable
+  int item = -1;                       // segment, or middle link
+  int a = -1, b = -1;                  // bodies, -1: none
+  Eigen::Vector3d ja, jb;              // (x, y, angle); of bodies that there are
+  Eigen::Vector3d ra, rb;              // mobility * J^T of them, by weigh
+  double bias = 0.0;                   // m/s
+  double compliance = 0.0;             // 1/kg
   double diagonal = 0.0;               // 1/kg, J * mobility * J^T
   double impulse = 0.0;                // N s
   bool rebounds = false;               // normal: the bias is the speed of a rebound

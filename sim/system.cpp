@@ -96,7 +96,7 @@ void accumulate(std::vector<BodyTerm>& list, std::size_t begin, int unknown, int
 }
 
 bool moves(const Scratch& s, int body) {
-  return body >= 0 && s.mobility[index(body)].any();
+  return body >= 0 && s.parts.mobile[index(body)] >= 0;
 }
 
 /// Effects of unknowns on bodies, listed by body, and what each equation sees of the bodies.
@@ -203,43 +203,47 @@ void assemble_coupled(World& world) {
   }
 }
 
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
+/// Appends an end of unknown u to the chain of its body.
+void append_end(RowEnd* ends, int* last_end, int end, int body, const Eigen::Vector3d& j) {
+  if (body < 0) return;
+  int& last = last_end[body];
+  ends[end].j = j;
+  ends[end].previous = last;
+  ends[end].least = last >= 0 ? ends[last].least : end / 2;
+  last = end;
+}
+
 /// The matrix J M^-1 J^T + compliance where each unknown is one row's impulse. Every body keeps the
 /// chain of the unknowns that move it, so that a row finds those that it is coupled with.
 void assemble_symmetric(World& world) {
   Scratch& s = world.scratch;
   ActiveSet& set = s.active_set;
-  const std::size_t count = set.row_of_unknown.size();
+  const int count = static_cast<int>(set.row_of_unknown.size());
   set.last_end.assign(bodies_of(s.parts, part_being_solved(world)).size(), -1);
-  set.ends.resize(2 * count);
-  set.scale.resize(count);
+  set.ends.resize(2 * index(count));
+  set.scale.resize(index(count));
   set.ldl.clear();
-  for (std::size_t u = 0; u < count; ++u) {
-    const Row& row = s.rows[index(set.row_of_unknown[u])];
-    const int unknown = static_cast<int>(u);
-    const int bodies[2] = {moves(s, row.a) ? row.a : -1, moves(s, row.b) ? row.b : -1};
-    int first = unknown;
-    for (const int body : bodies) {
-      if (body < 0) continue;
-      const int last = set.last_end[index(s.parts.local[index(body)])];
-      if (last >= 0) first = std::min(first, set.ends[index(last)].least);
-    }
+  const int* mobile = s.parts.mobile.data();
+  RowEnd* ends = set.ends.data();
+  int* last_end = set.last_end.data();
+  for (int u = 0; u < count; ++u) {
+    const Row& row = s.rows[index(set.row_of_unknown[index(u)])];
+    const int a = row.a >= 0 ? mobile[row.a] : -1, b = row.b >= 0 ? mobile[row.b] : -1;
+    const int last_a = a >= 0 ? last_end[a] : -1, last_b = b >= 0 ? last_end[b] : -1;
+    int first = u;
+    if (last_a >= 0) first = std::min(first, ends[last_a].least);
+    if (last_b >= 0) first = std::min(first, ends[last_b].least);
     double* entries = set.ldl.append(first) - first;
-    entries[unknown] = row.compliance;
-    set.scale[u] = row.diagonal + row.compliance;
-    for (int side = 0; side < 2; ++side) {
-      if (bodies[side] < 0) continue;
-      const Eigen::Vector3d& j = side == 0 ? row.ja : row.jb;
-      const Eigen::Vector3d& seen = side == 0 ? row.ra : row.rb;
-      int& last = set.last_end[index(s.parts.local[index(bodies[side])])];
-      for (int e = last; e >= 0; e = set.ends[index(e)].previous) {
-        const double value = seen.dot(set.ends[index(e)].j);
-        entries[e / 2] += e / 2 == unknown ? 2.0 * value : value;  // both ends on one body
-      }
-      entries[unknown] += seen.dot(j);
-      const int least = last >= 0 ? set.ends[index(last)].least : unknown;
-      set.ends[2 * u + static_cast<std::size_t>(side)] = {j, last, least};
-      last = 2 * unknown + side;
-    }
+    for (int e = last_a; e >= 0; e = ends[e].previous) entries[e / 2] += dot(row.ra, ends[e].j);
+    for (int e = last_b; e >= 0; e = ends[e].previous) entries[e / 2] += dot(row.rb, ends[e].j);
+    entries[u] = set.scale[index(u)] = row.diagonal + row.compliance;
+    if (a >= 0 && a == b) entries[u] += 2.0 * dot(row.ra, row.jb);
+    append_end(ends, last_end, 2 * u, a, row.ja);
+    append_end(ends, last_end, 2 * u + 1, b, row.jb);
   }
 }
 
