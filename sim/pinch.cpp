@@ -165,9 +165,15 @@ double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
 
 void find_contacts(const Scene& scene, World& world) {
   bool& all_kept = world.scratch.contacts_kept;
+  std::vector<Contact>& old = world.scratch.old_contacts;
+  if (world.contacts.empty() && scene.walls.empty() &&
+      world.scratch.broad_phase.body_pairs.empty()) {
+    all_kept = true;
+    old.clear();
+    return;
+  }
   all_kept = !world.scratch.parts.list.empty() && !world.scratch.parts.any_moves;
   if (all_kept) return;
-  std::vector<Contact>& old = world.scratch.old_contacts;
   std::swap(old, world.contacts);
   world.contacts.clear();
   std::size_t kept = 0;
@@ -240,13 +246,12 @@ void find_contacts(const Scene& scene, World& world) {
 
 void configure_pinches(const Scene& scene, World& world) {
   if (world.configuration.method == Method::cable) return;
+  if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
   Scratch& scratch = world.scratch;
   scratch.pinches_kept = scratch.contacts_kept && !scratch.spans_moved &&
                          scratch.configured_changes == changes_of_cables(world);
   if (scratch.pinches_kept) return;
   remove_open_pinches(world);
-  scratch.configured_changes = changes_of_cables(world);
-  if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
 
   // Only links of bodies that have contacts matter.
   auto& contacts_of_body = world.scratch.contacts_of_body;
@@ -304,8 +309,8 @@ void configure_pinches(const Scene& scene, World& world) {
 
 void assign_contacts(World& world) {
   if (world.configuration.method == Method::cable) return;
-  if (world.scratch.pinches_kept) return;
   if (world.contacts.empty() && world.scratch.old_contacts.empty()) return;
+  if (world.scratch.pinches_kept) return;
   const Parts& parts = world.scratch.parts;
   for (const Part& part : parts.list) {
     if (part.kept) continue;
