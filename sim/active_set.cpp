@@ -25,6 +25,7 @@ bool is_friction(const Row& row) {
 /// sides passes friction from body to body, as much as the smoother of the two allows.
 void bound_friction(World& world) {
   std::vector<Row>& rows = world.scratch.rows;
+  if (!world.scratch.has_friction_rows) return;
   for (Row& row : rows) {
     if (!is_friction(row) || row.repeats >= 0) continue;
     if (row.normal >= 0) row.on = rows[index(row.normal)].on;

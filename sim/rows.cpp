@@ -158,6 +158,7 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
   steady_light_bodies(scene, world, part, kick);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   scratch.rows.clear();
+  scratch.has_friction_rows = false;
   scratch.segment_begin.resize(world.cables.size());
   scratch.row_of_segment.clear();
   for (const int cable_number : cables_of(scratch.parts, part)) {
@@ -181,6 +182,7 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
       row.on = !segment.slack;
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
+        scratch.has_friction_rows = true;
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
       }
@@ -247,6 +249,7 @@ void make_contact_rows(const Scene& scene, World& world, const Part& part) {
     const Vec2 t = left(n);
     Row& friction = world.scratch.rows.emplace_back();
     friction.kind = RowKind::tangent;
+    world.scratch.has_friction_rows = true;
     friction.index = number;
     friction.friction = friction_coefficient;
     friction.slip = contact.slip;

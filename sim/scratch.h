@@ -98,6 +98,7 @@ struct Scratch {
   std::vector<int> segment_begin, row_of_segment;  // of cable c, from segment_begin[c]; -1: none
   std::vector<int> normal_row_of_contact;          // of the part's contacts; -1: none
   std::vector<int> middle_row_of_contact;          // the first of its middle rows; -1: none
+  bool has_friction_rows = false;                  // of contacts or pinch middles
   int first_contact_row = 0;                       // those before are of cables
   Parts parts;
   std::vector<int> order;                  // of the rows, by order_rows

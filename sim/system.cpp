@@ -321,10 +321,33 @@ double refine(World& world) {
   return find_residuals(world);
 }
 
+/// J v + bias at the free velocities (m/s).
+double free_speed(const Scratch& s, const Row& row) {
+  const auto along = [&s](int body, const Eigen::Vector3d& j) {
+    const Vec2& v = s.velocity_free[index(body)];
+    return j.x() * v.x() + j.y() * v.y() + j.z() * s.angular_velocity_free[index(body)];
+  };
+  double w = row.bias;
+  if (row.a >= 0) w += along(row.a, row.ja);
+  if (row.b >= 0) w += along(row.b, row.jb);
+  return w;
+}
+
 /// Starts from no impulses at all; returns the largest residual.
 double start(World& world) {
   Scratch& s = world.scratch;
-  s.active_set.solution.assign(s.active_set.row_of_unknown.size(), 0.0);
+  ActiveSet& set = s.active_set;
+  const std::size_t count = set.row_of_unknown.size();
+  set.solution.assign(count, 0.0);
+  if (set.symmetric) {
+    set.residual.resize(count);
+    double largest = 0.0;
+    for (std::size_t u = 0; u < count; ++u) {
+      set.residual[u] = free_speed(s, s.rows[index(set.row_of_unknown[u])]);
+      largest = std::max(largest, std::abs(set.residual[u]));
+    }
+    return largest;
+  }
   for (Row& row : s.rows) row.impulse = 0.0;
   release_bodies(world);
   return find_residuals(world);
