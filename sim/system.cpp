@@ -356,16 +356,30 @@ double start(World& world) {
 /// Of all solutions of a system with repeated rows, (nearly) the one of least norm: that of the
 /// system with a small ridge on its diagonal, whose right side is first made consistent by a basic
 /// solution.
-void spread_over_repeated_rows(World& world) {
+void spread_over_repeated_rows(World& world, double rounding) {
   ActiveSet& set = world.scratch.active_set;
   constexpr double ridge = 1e-8;
   set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
+  const auto subtract_contradictions = [&set] {
+    double largest = 0.0;
+    for (std::size_t u = 0; u < set.residual.size(); ++u) {
+      set.residual[u] -= set.right_side[u];
+      largest = std::max(largest, std::abs(set.residual[u]));
+    }
+    return largest;
+  };
   factor(world, ridge);
   start(world);
   for (int k = 0; k < 3; ++k) {
-    for (std::size_t u = 0; u < set.residual.size(); ++u) set.residual[u] -= set.right_side[u];
+    subtract_contradictions();
     refine(world);
   }
+  // Beside masses that differ by more than the ridge it has not found all of the solution: the rest
+  // is added without it.
+  if (subtract_contradictions() <= rounding) return;
+  factor(world, 0.0);
+  refine(world);
+  for (int k = 0; k < 2 && subtract_contradictions() > rounding; ++k) refine(world);
 }
 
 }  // namespace
@@ -397,7 +411,7 @@ void solve_for_states(World& world) {
   double residual = refine(world);
   const double rounding = 1e-13 * before + 4e-16 * fastest(world);
   for (int k = 0; k < 2 && repeated == 0 && residual > rounding; ++k) residual = refine(world);
-  if (repeated > 0) spread_over_repeated_rows(world);
+  if (repeated > 0) spread_over_repeated_rows(world, rounding);
 }
 
 }  // namespace pinchlab

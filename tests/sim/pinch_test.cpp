@@ -129,6 +129,22 @@ TEST(Pinch, PlainCableJointsDoNotSeeTheRoller) {
   EXPECT_EQ(world.cables[0].links.size(), 3u);
 }
 
+// A heavy roller that falls on a light one over a wrapped drum. The segments before and after the
+// drum repeat one another, and the light roller's forces differ by one part in the mass ratio.
+TEST(Pinch, HoldsWhateverMassLiesOnALightRoller) {
+  for (const double mass : {1.0, 1e3, 1e6, 1e9}) {
+    Scene scene = tower(2, false);
+    scene.bodies[2].mass = mass;
+    World world = make_world(scene, measured());
+    for (int i = 0; i < 480; ++i) {
+      run(scene, world, 1);
+      ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-6 * w) << mass << ", step " << i;
+    }
+    EXPECT_LT(world.velocity[1].norm(), 1e-6) << mass;
+    EXPECT_EQ(world.diagnostics.fallbacks, 0) << mass;
+  }
+}
+
 TEST(Pinch, SeveralCablesShareOneContact) {
   for (const int cables : {2, 5, 10}) {
     Scene scene = tower(1, false, cables);
