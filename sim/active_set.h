@@ -13,9 +13,10 @@ namespace pinchlab {
 ///
 /// Each guess of the states gives one linear system, solved directly. Contradicted states are
 /// flipped all at once while their number falls (block pivoting, Judice & Pires 1994), then one by
-/// one, the one that has kept its state longest first. If friction makes the states cycle, what has
-/// flipped sticks for the rest of the step, and diagnostics.fallbacks counts the step; projected
-/// sweeps are the last resort.
+/// one in a fixed, irregular order. Where a slack cable is pulled tight, segments near those that
+/// get taut are made taut ahead of their turn. What negative impulses round-off has made is no
+/// contradiction. If friction makes the states cycle, what has flipped sticks for the rest of the
+/// step, and diagnostics.fallbacks counts it; projected sweeps are the last resort.
 void solve_direct(const Scene& scene, World& world, int part, double kick);
 
 /// Keeps states of rows and runs for the next step, and reports forces.

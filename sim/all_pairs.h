@@ -7,13 +7,13 @@ namespace pinchlab {
 struct Scene;
 struct World;
 
-/// The box of each body against that of each other (thesis: PinchBroadPhase). Finds what
-/// find_body_pairs does, in its order.
+/// The box of each body against that of each other (thesis: PinchBroadPhase), anew at each step.
+/// The contacts that follow are those that follow from find_body_pairs.
 void find_all_body_pairs(const Scene& scene, World& world);
 
 /// Each segment, those without length too, against each body (the first half of the thesis'
-/// SegmentIntersections; span_hits.h is the second). Finds what find_span_pairs does, in its order,
-/// and besides the bodies at segments without length.
+/// SegmentIntersections; span_hits.h is the second). The hits that follow are those that follow
+/// from find_span_pairs.
 void find_all_span_pairs(const Scene& scene, World& world);
 
 }  // namespace pinchlab
