@@ -101,6 +101,7 @@ bool has_structure(const Scratch& s, const std::vector<int>& structure) {
 
 void order_rows(World& world, int part) {
   Scratch& s = world.scratch;
+  if (s.rows_stand && s.order.size() == s.rows.size()) return;
   const auto p = static_cast<std::size_t>(part);
   if (s.orders.size() <= p) s.orders.resize(s.parts.list.size());
   if (!has_structure(s, s.orders[p].structure)) {

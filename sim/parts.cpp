@@ -110,6 +110,7 @@ void list_by_part(std::vector<Part>& list, int count, PartOf part_of, int Part::
 }
 
 void divide(const Scene& scene, const World& world, Parts& parts) {
+  ++parts.divisions;
   join_bodies(scene, world, parts.root);
   const int bodies = static_cast<int>(scene.bodies.size());
   const int cables = static_cast<int>(world.cables.size());

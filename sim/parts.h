@@ -38,6 +38,7 @@ struct Parts {
   std::vector<char> immobile;  // whether the body's centre cannot move
   std::vector<int> mobile;     // `local` of bodies that impulses can move or turn, or -1
   std::vector<int> structure;  // what the parts were found for: pairs in contact
+  int divisions = 0;           // so far
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found
   std::vector<int> part_of_root;

@@ -44,12 +44,31 @@ void set_segment_row(const World& world, const Link& from, const Link& to, const
   const Vec2& e = segment.direction;
   row.ja = {e.x(), e.y(), lever(world, from, e)};
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
+}
+
+/// What the material asks of the row: all of it that changes where the tangent has not moved.
+void set_material(const World& world, const Segment& segment, double stiffness, double kick,
+                  Row& row) {
+  row.on = !segment.slack;
   // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
   // what is left of a segment is then at least nothing.
   const double rest = world.configuration.method == Method::cable
                           ? std::max(segment.rest_length, 0.0)
                           : segment.rest_length;
   row.bias = -(segment.length - rest) / world.step_length;
+  // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.
+  if (stiffness < infinity && !segment.pinched) {
+    row.compliance = std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
+  }
+}
+
+/// A segment's row as it was before the last solve.
+void renew(Row& row) {
+  row.run = row.normal = row.repeats = -1;
+  row.repeated = row.flipped = 0;
+  row.in_group_equation = row.dropped = row.frozen = false;
+  row.slip = Slip::stick;
+  row.bound = row.compliance = 0.0;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
@@ -157,16 +176,25 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
   Scratch& scratch = world.scratch;
   steady_light_bodies(scene, world, part, kick);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
-  scratch.rows.clear();
+  const RowsMade made{static_cast<int>(&part - scratch.parts.list.data()), scratch.parts.divisions,
+                      changes_of_cables(world), kick};
+  const bool again = made == scratch.rows_made && scratch.span_masses.empty();
+  scratch.rows_made = made;
+  scratch.rows_stand = again && part.contacts_begin == part.contacts_end;
+  if (again) {
+    scratch.rows.resize(static_cast<std::size_t>(scratch.first_contact_row));
+  } else {
+    scratch.rows.clear();
+    scratch.row_of_segment.clear();
+  }
   scratch.has_friction_rows = false;
   scratch.segment_begin.resize(world.cables.size());
-  scratch.row_of_segment.clear();
+  std::size_t begin = 0;  // of the cable, in row_of_segment
   for (const int cable_number : cables_of(scratch.parts, part)) {
     const auto c = static_cast<std::size_t>(cable_number);
     CableState& cable = world.cables[c];
-    const std::size_t begin = scratch.row_of_segment.size();
     scratch.segment_begin[c] = static_cast<int>(begin);
-    scratch.row_of_segment.resize(begin + cable.segments.size(), -1);
+    if (!again) scratch.row_of_segment.resize(begin + cable.segments.size(), -1);
     const double stiffness = scene.cables[c].axial_stiffness;
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Link& to = cable.links[s];
@@ -175,28 +203,37 @@ void make_segment_rows(const Scene& scene, World& world, const Part& part, doubl
       // After a middle link comes the opposite of the row before it: one signed row serves both.
       if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
       const Segment& segment = cable.segments[s];
-      Row& row = scratch.rows.emplace_back();
+      int& number = scratch.row_of_segment[begin + s];
+      if (again && !segment.moved && !segment.pinched) {
+        Row& row = scratch.rows[static_cast<std::size_t>(number)];
+        renew(row);
+        set_material(world, segment, stiffness, kick, row);
+        continue;
+      }
+      scratch.rows_stand = false;
+      if (!again) {
+        number = static_cast<int>(scratch.rows.size());
+        scratch.rows.emplace_back();
+      }
+      Row& row = scratch.rows[static_cast<std::size_t>(number)];
+      renew(row);
       set_segment_row(world, from, to, segment, row);
       row.index = static_cast<int>(c);
       row.item = static_cast<int>(s);
-      row.on = !segment.slack;
+      set_material(world, segment, stiffness, kick, row);
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         scratch.has_friction_rows = true;
         row.slip = to.slip;
         row.friction = scene.bodies[static_cast<std::size_t>(to.body)].cable_friction;
+        row.wrapped_friction = infinity;
       }
       if (world.configuration.method == Method::cable && segment.pinched) {
         turn_to_centre_line(world, from, to, segment, row);
       }
-      // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.
-      if (stiffness < infinity && !segment.pinched) {
-        row.compliance =
-            std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
-      }
       weigh(scratch.mobility, row);
-      scratch.row_of_segment[begin + s] = static_cast<int>(scratch.rows.size()) - 1;
     }
+    begin += cable.segments.size();
   }
 }
 

@@ -58,6 +58,7 @@ struct ActiveSet {
   bool symmetric = true;      // every unknown is one row's impulse
   std::vector<RowEnd> ends;   // two an unknown: what it does to its row's bodies
   std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
+  std::vector<int> factored;  // rows whose unknowns ldl holds the factors for; empty: none
   ProfileLdl ldl;             // symmetric
   ProfileLu lu;               // otherwise
   std::vector<Flip> flips;
@@ -81,6 +82,13 @@ struct RowOrder {
   std::vector<int> structure, order;
 };
 
+/// What rows were made for: while it is the same, so are their bodies.
+struct RowsMade {
+  int part = -1, divisions = -1, changes = -1;  // of Parts::list; Parts; all cables
+  double kick = 0.0;                            // s
+  bool operator==(const RowsMade&) const = default;
+};
+
 struct Scratch {
   std::vector<Release> released;  // since update_segments
   bool spans_moved = true;        // any of them, by update_segments
@@ -92,6 +100,8 @@ struct Scratch {
   Lists<int> contacts_of_body;
   std::vector<int> fill;                           // cursors while Lists are made
   std::vector<Row> rows;                           // of the part being solved
+  RowsMade rows_made;                              // what they are for
+  bool rows_stand = false;                         // as made before, but for bias and compliance
   std::vector<Mobility> mobility;                  // one a body
   double mobility_kick = 0.0;                      // s, what they are for
   std::vector<SpanMass> span_masses;               // one a body; empty until one is too light

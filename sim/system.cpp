@@ -258,6 +258,22 @@ int factor(World& world, double ridge) {
   return set.lu.factor(set.scale, ridge);
 }
 
+/// Whether the last step's factors serve: the same rows bear a force, and have not changed but for
+/// what refinement makes up for.
+bool factors_stand(const World& world) {
+  const Scratch& s = world.scratch;
+  const ActiveSet& set = s.active_set;
+  if (!set.symmetric || !s.rows_stand || set.factored.empty()) return false;
+  if (set.row_of_unknown != set.factored) return false;
+  constexpr double small = 1e-9;
+  for (std::size_t u = 0; u < set.factored.size(); ++u) {
+    const Row& row = s.rows[index(set.factored[u])];
+    const double change = row.diagonal + row.compliance - set.scale[u];
+    if (std::abs(change) > small * set.scale[u]) return false;
+  }
+  return true;
+}
+
 /// Impulses of the rows for the unknowns' values, and the velocities.
 void set_impulses(World& world) {
   Scratch& s = world.scratch;
@@ -406,7 +422,12 @@ void solve_for_states(World& world) {
     express(world);
     gather_body_terms(world);
   }
-  const int repeated = factor(world, 0.0);
+  int repeated = 0;
+  if (!factors_stand(world)) {
+    repeated = factor(world, 0.0);
+    set.factored.clear();
+    if (set.symmetric && repeated == 0) set.factored = set.row_of_unknown;
+  }
   const double before = start(world);
   double residual = refine(world);
   const double rounding = 1e-13 * before + 4e-16 * fastest(world);
