@@ -49,11 +49,10 @@ void apply_forces(const Scene& scene, World& world) {
         if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
         s.velocity_free[b] = ((1.0 - linear) * world.velocity[b] + pull) / (1.0 + linear);
       }
-      s.angular_velocity_free[b] = body.driven_angular_velocity
-                                       ? *body.driven_angular_velocity
-                                       : ((1.0 - angular) * world.angular_velocity[b] +
-                                          k * body.torque / disc_inertia(body)) /
-                                             (1.0 + angular);
+      double& omega = s.angular_velocity_free[b];
+      omega = body.driven_angular_velocity.value_or(world.angular_velocity[b]);
+      if (body.driven_angular_velocity || (angular == 0.0 && body.torque == 0.0)) continue;
+      omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
     }
   }
 }

@@ -258,18 +258,18 @@ int factor(World& world, double ridge) {
   return set.lu.factor(set.scale, ridge);
 }
 
-/// Whether the last step's factors serve: the same rows bear a force, and have not changed but for
-/// what refinement makes up for.
+/// Whether the last step's factors serve: the same rows bear a force, and have changed by round-off
+/// only.
 bool factors_stand(const World& world) {
   const Scratch& s = world.scratch;
   const ActiveSet& set = s.active_set;
   if (!set.symmetric || !s.rows_stand || set.factored.empty()) return false;
   if (set.row_of_unknown != set.factored) return false;
-  constexpr double small = 1e-9;
+  constexpr double rounding = 1e-13;
   for (std::size_t u = 0; u < set.factored.size(); ++u) {
     const Row& row = s.rows[index(set.factored[u])];
     const double change = row.diagonal + row.compliance - set.scale[u];
-    if (std::abs(change) > small * set.scale[u]) return false;
+    if (std::abs(change) > rounding * set.scale[u]) return false;
   }
   return true;
 }
