@@ -41,7 +41,6 @@ struct Parts {
   int divisions = 0;           // so far
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found
-  std::vector<int> part_of_root;
 };
 
 inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {

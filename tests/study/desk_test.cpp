@@ -19,16 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-template <class Action>
-int refused(const Action& action) {
-  try {
-    action();
-  } catch (const Refused& error) {
-    return error.status;
-  }
-  return 0;
-}
-
 void answer_all(Desk& desk, const std::string& token) {
   const Progress progress = desk.progress(token);
   for (std::size_t i = progress.next; i < progress.trials.size(); ++i) {

@@ -57,16 +57,6 @@ class SmallDisk {
 #define NEED_A_DISK(disk) \
   if (!(disk).is_there()) GTEST_SKIP() << "no disk can be mounted here: " << (disk).why()
 
-template <class Action>
-int refused(const Action& action) {
-  try {
-    action();
-  } catch (const Refused& error) {
-    return error.status;
-  }
-  return 0;
-}
-
 // While `break_it` holds nothing is taken and everything is told so; after `mend_it` all goes on.
 template <class Break, class Mend>
 void expect_nothing_is_lost(const fs::path& folder, const Break& break_it, const Mend& mend_it) {

@@ -82,4 +82,15 @@ inline nlohmann::json answer_body(std::size_t index, const char* choice = "left"
           {"device_pixel_ratio", 1}};
 }
 
+/// The status with which the desk refuses what `action` asks of it, or 0.
+template <class Action>
+int refused(const Action& action) {
+  try {
+    action();
+  } catch (const Refused& error) {
+    return error.status;
+  }
+  return 0;
+}
+
 }  // namespace pinchlab::study
