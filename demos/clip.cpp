@@ -55,6 +55,7 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
   std::vector<Picture> pictures(players.size());
   std::vector<const Picture*> panels(pictures.size());
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look);
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   Hash frames(HashKind::murmur3);
@@ -62,7 +63,7 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
   for (int frame = 0; frame < plan.scene.frame_count; ++frame) {
     for (std::size_t i = 0; i < players.size(); ++i) {
       players[i].advance_to(frame);
-      compose(plan.scene, players[i].world(), pictures[i]);
+      compose(plan.scene, scenery, players[i].world(), pictures[i]);
     }
     const std::uint8_t* rgba = canvas.draw(panels);
     if (plan.upside_down) {
@@ -85,6 +86,7 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
                          const std::function<void()>& tick) {
   const int width = panel_width(plan);
   const std::size_t bytes = frame_bytes(width, plan.video.height);
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look);
   Canvas canvas(width, plan.video.height);
   Picture picture;
   Hash frames(HashKind::murmur3);
@@ -92,7 +94,7 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
   for (const Configuration& method : plan.methods) {
     Player player(*plan.source, plan.scene, method);
     player.advance_to(poster_frame(plan));
-    compose(plan.scene, player.world(), picture);
+    compose(plan.scene, scenery, player.world(), picture);
     const std::uint8_t* rgba = canvas.draw(picture);
     frames.add(std::as_bytes(std::span(rgba, bytes)));
     sheet.push_back(

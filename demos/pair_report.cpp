@@ -209,6 +209,7 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
 
   Blocks blocks{
       std::max(smallest_frame / 2, width / 4), std::max(smallest_frame / 2, height / 4), {}};
+  const Scenery scenery = set_scenery(scene, file.look);
   Canvas canvas(2 * block * blocks.columns, block * blocks.rows);
   Player pinch(file, scene, Method::pinch), baseline(file, scene, scene.baseline);
   Picture pinch_picture, baseline_picture;
@@ -223,8 +224,8 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
     baseline_poses.add(baseline.world());
     pinch_events.look(pinch.world(), pinch.time());
     baseline_events.look(baseline.world(), baseline.time());
-    compose(scene, pinch.world(), pinch_picture);
-    compose(scene, baseline.world(), baseline_picture);
+    compose(scene, scenery, pinch.world(), pinch_picture);
+    compose(scene, scenery, baseline.world(), baseline_picture);
     const std::array<const Picture*, 2> pair = {&pinch_picture, &baseline_picture};
     take_means(canvas.draw(pair), blocks);
     differs.push_back(differs_to_the_eye(blocks) ? 1 : 0);
@@ -235,7 +236,7 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
   report.differs = intervals(differs, scene.frames_per_second);
   report.pinch.events = pinch_events.events();
   report.baseline.events = baseline_events.events();
-  const double scale = Fit(scene.view, 0, width, height).scale;  // px/m
+  const double scale = Fit(scenery.view, 0, width, height).scale;  // px/m
   measure_motion(scene, pinch_poses, scale, report.pinch);
   measure_motion(scene, baseline_poses, scale, report.baseline);
   measure_distance(scene, pinch_poses, baseline_poses, scale, report);

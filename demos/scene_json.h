@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render/look.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -29,6 +30,7 @@ struct SceneFile {
   std::filesystem::path path;  ///< as given by the caller
   std::string sha256;          ///< of the file's bytes, 64 hexadecimal digits
   Scene scene;                 ///< bodies, cables and walls in the file's order
+  SceneLook look;              ///< what the file says of looks
   double poster_time = 0.0;    ///< s, when the pair's poster shows it
 };
 

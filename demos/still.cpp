@@ -31,7 +31,8 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<double>& times)
 
 // The frames asked for, in the order asked for, though the simulation only runs forward.
 std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& method,
-                                    const std::vector<int>& frames, Canvas& canvas) {
+                                    const std::vector<int>& frames, const Scenery& scenery,
+                                    Canvas& canvas) {
   std::vector<std::size_t> by_time(frames.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
   std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return frames[i]; });
@@ -42,7 +43,7 @@ std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& 
   Picture picture;
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
-    compose(player.scene(), player.world(), picture);
+    compose(player.scene(), scenery, player.world(), picture);
     const std::uint8_t* rgba = canvas.draw(picture);
     drawn[i] = {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())};
   }
@@ -53,10 +54,12 @@ std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& 
 
 void write_still(const SceneFile& file, const StillOptions& options) {
   const std::vector<int> frames = frames_at(file.scene, options.times);
+  const Scenery scenery = set_scenery(file.scene, file.look);
   Canvas canvas(options.width, options.height);
   std::vector<SheetFrame> sheet;
   for (const Configuration& method : options.methods) {
-    std::ranges::move(draw_frames(file, method, frames, canvas), std::back_inserter(sheet));
+    std::ranges::move(draw_frames(file, method, frames, scenery, canvas),
+                      std::back_inserter(sheet));
   }
   if (sheet.size() == 1) {
     write_png(options.out.string(), options.width, options.height, sheet.front().rgba.data());

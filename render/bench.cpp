@@ -72,14 +72,14 @@ void advance_frame(const Scene& scene, World& world) {
 }
 
 /// The stages as in making a clip, with the yardstick's encoder.
-void time_stages(const Scene& scene, const Configuration& method, Canvas& canvas,
-                 VideoWriter& writer, RenderCost& cost) {
+void time_stages(const Scene& scene, const Scenery& scenery, const Configuration& method,
+                 Canvas& canvas, VideoWriter& writer, RenderCost& cost) {
   std::vector<double> simulate, draw, convert, encode;
   World world = make_world(scene, method);
   Picture picture;
   for (int frame = 0; frame < cost.frames; ++frame) {
     const double start = processor_seconds();
-    compose(scene, world, picture);
+    compose(scene, scenery, world, picture);
     const std::uint8_t* pixels = canvas.draw(picture);
     draw.push_back(processor_seconds() - start);
     writer.add(pixels, canvas.changed());
@@ -97,14 +97,15 @@ void time_stages(const Scene& scene, const Configuration& method, Canvas& canvas
 }
 
 /// The clip as it is written, and how near its frames come to the drawn ones.
-void measure_clip(const Scene& scene, const Configuration& method, Canvas& canvas,
-                  const std::string& path, const VideoSettings& settings, RenderCost& cost) {
+void measure_clip(const Scene& scene, const Scenery& scenery, const Configuration& method,
+                  Canvas& canvas, const std::string& path, const VideoSettings& settings,
+                  RenderCost& cost) {
   VideoWriter writer(path, settings);
   std::vector<double> encode;
   World world = make_world(scene, method);
   Picture picture;
   for (int frame = 0; frame < cost.frames; ++frame) {
-    compose(scene, world, picture);
+    compose(scene, scenery, world, picture);
     const std::uint8_t* pixels = canvas.draw(picture);
     writer.add(pixels, canvas.changed());
     encode.push_back(writer.encode_seconds());
@@ -119,7 +120,7 @@ void measure_clip(const Scene& scene, const Configuration& method, Canvas& canva
   for (int frame = 0; frame < cost.frames; ++frame) {
     const std::optional<DecodedFrame> decoded = reader.next();
     if (!decoded) throw std::runtime_error(path + ": ends too early");
-    compose(scene, world, picture);
+    compose(scene, scenery, world, picture);
     const std::vector<std::uint8_t> luma =
         luma_of(canvas.draw(picture), canvas.width(), canvas.height());
     cost.least_luma_psnr_db = std::min(cost.least_luma_psnr_db, psnr_db(luma, decoded->luma));
@@ -141,8 +142,10 @@ RenderCost measure_render(const Scene& scene, const Configuration& method, int w
   yardstick.encoder_options = "preset=veryfast:crf=14";
   VideoWriter writer((scratch.path / "yardstick.mp4").string(), yardstick);
   Canvas canvas(width, height);
-  time_stages(scene, method, canvas, writer, cost);
-  measure_clip(scene, method, canvas, (scratch.path / "stimulus.mp4").string(), stimulus, cost);
+  const Scenery scenery = set_scenery(scene);
+  time_stages(scene, scenery, method, canvas, writer, cost);
+  measure_clip(scene, scenery, method, canvas, (scratch.path / "stimulus.mp4").string(), stimulus,
+               cost);
   return cost;
 }
 

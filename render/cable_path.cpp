@@ -71,6 +71,7 @@ class PathBuilder {
   struct Span {
     bool drawn = false;
     bool hanging = false;
+    double slack = 0.0;  // m, by which it hangs
     Catenary curve;
   };
 
@@ -85,14 +86,42 @@ class PathBuilder {
     return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0)};
   }
 
-  /// By how much more material than straight length span i hangs, m. A span about as short as the
-  /// cable is wide cannot hang, and a pinched one not at all: there it is drawn the straighter the
-  /// shorter it is.
-  double hanging_slack(std::size_t i) const {
+  /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
+  /// hang, and a pinched one not at all; in between the straighter the shorter it is.
+  double room(std::size_t i) const {
     const Segment& segment = cable_.segments[i];
-    const double share = 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
-    return segment.pinched ? 0.0 : share * std::max(segment.rest_length - segment.length, 0.0);
+    if (segment.pinched || !spans_[i].drawn) return 0.0;
+    return 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
   }
+
+  /// Material that span i holds beyond its straight length, m.
+  double slack(std::size_t i) const {
+    return std::max(cable_.segments[i].rest_length - cable_.segments[i].length, 0.0);
+  }
+
+  /// Hands on what a short span cannot show to the slack spans beside it, so that the drawn cable
+  /// keeps its length when the link between them goes. Most goes past the link with the smaller
+  /// wrap: that is the one about to go. A span that is taut takes nothing.
+  void share_slack() {
+    const std::size_t count = cable_.links.size(), first = first_segment(cable_);
+    for (std::size_t i = first; i < count; ++i) spans_[i].slack = room(i) * slack(i);
+    for (std::size_t i = first; i < count; ++i) {
+      const double hidden = (1.0 - room(i)) * slack(i);
+      if (hidden <= 0.0) continue;
+      const std::size_t before = tail_link(i), after = (i + 1) % count;
+      const double tail_wrap = arc(before), head_wrap = arc(i), both = tail_wrap + head_wrap;
+      const auto hand_on = [&](std::size_t to, double share) {
+        const double enough = 0.1 * cable_.half_width;
+        spans_[to].slack += hidden * share * room(to) * std::min(1.0, slack(to) / enough);
+      };
+      if (both <= 0.0) continue;
+      if (cable_.closed || before >= first) hand_on(before, head_wrap / both);
+      if (cable_.closed || after > i) hand_on(after, tail_wrap / both);
+    }
+  }
+
+  /// m of cable on link i.
+  double arc(std::size_t i) const { return cable_.links[i].radius * cable_.links[i].wrap; }
 
   /// The shape of every span, and from it where each link's arc begins and ends.
   void find_bounds() {
@@ -104,17 +133,21 @@ class PathBuilder {
       bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
                     tail_material(cable_, i, angle), head_material(cable_, i, angle)};
     }
-    for (std::size_t i = first_segment(cable_); i < count; ++i) {
+    const std::size_t first = first_segment(cable_);
+    for (std::size_t i = first; i < count; ++i) {
+      spans_[i].drawn = !cable_.links[tail_link(i)].pinch_middle && !cable_.links[i].pinch_middle;
+    }
+    share_slack();
+    for (std::size_t i = first; i < count; ++i) {
       const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
       const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
-      span.drawn = !from.pinch_middle && !to.pinch_middle;
       // A chord of length l and slack d sags by sqrt(3 l d / 8).
-      const double slack = hanging_slack(i);
-      span.hanging = span.drawn && slack * segment.length > 2.0 * smallest_sag_ * smallest_sag_;
+      span.hanging =
+          span.drawn && span.slack * segment.length > 2.0 * smallest_sag_ * smallest_sag_;
       if (!span.hanging) continue;
-      const HangingSpan shape =
-          hang(span_end(tail_link(i)), span_end(i), segment.alpha, segment.length + slack, up_);
+      const HangingSpan shape = hang(span_end(tail_link(i)), span_end(i), segment.alpha,
+                                     segment.length + span.slack, up_);
       span.curve = shape.curve;
       Bounds &before = bounds_[tail_link(i)], &after = bounds_[i];
       const double seam = i == 0 ? cable_.turning : 0.0;
@@ -246,8 +279,9 @@ class PathBuilder {
 }  // namespace
 
 double mark_spacing(const CableState& cable) {
-  const double wanted = 8.0 * cable.half_width;
-  if (!cable.closed) return wanted;
+  if (!cable.closed) return 8.0 * cable.half_width;
+  // A belt runs fast: marks that move by half their distance a frame seem to run backward.
+  const double wanted = 16.0 * cable.half_width;
   return cable.length / std::max(1.0, std::round(cable.length / wanted));
 }
 
