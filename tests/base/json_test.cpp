@@ -32,7 +32,7 @@ TEST(StrictJson, RefusesTheRest) {
   EXPECT_EQ(mistake(R"({"a": {"b": 1, "b": 2}})"), "/a/b: key given twice; keep one of them");
   EXPECT_EQ(mistake(R"([{"a/b~c": 0, "a/b~c": 0}])"),
             "/0/a~1b~0c: key given twice; keep one of them");
-  EXPECT_EQ(mistake("[[[]]]", 2), "/0/0: nested deeper than 2 levels");
+  EXPECT_EQ(mistake("[[[]]]", 2), "/0: nested deeper than 2 levels");
   EXPECT_TRUE(mistake("{\n \"å\": }").starts_with("line 2, column 7: not JSON: "))
       << mistake("{\n \"å\": }");
   for (const char* bad : {"", "{", "[1,]", "NaN", "[1e999]", "// x\n1", "1 2", "\"\xff\"", "'a'"}) {
