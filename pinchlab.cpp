@@ -43,6 +43,15 @@ void add_fps(CLI::App& command, Timing& timing) {
       ->check(CLI::Range(1, 1000));
 }
 
+void add_theme(CLI::App& command, ThemeFile& theme, bool& burn_time) {
+  command
+      .add_option_function<std::string>(
+          "--theme", [&theme](const std::string& file) { theme = read_theme_file(file); },
+          "Colours and line widths: a file as in demos/themes [the default]")
+      ->type_name("FILE");
+  command.add_flag("--burn-time", burn_time, "Write the time into a corner of each picture");
+}
+
 void add_render(CLI::App& app) {
   auto options = std::make_shared<BatchOptions>();
   auto size = std::make_shared<Size>(Size{options->width, options->height});
@@ -56,21 +65,45 @@ void add_render(CLI::App& app) {
       *command, options->method,
       "Make one clip a scene: pinch, pinch_no_contact, cable, baseline (each scene's own) or "
       "thesis (all of the thesis' ways, its iterative solver too) [the pair]");
-  add_size(*command, *size, "Pixels of one picture, even unless ffv1 [960x960]");
+  add_size(*command, *size,
+           "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
   add_fps(*command, options->timing);
   command
       ->add_option_function<std::string>(
           "--codec",
           [options](const std::string& name) { options->codec = codec_from_string(name); },
-          "h264 (MP4), vp9 (WebM) or ffv1 (Matroska, lossless) [h264]")
+          "h264 (MP4), vp9 (WebM), ffv1 (Matroska, lossless), or for previews that play for ever "
+          "apng, webp or gif (with --fps 50) [h264]")
       ->type_name("C")
-      ->check(CLI::IsMember({"h264", "vp9", "ffv1"}));
+      ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
   command->add_option("--jobs", options->jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
+  add_theme(*command, options->theme, options->burn_time);
   CLI::Option* also =
       command->add_flag("--side-by-side", options->side_by_side,
                         "Also each pair in one picture, in both left/right orders (for the study)");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--slow",
+          [options](const std::vector<std::string>& windows) {
+            for (const std::string& text : windows) {
+              options->playback.slow.push_back(slow_from(text));
+            }
+          },
+          "Slow motion of a part, from steps between the frames: 1.2-1.6:0.25 shows these 0.4 s in "
+          "1.6 s")
+      ->type_name("FROM-TO:FACTOR");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--freeze",
+          [options](const std::vector<std::string>& stops) {
+            for (const std::string& text : stops) {
+              options->playback.freeze.push_back(freeze_from(text));
+            }
+          },
+          "Hold the frame at a time for so long: 1.2:0.5")
+      ->type_name("TIME:SECONDS");
   command
       ->add_flag_callback(
           "--only-side-by-side",
@@ -106,6 +139,7 @@ void add_render(CLI::App& app) {
       "  pinchlab render --side-by-side              and what the study shows\n"
       "  pinchlab render demos/03-drop.json --out /tmp/drop --size 640x480\n"
       "  pinchlab render --only-report               how the pairs differ, without the clips\n"
+      "  pinchlab render demos/03-drop.json --slow 0.4-0.6:0.25 --freeze 0.5:1 --burn-time\n"
       "  pinchlab render --method cable --codec ffv1 one lossless clip a scene");
   command->callback([options, size] {
     if (options->scenes.empty()) {
@@ -127,29 +161,41 @@ void add_still(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("still", "One frame as PNG; several times make a contact sheet");
+      app.add_subcommand("still", "One frame as PNG, SVG or PDF; several make a contact sheet");
   add_scene(*command, options->scene);
   command
       ->add_option("--time", options->times,
-                   "Time to show, s; several, or a list 1,2.5,4, make a sheet")
+                   "Time to show, s; several, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
+                   "frames from one time to another")
       ->type_name("S")
       ->required()
       ->delimiter(',');
-  command->add_option("--out", options->out, "PNG file")->type_name("FILE.png")->required();
+  command
+      ->add_option("--out", options->out,
+                   "FILE.png, .svg or .pdf; a # in the name of a PNG stands for the frame's number "
+                   "and gives each frame its own file")
+      ->type_name("FILE")
+      ->required();
   add_method(*command, options->method,
              "pinch, pinch_no_contact, cable, baseline (the scene's own) or thesis [pinch]");
   command->add_flag("--both", options->both, "A row of pinch over a row of the baseline")
       ->excludes("--method");
+  command->add_flag("--neutral", options->neutral, "Label the rows A and B, not by method");
+  add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
-      "  pinchlab still demos/03-drop.json --time 0,1,2,3 --both --out drop-sheet.png");
+      "  pinchlab still demos/03-drop.json --time 0,1,2,3 --both --neutral --out drop-sheet.pdf\n"
+      "  pinchlab still demos/03-drop.json --time 2.5 --theme demos/themes/print.json --out "
+      "drop.svg\n"
+      "  pinchlab still demos/03-drop.json --time 0.4:0.8 --out frames/#.png");
   command->callback([options] {
     const SceneFile file = read_scene_file(options->scene);
     options->methods = {method_of(file.scene, options->method)};
     if (options->both) options->methods = {Method::pinch, file.scene.baseline};
-    const bool sheet = options->times.size() * options->methods.size() > 1;
+    const bool sheet = frames_at(file.scene, options->times).size() * options->methods.size() > 1 &&
+                       options->out.filename().string().find('#') == std::string::npos;
     const Size usual = sheet ? Size{480, 480} : Size{960, 960};
     options->width = options->size.width > 0 ? options->size.width : usual.width;
     options->height = options->size.height > 0 ? options->size.height : usual.height;

@@ -27,7 +27,8 @@ using nlohmann::ordered_json;
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
-  const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json", ".html"};
+  const std::set<std::string> ours = {".mp4", ".webm", ".mkv",  ".apng", ".webp",
+                                      ".gif", ".png",  ".json", ".html"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
     if (path.extension() == partial_ending && ours.contains(path.stem().extension())) {
@@ -61,7 +62,9 @@ std::int64_t pictures_a_tick(const ClipPlan& plan) {
 }
 
 std::int64_t panels_to_draw(const ClipPlan& plan) {
-  return plan.product == Product::poster ? 1 : pictures_a_tick(plan) * plan.scene.frame_count;
+  return plan.product == Product::poster
+             ? 1
+             : pictures_a_tick(plan) * static_cast<std::int64_t>(plan.steps.size());
 }
 
 double cpu_seconds(int who) {
@@ -128,7 +131,7 @@ void check_size(const BatchOptions& options) {
         fmt::format("frames of {} x {} pixels cannot be drawn: each must be {} to {}", width,
                     options.height, smallest_frame, largest_frame));
   }
-  if (options.codec != Codec::ffv1 && (options.width % 2 != 0 || options.height % 2 != 0)) {
+  if (needs_even_sides(options.codec) && (options.width % 2 != 0 || options.height % 2 != 0)) {
     throw std::invalid_argument(
         fmt::format("{} needs an even size, not {}x{}; change --size, or use --codec ffv1",
                     to_string(options.codec), options.width, options.height));
@@ -167,6 +170,12 @@ std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
 
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
   check_size(options);
+  if (options.theme.theme.background.alpha < 255) {
+    throw std::invalid_argument(
+        fmt::format("theme {}: a clip cannot be transparent; give its background no alpha (stills "
+                    "may have one)",
+                    options.theme.name));
+  }
   const Scene scene = with_timing(source.scene, options.timing);
   const auto plan = [&](const std::string& role, std::vector<Configuration> methods,
                         const std::string& ending) {
@@ -180,6 +189,10 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
                                       : Product::clip;
     clip.methods = std::move(methods);
     const int panels = static_cast<int>(clip.methods.size());
+    clip.theme = options.theme;
+    clip.burn_time = options.burn_time;
+    if (clip.product == Product::clip) clip.playback = options.playback;
+    clip.steps = steps_shown(scene, clip.playback);
     clip.video.codec = options.codec;
     clip.video.width = options.width * (clip.product == Product::clip ? panels : 1);
     clip.video.height = options.height;

@@ -19,6 +19,9 @@ struct BatchOptions {
   int width = 960, height = 960;      ///< px, of one panel
   Timing timing;
   Codec codec = Codec::h264;
+  ThemeFile theme;
+  Playback playback;          ///< of the clips; not of posters and reports
+  bool burn_time = false;     ///< the time in a corner of each picture
   int jobs = 0;               ///< worker processes; 0: one a core
   bool singles = true;        ///< each method's clip by itself, and the poster
   bool side_by_side = false;  ///< both left/right orders of each pair in one file

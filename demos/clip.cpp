@@ -56,15 +56,16 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
   std::vector<Picture> pictures(players.size());
   std::vector<const Picture*> panels(pictures.size());
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
-  const Scenery scenery = set_scenery(plan.scene, plan.source->look);
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme);
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   FrameHash frames;
   std::vector<std::uint8_t> turned;
-  for (int frame = 0; frame < plan.scene.frame_count; ++frame) {
+  for (const std::int64_t step : plan.steps) {
     for (std::size_t i = 0; i < players.size(); ++i) {
-      players[i].advance_to(frame);
+      players[i].advance_to_step(step);
       compose(plan.scene, scenery, players[i].world(), pictures[i]);
+      if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time()));
     }
     const std::uint8_t* rgba = canvas.draw(panels);
     if (plan.upside_down) {
@@ -87,7 +88,7 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
                          const std::function<void()>& tick) {
   const int width = panel_width(plan);
   const std::size_t bytes = frame_bytes(width, plan.video.height);
-  const Scenery scenery = set_scenery(plan.scene, plan.source->look);
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme);
   Canvas canvas(width, plan.video.height);
   Picture picture;
   FrameHash frames;
@@ -139,13 +140,24 @@ ordered_json plan_entry(const ClipPlan& plan) {
   if (plan.product == Product::poster) {
     entry["time_s"] = static_cast<double>(poster_frame(plan)) / scene.frames_per_second;
   } else {
-    entry["frame_count"] = scene.frame_count;
-    entry["duration_s"] = static_cast<double>(scene.frame_count) / scene.frames_per_second;
+    entry["frame_count"] = plan.steps.size();
+    entry["duration_s"] = static_cast<double>(plan.steps.size()) / scene.frames_per_second;
   }
   if (plan.product == Product::clip) {
     entry["codec"] = to_string(plan.video.codec);
     entry["settings"] = describe(plan.video);
+    for (const Slow& slow : plan.playback.slow) {
+      entry["slow"].push_back({slow.from, slow.to, slow.factor});
+    }
+    for (const Freeze& freeze : plan.playback.freeze) {
+      entry["freeze"].push_back({freeze.at, freeze.seconds});
+    }
   }
+  if (!plan.theme.name.empty()) {
+    entry["theme"] = plan.theme.name;
+    entry["theme_sha256"] = plan.theme.sha256;
+  }
+  if (plan.burn_time) entry["burn_time"] = true;
   entry["version"] = version;
   return entry;
 }

@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "demos/playback.h"
 #include "demos/scene_json.h"
+#include "demos/theme.h"
 #include "render/video.h"
 
 namespace pinchlab {
@@ -31,6 +33,10 @@ struct ClipPlan {
   std::vector<Configuration> methods;  ///< one a panel, left to right
   std::optional<int> upside_down;      ///< panel that is shown so, in attention checks
   VideoSettings video;                 ///< of the whole frame, all panels together
+  ThemeFile theme;
+  Playback playback;
+  std::vector<std::int64_t> steps;  ///< shown by the frames of a video
+  bool burn_time = false;           ///< the time in a corner of each panel
   Product product = Product::clip;
 };
 

@@ -148,8 +148,16 @@ void check_value(const json& value, const KeyFormat& key, const std::string& pla
       return check_text(value, key, place, problems);
     case KeyType::choice:
       return check_choice(value, key, place, problems);
+    case KeyType::colour:
+      if (!value.is_string() || !colour_from(value.get_ref<const std::string&>())) {
+        problems.push_back({place, "must be a colour, \"#rrggbb\" or \"#rrggbbaa\""});
+      }
+      return;
     case KeyType::object:
       return check_format(value, *key.child, place, problems);
+    case KeyType::object_or_word:
+      return value.is_string() ? check_choice(value, key, place, problems)
+                               : check_format(value, *key.child, place, problems);
     case KeyType::list:
       return check_list(value, key, place, problems);
     case KeyType::boolean:
@@ -161,6 +169,19 @@ void check_value(const json& value, const KeyFormat& key, const std::string& pla
 }
 
 }  // namespace
+
+std::optional<Colour> colour_from(const std::string& text) {
+  const auto is_digit = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
+  if ((text.size() != 7 && text.size() != 9) || text[0] != '#' ||
+      !std::all_of(text.begin() + 1, text.end(), is_digit)) {
+    return std::nullopt;
+  }
+  const auto part = [&](std::size_t i) {
+    return i < text.size() ? static_cast<std::uint8_t>(std::stoi(text.substr(i, 2), nullptr, 16))
+                           : std::uint8_t{255};
+  };
+  return Colour{part(1), part(3), part(5), part(7)};
+}
 
 void check_format(const json& value, const ObjectFormat& format, const std::string& place,
                   Problems& problems) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "demos/scene_format.h"
 #include "demos/scene_json.h"
+#include "render/picture.h"
 
 namespace pinchlab {
 
@@ -14,5 +16,8 @@ namespace pinchlab {
 /// `problems`. `place` is the JSON pointer of `value`.
 void check_format(const nlohmann::json& value, const ObjectFormat& format, const std::string& place,
                   std::vector<SceneProblem>& problems);
+
+/// "#rrggbb" or "#rrggbbaa", or nothing if the text is neither.
+std::optional<Colour> colour_from(const std::string& text);
 
 }  // namespace pinchlab

@@ -74,11 +74,13 @@ Player::Player(const SceneFile& file, const Scene& scene, const Configuration& c
     : file_(file), scene_(scene), world_(start_world(scene, file.path, configuration)) {}
 
 void Player::advance_to(int frame) {
-  for (; frame_ < frame; ++frame_) {
-    for (int i = 0; i < scene_.steps_per_frame; ++i) {
-      if (step(scene_, world_) != StepStatus::ok) {
-        throw std::runtime_error(failure_report(file_.path, scene_, world_, frame_ + 1));
-      }
+  advance_to_step(std::int64_t{frame} * scene_.steps_per_frame);
+}
+
+void Player::advance_to_step(std::int64_t wanted) {
+  for (; step_ < wanted; ++step_) {
+    if (step(scene_, world_) != StepStatus::ok) {
+      throw std::runtime_error(failure_report(file_.path, scene_, world_, frame() + 1));
     }
   }
 }

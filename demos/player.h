@@ -2,6 +2,7 @@
 #pragma once
 // A scene under one method, frame by frame: frame i is step i * steps_per_frame, frame 0 the start.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -37,10 +38,16 @@ class Player {
   /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with
   /// a failure_report if a value is not finite.
   void advance_to(int frame);
+  /// The same for a step, which may lie between two frames.
+  void advance_to_step(std::int64_t step);
 
-  int frame() const { return frame_; }
-  /// s; the frame's number over the frame rate, free of the round-off of summing steps.
-  double time() const { return static_cast<double>(frame_) / scene_.frames_per_second; }
+  /// The frame that shows the present step, or the last one before it.
+  int frame() const { return static_cast<int>(step_ / scene_.steps_per_frame); }
+  /// s; free of the round-off of summing steps.
+  double time() const {
+    return static_cast<double>(step_) /
+           static_cast<double>(std::int64_t{scene_.frames_per_second} * scene_.steps_per_frame);
+  }
   const Scene& scene() const { return scene_; }
   const World& world() const { return world_; }
 
@@ -48,7 +55,7 @@ class Player {
   const SceneFile& file_;
   Scene scene_;
   World world_;
-  int frame_ = 0;
+  std::int64_t step_ = 0;
 };
 
 }  // namespace pinchlab

@@ -8,6 +8,16 @@ using enum KeyType;
 constexpr bool required = true, optional = false;
 
 // The limits are far outside of what a scene can mean and well inside of what doubles can hold.
+const ObjectFormat body_look_format = {
+    "body_look",
+    {{"colour", colour, optional},
+     {"label", text, optional, 0, 40},
+     {"label_side", choice, optional, 0, 0, {"automatic", "below", "above", "left", "right"}},
+     {"marks", boolean, optional}}};
+
+const ObjectFormat cable_look_format = {
+    "cable_look", {{"colour", colour, optional}, {"marks", boolean, optional}}};
+
 const ObjectFormat body_format = {
     "body",
     {{"name", name, required, 1, 64},
@@ -26,7 +36,8 @@ const ObjectFormat body_format = {
      {"angular_drag_per_s", number, optional, 0, 1e4},
      {"cable_friction", friction, optional, 0, 100},
      {"contact_friction", number, optional, 0, 100},
-     {"restitution", number, optional, 0, 1}}};
+     {"restitution", number, optional, 0, 1},
+     {"look", object, optional, 0, 0, {}, &body_look_format}}};
 
 const ObjectFormat attachment_format = {"attachment",
                                         {{"world_m", vector, optional, -1e6, 1e6},
@@ -48,7 +59,8 @@ const ObjectFormat cable_format = {"cable",
                                     {"end", object, optional, 0, 0, {}, &attachment_format},
                                     {"wraps", list, optional, 0, 10'000, {}, &wrap_format},
                                     {"slack_m", number, optional, -1e6, 1e6},
-                                    {"axial_stiffness_n", number, optional, 1e-3, 1e15}}};
+                                    {"axial_stiffness_n", number, optional, 1e-3, 1e15},
+                                    {"look", object, optional, 0, 0, {}, &cable_look_format}}};
 
 const ObjectFormat wall_format = {"wall",
                                   {{"from_m", vector, required, -1e6, 1e6},
@@ -76,10 +88,34 @@ const ObjectFormat file_format = {"scene",
                                    {"frames_per_second", integer, optional, 1, 1000},
                                    {"steps_per_frame", integer, optional, 1, 1000},
                                    {"poster_time_s", number, optional, 0, 3600},
-                                   {"view", object, required, 0, 0, {}, &view_format},
+                                   {"view", object_or_word, required, 0, 0, {"fit"}, &view_format},
                                    {"baseline", object, required, 0, 0, {}, &baseline_format}}};
 
+const ObjectFormat colours_format = {"theme",
+                                     {{"$schema", text, optional, 1, 1000},
+                                      {"notes", text, optional, 1, 4000},
+                                      {"background", colour, optional},
+                                      {"ink", colour, optional},
+                                      {"rail", colour, optional},
+                                      {"support", colour, optional},
+                                      {"cable", colour, optional},
+                                      {"cable_edge", colour, optional},
+                                      {"cable_mark", colour, optional},
+                                      {"body", colour, optional},
+                                      {"body_edge", colour, optional},
+                                      {"driven", colour, optional},
+                                      {"driven_edge", colour, optional},
+                                      {"fixed", colour, optional},
+                                      {"fixed_edge", colour, optional},
+                                      {"shadow", colour, optional},
+                                      {"line_width", number, optional, 0.1, 10},
+                                      {"text_height", number, optional, 0.5, 20}}};
+
 }  // namespace
+
+const ObjectFormat& theme_format() {
+  return colours_format;
+}
 
 const ObjectFormat& scene_format() {
   return file_format;

@@ -15,10 +15,12 @@ enum class KeyType {
   text,     // low..high characters
   name,     // text that can stand in a CSV cell and be referred to
   boolean,
-  choice,    // one of `choices`
-  friction,  // number low..high, or "no_slip"
-  object,    // `child`
-  list,      // low..high entries, each a `child`
+  choice,          // one of `choices`
+  friction,        // number low..high, or "no_slip"
+  colour,          // "#rrggbb" or "#rrggbbaa"
+  object,          // `child`
+  object_or_word,  // `child`, or one of `choices`
+  list,            // low..high entries, each a `child`
 };
 
 struct ObjectFormat;
@@ -39,6 +41,9 @@ struct ObjectFormat {
 
 /// The whole file; its objects hang below it.
 const ObjectFormat& scene_format();
+
+/// A theme's file (theme.h).
+const ObjectFormat& theme_format();
 
 /// Bytes; a larger file is refused unread.
 constexpr std::size_t max_scene_bytes = 4'000'000;

@@ -304,6 +304,31 @@ Wall Reader::read_wall(const json& from, const std::string& place) {
   return wall;
 }
 
+BodyLook read_body_look(const json& body) {
+  BodyLook look;
+  if (!body.contains("look")) return look;
+  const json& from = body["look"];
+  if (from.contains("colour")) look.colour = colour_from(from["colour"].get<std::string>());
+  if (from.contains("label")) look.label = from["label"].get<std::string>();
+  const std::map<std::string, LabelSide> sides = {{"automatic", LabelSide::automatic},
+                                                  {"below", LabelSide::below},
+                                                  {"above", LabelSide::above},
+                                                  {"left", LabelSide::left},
+                                                  {"right", LabelSide::right}};
+  look.side = sides.at(from.value("label_side", "automatic"));
+  look.marks = from.value("marks", true);
+  return look;
+}
+
+CableLook read_cable_look(const json& cable) {
+  CableLook look;
+  if (!cable.contains("look")) return look;
+  const json& from = cable["look"];
+  if (from.contains("colour")) look.colour = colour_from(from["colour"].get<std::string>());
+  look.marks = from.value("marks", true);
+  return look;
+}
+
 View Reader::read_view(const json& from) {
   View view;
   take(from, "low_m", view.low);
@@ -364,7 +389,10 @@ void Reader::read(const json& file, SceneFile& to) {
     scene.walls.push_back(read_wall(walls[i], fmt::format("/walls/{}", i)));
   }
   read_timing(file, to);
-  scene.view = read_view(file["view"]);
+  to.look.fit_view = file["view"] == "fit";
+  if (!to.look.fit_view) scene.view = read_view(file["view"]);
+  for (const json& body : file["bodies"]) to.look.bodies.push_back(read_body_look(body));
+  for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
   scene.baseline = method_from_string(file["baseline"]["method"].get<std::string>());
   scene.baseline_reason = file["baseline"]["reason"].get<std::string>();
 }

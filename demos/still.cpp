@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 
@@ -12,61 +14,146 @@
 #include "render/canvas.h"
 #include "render/compose.h"
 #include "render/png.h"
+#include "render/vector_canvas.h"
 
 namespace pinchlab {
 namespace {
 
-std::vector<int> frames_at(const Scene& scene, const std::vector<double>& times) {
+constexpr std::size_t most_frames = 10'000;
+
+int frame_at(const Scene& scene, const std::string& text) {
   const double duration = static_cast<double>(scene.frame_count) / scene.frames_per_second;
-  std::vector<int> frames;
-  for (const double time : times) {
-    if (!(0.0 <= time && time <= duration)) {
-      throw std::invalid_argument(
-          fmt::format("{}: --time must be 0 to {} s, not {}", scene.name, duration, time));
-    }
-    frames.push_back(static_cast<int>(std::lround(time * scene.frames_per_second)));
+  char* end = nullptr;
+  const double time = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !(0.0 <= time && time <= duration)) {
+    throw std::invalid_argument(fmt::format("{}: --time must be 0 to {} s, or FROM:TO, not {}",
+                                            scene.name, duration, text));
   }
-  return frames;
+  return static_cast<int>(std::lround(time * scene.frames_per_second));
 }
 
-// The frames asked for, in the order asked for, though the simulation only runs forward.
-std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& method,
-                                    const std::vector<int>& frames, const Scenery& scenery,
-                                    Canvas& canvas) {
+using Show = std::function<void(std::size_t index, const Player& player, const Picture& picture)>;
+
+/// Composes the frames, in the order of time (the simulation only runs forward); `index` counts
+/// them in the order asked for.
+void play(const SceneFile& file, const StillOptions& options, const Configuration& method,
+          const std::vector<int>& frames, const Scenery& scenery, const Show& show) {
   std::vector<std::size_t> by_time(frames.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
   std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return frames[i]; });
-  const std::size_t bytes =
-      4 * static_cast<std::size_t>(canvas.width()) * static_cast<std::size_t>(canvas.height());
-  std::vector<SheetFrame> drawn(frames.size());
   Player player(file, file.scene, method);
   Picture picture;
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
     compose(player.scene(), scenery, player.world(), picture);
-    const std::uint8_t* rgba = canvas.draw(picture);
-    drawn[i] = {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())};
+    if (options.burn_time) picture.add(time_label(scenery, player.time()));
+    show(i, player, picture);
   }
-  return drawn;
 }
 
-}  // namespace
+std::string label_of(const StillOptions& options, std::size_t row, double time) {
+  return options.neutral
+             ? fmt::format("{:c}, {:.2f} s", static_cast<char>('A' + static_cast<int>(row)), time)
+             : fmt::format("{}, {:.2f} s", in_words(options.methods[row]), time);
+}
 
-void write_still(const SceneFile& file, const StillOptions& options) {
-  const std::vector<int> frames = frames_at(file.scene, options.times);
-  const Scenery scenery = set_scenery(file.scene, file.look);
+int sheet_columns(const StillOptions& options, const std::vector<int>& frames) {
+  return options.methods.size() > 1 ? static_cast<int>(frames.size()) : 0;
+}
+
+void write_png_still(const SceneFile& file, const StillOptions& options,
+                     const std::vector<int>& frames, const Scenery& scenery) {
   Canvas canvas(options.width, options.height);
-  std::vector<SheetFrame> sheet;
-  for (const Configuration& method : options.methods) {
-    std::ranges::move(draw_frames(file, method, frames, scenery, canvas),
-                      std::back_inserter(sheet));
+  const std::size_t bytes =
+      4 * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+  std::vector<SheetFrame> sheet(frames.size() * options.methods.size());
+  for (std::size_t row = 0; row < options.methods.size(); ++row) {
+    play(file, options, options.methods[row], frames, scenery,
+         [&](std::size_t i, const Player& player, const Picture& picture) {
+           const std::uint8_t* rgba = canvas.draw(picture);
+           sheet[row * frames.size() + i] = {{rgba, rgba + bytes},
+                                             label_of(options, row, player.time())};
+         });
   }
   if (sheet.size() == 1) {
     write_png(options.out.string(), options.width, options.height, sheet.front().rgba.data());
     return;
   }
-  const int columns = options.methods.size() > 1 ? static_cast<int>(frames.size()) : 0;
-  contact_sheet(options.out.string(), options.width, options.height, sheet, columns);
+  contact_sheet(options.out.string(), options.width, options.height, sheet,
+                sheet_columns(options, frames));
+}
+
+void write_vector_still(const SceneFile& file, const StillOptions& options, VectorFormat format,
+                        const std::vector<int>& frames, const Scenery& scenery) {
+  std::vector<VectorFrame> sheet(frames.size() * options.methods.size());
+  for (std::size_t row = 0; row < options.methods.size(); ++row) {
+    play(file, options, options.methods[row], frames, scenery,
+         [&](std::size_t i, const Player& player, const Picture& picture) {
+           sheet[row * frames.size() + i] = {picture, label_of(options, row, player.time())};
+         });
+  }
+  write_vector(options.out.string(), format, options.width, options.height, sheet,
+               sheet_columns(options, frames));
+}
+
+/// Every frame a file of its own, its number in the place of the #.
+void write_sequence(const SceneFile& file, const StillOptions& options,
+                    const std::vector<int>& frames, const Scenery& scenery) {
+  if (options.methods.size() > 1) {
+    throw std::invalid_argument(
+        "a # in --out writes one picture a file; name one --method instead of --both");
+  }
+  const std::string name = options.out.filename().string();
+  const std::size_t place = name.find('#');
+  Canvas canvas(options.width, options.height);
+  play(file, options, options.methods.front(), frames, scenery,
+       [&](std::size_t, const Player& player, const Picture& picture) {
+         const std::string numbered = fmt::format("{}{:05}{}", name.substr(0, place),
+                                                  player.frame(), name.substr(place + 1));
+         write_png((options.out.parent_path() / numbered).string(), options.width, options.height,
+                   canvas.draw(picture));
+       });
+}
+
+}  // namespace
+
+std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& times) {
+  std::vector<int> frames;
+  for (const std::string& time : times) {
+    const std::size_t colon = time.find(':');
+    const int from = frame_at(scene, time.substr(0, colon));
+    const int to = colon == std::string::npos ? from : frame_at(scene, time.substr(colon + 1));
+    if (to < from) {
+      throw std::invalid_argument(
+          fmt::format("{}: --time {} ends before it begins", scene.name, time));
+    }
+    for (int frame = from; frame <= to; ++frame) frames.push_back(frame);
+  }
+  if (frames.size() > most_frames) {
+    throw std::invalid_argument(fmt::format("{}: --time names {} frames; {} at most", scene.name,
+                                            frames.size(), most_frames));
+  }
+  return frames;
+}
+
+void write_still(const SceneFile& file, const StillOptions& options) {
+  const std::vector<int> frames = frames_at(file.scene, options.times);
+  const std::string ending = options.out.extension().string();
+  const bool sequence = options.out.filename().string().find('#') != std::string::npos;
+  if (ending != ".png" && (sequence || (ending != ".svg" && ending != ".pdf"))) {
+    throw std::invalid_argument(fmt::format(
+        "{}: --out must end in {}", options.out.string(),
+        sequence ? ".png where a # stands for the frame's number" : ".png, .svg or .pdf"));
+  }
+  const Scenery scenery = set_scenery(file.scene, file.look, options.theme.theme);
+  if (sequence) {
+    write_sequence(file, options, frames, scenery);
+  } else if (ending == ".png") {
+    write_png_still(file, options, frames, scenery);
+  } else {
+    write_vector_still(file, options, ending == ".svg" ? VectorFormat::svg : VectorFormat::pdf,
+                       frames, scenery);
+  }
 }
 
 }  // namespace pinchlab

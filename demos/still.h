@@ -2,22 +2,33 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "demos/scene_json.h"
+#include "demos/theme.h"
 
 namespace pinchlab {
 
 struct StillOptions {
-  std::vector<double> times;           ///< s, each shown by the nearest frame; any order
+  /// Each "t" or "from:to" in s, shown by the nearest frame, or by all frames from one to the other
+  std::vector<std::string> times;
   std::vector<Configuration> methods;  ///< one a row of the sheet
   int width = 960, height = 960;       ///< px, of one picture
-  std::filesystem::path out;           ///< PNG
+  bool neutral = false;                ///< label rows A and B rather than by method
+  bool burn_time = false;              ///< the time in a corner of each picture
+  ThemeFile theme;
+  std::filesystem::path out;  ///< .png, .svg or .pdf; with a # in its name: a PNG for each frame
 };
 
-/// One frame of a scene as PNG, or, for several times or methods, a contact sheet with a label
-/// under each frame. Throws std::invalid_argument for a time outside of the clip,
-/// std::runtime_error where the simulation, OpenGL or the file fails.
+/// The frames that `times` name, in their order. Throws std::invalid_argument for what is no time
+/// of the scene.
+std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& times);
+
+/// One frame of a scene as PNG, SVG or PDF, or, for several times or methods, a contact sheet with
+/// a label under each frame. A # in the name of a PNG file stands for the frame's number: each
+/// frame is a file of its own. Throws std::invalid_argument for a time outside of the clip or
+/// another ending, std::runtime_error where the simulation, OpenGL or the file fails.
 void write_still(const SceneFile& file, const StillOptions& options);
 
 }  // namespace pinchlab

@@ -188,8 +188,9 @@ struct Canvas::State {
       const int right = std::min(part.left + part.width, sheet.left + sheet.width);
       gl.Scissor(left, part.top, std::max(0, right - left), part.height);
       const Colour& paper = sheet.background;
-      gl.ClearColor(narrow(paper.red / 255.0), narrow(paper.green / 255.0),
-                    narrow(paper.blue / 255.0), 1.0f);
+      const double alpha = paper.alpha / 255.0;
+      gl.ClearColor(narrow(alpha * paper.red / 255.0), narrow(alpha * paper.green / 255.0),
+                    narrow(alpha * paper.blue / 255.0), narrow(alpha));
       gl.Clear(GL_COLOR_BUFFER_BIT);
       for (; next < sheet.end; ++next) draw_batch(mesh.batches()[next]);
     }

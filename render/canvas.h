@@ -32,8 +32,9 @@ class Canvas {
   int width() const;
   int height() const;
 
-  /// RGBA, 8 bits each, opaque, top row first, width * 4 bytes a row; valid until the next draw.
-  /// Throws std::runtime_error if the font is missing or the driver reports an error.
+  /// RGBA, 8 bits each, alpha premultiplied (opaque where the background is), top row first, width
+  /// * 4 bytes a row; valid until the next draw. Throws std::runtime_error if the font is missing
+  /// or the driver reports an error.
   const std::uint8_t* draw(const Picture& picture);
 
   /// The same for several pictures side by side, left to right, each in an equal share of the

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/compose.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -69,8 +71,8 @@ class Composer {
  private:
   /// What is fixed to the ground: a line from a to b, hatched on its left.
   void add_hatched(const Vec2& a, const Vec2& b, double spacing) {
-    const double width = 0.8 * scenery_.line();
-    picture_.add(line(a, b, 1.4 * width, theme_.support));
+    const double width = 1.1 * scenery_.line();
+    picture_.add(line(a, b, 1.3 * width, theme_.support));
     const double length = (b - a).norm();
     const Vec2 along = (b - a) / length;
     const int count = std::max(2, static_cast<int>(std::lround(length / spacing)));
@@ -154,7 +156,7 @@ class Composer {
       // A bracket from the axle down to the ground, inside of the rim where no cable runs.
       const Vec2 foot = centre + Vec2(0.0, -0.6 * r), half(0.34 * r, 0.0);
       for (const double side : {-0.6, 0.6}) {
-        picture_.add(line(centre, foot + side * half, 0.8 * scenery_.line(), theme_.support));
+        picture_.add(line(centre, foot + side * half, 1.3 * scenery_.line(), theme_.support));
       }
       add_hatched(foot + half, foot - half, 0.2 * r);
     }
@@ -244,6 +246,12 @@ class Composer {
 
 void compose(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture) {
   Composer(scene, scenery, world, picture).run();
+}
+
+Label time_label(const Scenery& scenery, double time) {
+  const double text = scenery.text();
+  return {scenery.view.low + Vec2(2.6 * text, 1.2 * text), text, fmt::format("{:6.3f} s", time),
+          scenery.theme.ink};
 }
 
 }  // namespace pinchlab

@@ -16,4 +16,7 @@ namespace pinchlab {
 /// into a cable shows the overlap instead of hiding it.
 void compose(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture);
 
+/// A clip's time in the lower left corner of the view.
+Label time_label(const Scenery& scenery, double time);
+
 }  // namespace pinchlab

@@ -15,6 +15,7 @@ extern "C" {
 
 #include "base/partial_file.h"
 #include "render/canvas.h"
+#include "render/palette.h"
 #include "render/processor_time.h"
 #include "render/video.h"
 #include "render/yuv.h"
@@ -54,7 +55,19 @@ const CodecTraits& traits(Codec codec) {
                                    ""};
   static constexpr CodecTraits ffv1{
       "ffv1", ".mkv", "ffv1", "matroska", AV_PIX_FMT_0RGB32, "level=3:slicecrc=1:slices=4:g=1", ""};
+  static constexpr CodecTraits apng{"apng",           ".apng",      "apng",   "apng",
+                                    AV_PIX_FMT_RGB24, "pred=mixed", "plays=0"};
+  static constexpr CodecTraits webp{"webp",  ".webp",          "libwebp_anim",
+                                    "webp",  AV_PIX_FMT_RGB32, "lossless=1:compression_level=4",
+                                    "loop=0"};
+  static constexpr CodecTraits gif{"gif", ".gif", "gif", "gif", AV_PIX_FMT_PAL8, "", "loop=0"};
   switch (codec) {
+    case Codec::apng:
+      return apng;
+    case Codec::webp:
+      return webp;
+    case Codec::gif:
+      return gif;
     case Codec::h264:
       return h264;
     case Codec::vp9:
@@ -65,13 +78,16 @@ const CodecTraits& traits(Codec codec) {
   throw std::invalid_argument("unknown codec");
 }
 
+bool is_rgb(Codec codec) {
+  return traits(codec).pixel_format != AV_PIX_FMT_YUV420P;
+}
+
 std::string encoder_options(const VideoSettings& settings) {
   if (!settings.encoder_options.empty()) return settings.encoder_options;
   const std::string options = traits(settings.codec).options;
   // A key frame a second: a player can start anywhere without delay.
-  return settings.codec == Codec::ffv1
-             ? options
-             : fmt::format("g={}:{}", settings.frames_per_second, options);
+  return is_rgb(settings.codec) ? options
+                                : fmt::format("g={}:{}", settings.frames_per_second, options);
 }
 
 std::string reason(int error) {
@@ -131,10 +147,16 @@ void check_settings(const std::string& path, const VideoSettings& settings) {
         fmt::format("{}: a video of {} x {} px cannot be made: each side must be {} to {} px", path,
                     w, h, smallest_frame, largest_frame));
   }
-  if (settings.codec != Codec::ffv1 && (w % 2 != 0 || h % 2 != 0)) {
+  if (needs_even_sides(settings.codec) && (w % 2 != 0 || h % 2 != 0)) {
     throw std::invalid_argument(fmt::format(
         "{}: {} stores colour for 2 x 2 px, so {} x {} px cannot be made: use even sides, or ffv1",
         path, to_string(settings.codec), w, h));
+  }
+  if (settings.codec == Codec::gif && 100 % settings.frames_per_second != 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: a GIF counts hundredths of a second, so it cannot have {} frames in one: "
+                    "say --fps 50 (or 25, 20, 10), or use apng or webp",
+                    path, settings.frames_per_second));
   }
   if (settings.frames_per_second < 1 || settings.frames_per_second > 1000) {
     throw std::invalid_argument(fmt::format("{}: {} frames a second cannot be made: 1 to 1000",
@@ -142,17 +164,16 @@ void check_settings(const std::string& path, const VideoSettings& settings) {
   }
 }
 
-/// RGBA to the byte order that FFV1 stores, without loss.
-void rgba_to_bgr0(const std::uint8_t* rgba, int width, const PixelRect& part, std::uint8_t* to,
-                  std::ptrdiff_t stride) {
+/// RGBA to packed bytes in another order, without loss: `order` says which byte of RGBA comes
+/// where, or 3 for `last`.
+template <std::size_t Bytes>
+void repack(const std::uint8_t* rgba, int width, const PixelRect& part, std::uint8_t* to,
+            std::ptrdiff_t stride, const std::array<std::size_t, Bytes>& order, std::uint8_t last) {
   for (int y = part.top; y < part.top + part.height; ++y) {
     const std::uint8_t* from = rgba + (std::ptrdiff_t{y} * width + part.left) * 4;
-    std::uint8_t* out = to + y * stride + std::ptrdiff_t{part.left} * 4;
-    for (int x = 0; x < part.width; ++x, from += 4, out += 4) {
-      out[0] = from[2];
-      out[1] = from[1];
-      out[2] = from[0];
-      out[3] = 0;
+    std::uint8_t* out = to + y * stride + std::ptrdiff_t{part.left} * static_cast<int>(Bytes);
+    for (int x = 0; x < part.width; ++x, from += 4) {
+      for (const std::size_t k : order) *out++ = k == 3 ? last : from[k];
     }
   }
 }
@@ -164,10 +185,16 @@ const char* to_string(Codec codec) {
 }
 
 Codec codec_from_string(const std::string& name) {
-  for (const Codec codec : {Codec::h264, Codec::vp9, Codec::ffv1}) {
+  for (const Codec codec :
+       {Codec::h264, Codec::vp9, Codec::ffv1, Codec::apng, Codec::webp, Codec::gif}) {
     if (name == to_string(codec)) return codec;
   }
-  throw std::invalid_argument(fmt::format("unknown codec \"{}\": one of h264, vp9, ffv1", name));
+  throw std::invalid_argument(
+      fmt::format("unknown codec \"{}\": one of h264, vp9, ffv1, apng, webp, gif", name));
+}
+
+bool needs_even_sides(Codec codec) {
+  return !is_rgb(codec);
 }
 
 const char* file_ending(Codec codec) {
@@ -181,8 +208,10 @@ std::string describe(const VideoSettings& settings) {
       "{} (libavcodec {}.{}.{}) in {}, {}, {}, {} x {} px, {} frames/s, one thread, {}", t.encoder,
       version >> 16, version >> 8 & 0xff, version & 0xff, t.container,
       av_get_pix_fmt_name(t.pixel_format),
-      settings.codec == Codec::ffv1 ? "sRGB, lossless" : "BT.709 limited range", settings.width,
-      settings.height, settings.frames_per_second, encoder_options(settings));
+      settings.codec == Codec::gif ? "sRGB, 256 colours"
+      : is_rgb(settings.codec)     ? "sRGB, lossless"
+                                   : "BT.709 limited range",
+      settings.width, settings.height, settings.frames_per_second, encoder_options(settings));
 }
 
 struct VideoWriter::State {
@@ -194,6 +223,7 @@ struct VideoWriter::State {
   Owned<AVCodecContext> codec;
   Owned<AVFrame> frame;
   Owned<AVPacket> packet;
+  std::optional<Palette> palette;  // of a GIF, from its first frame
   std::int64_t frames = 0;
   double convert_seconds = 0.0, encode_seconds = 0.0;
 
@@ -240,7 +270,7 @@ struct VideoWriter::State {
     codec->flags |= AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0)
       codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    const bool rgb = settings.codec == Codec::ffv1;
+    const bool rgb = is_rgb(settings.codec);
     codec->color_primaries = AVCOL_PRI_BT709;
     codec->color_trc = rgb ? AVCOL_TRC_IEC61966_2_1 : AVCOL_TRC_BT709;
     codec->colorspace = rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
@@ -275,13 +305,32 @@ struct VideoWriter::State {
   void convert(const std::uint8_t* rgba, std::span<const PixelRect> changed) {
     check(av_frame_make_writable(frame.get()), partial.path(), "no memory for a frame");
     AVFrame& f = *frame;
+    if (settings.codec == Codec::gif) {
+      if (!palette) palette.emplace(rgba, settings.width, settings.height);
+      std::copy_n(palette->argb().data(), 256, reinterpret_cast<std::uint32_t*>(f.data[1]));
+    }
     const YuvPlanes planes{f.data[0],     f.data[1],     f.data[2],
                            f.linesize[0], f.linesize[1], f.linesize[2]};
     for (const PixelRect& part : changed) {
-      if (settings.codec == Codec::ffv1) {
-        rgba_to_bgr0(rgba, settings.width, part, f.data[0], f.linesize[0]);
-      } else {
-        rgba_to_yuv420(rgba, settings.width, part, planes);
+      std::uint8_t* const to = f.data[0];
+      const std::ptrdiff_t stride = f.linesize[0];
+      switch (settings.codec) {
+        case Codec::ffv1:
+          repack<4>(rgba, settings.width, part, to, stride, {2, 1, 0, 3}, 0);
+          break;
+        case Codec::webp:
+          repack<4>(rgba, settings.width, part, to, stride, {2, 1, 0, 3}, 255);
+          break;
+        case Codec::apng:
+          repack<3>(rgba, settings.width, part, to, stride, {0, 1, 2}, 255);
+          break;
+        case Codec::gif:
+          palette->index(rgba, settings.width, part, to, stride);
+          break;
+        case Codec::h264:
+        case Codec::vp9:
+          rgba_to_yuv420(rgba, settings.width, part, planes);
+          break;
       }
     }
   }

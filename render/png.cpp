@@ -62,8 +62,19 @@ void write_png(const std::string& path, int width, int height, const std::uint8_
     throw std::invalid_argument(fmt::format("{}: {} x {} px is no image", path, width, height));
   }
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  std::vector<std::uint8_t> rgb(count * 3);
-  for (std::size_t i = 0; i < count; ++i) std::copy_n(rgba + 4 * i, 3, rgb.data() + 3 * i);
+  bool opaque = true;
+  for (std::size_t i = 0; i < count && opaque; ++i) opaque = rgba[4 * i + 3] == 255;
+  const std::size_t channels = opaque ? 3 : 4;
+  std::vector<std::uint8_t> stored(count * channels);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* const from = rgba + 4 * i;
+    std::uint8_t* const to = stored.data() + channels * i;
+    std::copy_n(from, channels, to);
+    if (opaque || from[3] == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {  // PNG's alpha is not premultiplied
+      to[k] = static_cast<std::uint8_t>(std::min(255, (from[k] * 255 + from[3] / 2) / from[3]));
+    }
+  }
 
   PartialFile partial(path);
   std::unique_ptr<std::FILE, FileCloser> file(std::fopen(partial.name().c_str(), "wb"));
@@ -72,8 +83,8 @@ void write_png(const std::string& path, int width, int height, const std::uint8_
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
-  image.format = PNG_FORMAT_RGB;
-  if (png_image_write_to_stdio(&image, file.get(), 0, rgb.data(), 0, nullptr) == 0) {
+  image.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  if (png_image_write_to_stdio(&image, file.get(), 0, stored.data(), 0, nullptr) == 0) {
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, image.message));
   }
   if (std::fclose(file.release()) != 0) throw partial.error("cannot be written");

@@ -8,9 +8,10 @@
 
 namespace pinchlab {
 
-/// Writes an opaque RGB PNG from RGBA pixels (8 bits each, top row first; alpha is ignored). The
-/// same pixels give the same bytes. The file appears under its name only when complete. Throws
-/// std::runtime_error if it cannot be written, std::invalid_argument for a size below 1.
+/// Writes a PNG from RGBA pixels (8 bits each, alpha premultiplied, top row first): RGB where all
+/// are opaque, RGBA otherwise. The same pixels give the same bytes. The file appears under its name
+/// only when complete. Throws std::runtime_error if it cannot be written, std::invalid_argument for
+/// a size below 1.
 void write_png(const std::string& path, int width, int height, const std::uint8_t* rgba);
 
 /// One frame of a contact sheet.

@@ -70,6 +70,13 @@ struct Box {
   }
 };
 
+/// m across.
+double widest_cable(const Scene& scene) {
+  double width = 0.0;
+  for (const Cable& cable : scene.cables) width = std::max(width, 2.0 * cable.half_width);
+  return width;
+}
+
 class Rehearsal {
  public:
   Rehearsal(const Scene& scene, Scenery& scenery) : scene_(scene), scenery_(scenery) {}
@@ -94,6 +101,7 @@ class Rehearsal {
   void look(const World& world, bool keep);
   double overlap(const Box& box, const Vec2& offset, std::size_t body, double own_radius) const;
   Box label_box(const SceneryLabel& label) const;
+  std::vector<Vec2> label_places(std::size_t body, const Box& box, bool choose) const;
 
   const Scene& scene_;
   Scenery& scenery_;
@@ -173,16 +181,10 @@ double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
 }
 
 Box Rehearsal::label_box(const SceneryLabel& label) const {
-  // A character of DejaVu Sans is 0.64 em wide at most in figures and units.
+  // A character of DejaVu Sans is about 0.6 em wide.
   const double height = scenery_.text();
-  const Vec2 half(0.5 * 0.64 * height * static_cast<double>(label.text.size()), 0.6 * height);
+  const Vec2 half(0.5 * 0.6 * height * static_cast<double>(label.text.size()), 0.6 * height);
   return {-half, half};
-}
-
-double widest_cable(const Scene& scene) {
-  double width = 0.0;
-  for (const Cable& cable : scene.cables) width = std::max(width, 2.0 * cable.half_width);
-  return width;
 }
 
 /// A motor's arrow stands beside its rim, where cables leave room.
@@ -208,34 +210,43 @@ void Rehearsal::place_arrows() {
   }
 }
 
+/// Where a label may stand beside its body, the best place first: near its rim, then beyond the
+/// cable that may run round it.
+std::vector<Vec2> Rehearsal::label_places(std::size_t i, const Box& box, bool choose) const {
+  using enum LabelSide;
+  const Body& body = scene_.bodies[i];
+  const LabelSide wanted = scenery_.look.bodies.empty() ? automatic : scenery_.look.bodies[i].side;
+  const double gap = 0.5 * scenery_.text();
+  std::vector<Vec2> places;
+  for (const double beyond : {0.0, widest_cable(scene_)}) {
+    const double reach = body.radius + beyond;
+    const double down = reach + gap + box.high.y(), across = reach + gap + box.high.x();
+    const Vec2 diagonal = box.high + Vec2::Constant(0.72 * reach + 0.5 * gap);
+    const std::array<std::pair<LabelSide, Vec2>, 8> sides = {
+        {{below, {0.0, -down}},
+         {right, {across, 0.0}},
+         {left, {-across, 0.0}},
+         {above, {0.0, down}},
+         {automatic, {diagonal.x(), -diagonal.y()}},
+         {automatic, {-diagonal.x(), -diagonal.y()}},
+         {automatic, diagonal},
+         {automatic, {-diagonal.x(), diagonal.y()}}}};
+    for (const auto& [side, offset] : sides) {
+      if (wanted != automatic ? side == wanted : choose || side == below) places.push_back(offset);
+    }
+  }
+  return places;
+}
+
 void Rehearsal::place_labels() {
   const bool choose = scenery_.labels.size() <= most_labels;
   std::vector<std::pair<std::size_t, Box>> placed;
   for (SceneryLabel& label : scenery_.labels) {
     const Box box = label_box(label);
-    const Body& body = scene_.bodies[label.body];
-    const double gap = 0.5 * scenery_.text();
-    const double reach = is_driven(body)
-                             ? arrow_radius(scene_, scenery_, label.body) + 1.2 * scenery_.unit()
-                             : body.radius;
-    const double down = reach + gap + box.high.y(), across = reach + gap + box.high.x();
-    const double near = 0.72 * reach + gap;
-    using enum LabelSide;
-    const std::array<std::pair<LabelSide, Vec2>, 8> places = {
-        {{below, {0.0, -down}},
-         {right, {across, 0.0}},
-         {left, {-across, 0.0}},
-         {above, {0.0, down}},
-         {automatic, {near + box.high.x(), -near - box.high.y()}},
-         {automatic, {-near - box.high.x(), -near - box.high.y()}},
-         {automatic, {near + box.high.x(), near + box.high.y()}},
-         {automatic, {-near - box.high.x(), near + box.high.y()}}}};
-    const LabelSide wanted =
-        scenery_.look.bodies.empty() ? automatic : scenery_.look.bodies[label.body].side;
     double least = infinity;
-    for (const auto& [side, offset] : places) {
-      if (wanted != automatic ? side != wanted : !choose && side != below) continue;
-      double sum = choose ? overlap(box, offset, label.body, body.radius) : 0.0;
+    for (const Vec2& offset : label_places(label.body, box, choose)) {
+      double sum =
+          choose ? overlap(box, offset, label.body, scene_.bodies[label.body].radius) : 0.0;
       for (const auto& [other, other_box] : placed) {
         for (const Snapshot& snapshot : snapshots_) {
           const Vec2 here = snapshot.position[label.body] + offset;

@@ -15,24 +15,6 @@ namespace pinchlab {
 
 namespace {
 
-std::string find_font() {
-  if (const char* chosen = std::getenv("PINCHLAB_FONT")) {
-    if (std::filesystem::exists(chosen)) return chosen;
-    throw std::runtime_error(std::string("PINCHLAB_FONT names a file that does not exist: ") +
-                             chosen);
-  }
-  std::string tried;
-  for (const char* place : {PINCHLAB_FONT_FILE, "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                            "/usr/share/fonts/TTF/DejaVuSans.ttf",
-                            "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"}) {
-    if (std::filesystem::exists(place)) return place;
-    tried += std::string(tried.empty() ? "" : ", ") + place;
-  }
-  throw std::runtime_error(
-      "no font for labels (looked for " + tried +
-      "): install Debian's fonts-dejavu-core, or let PINCHLAB_FONT name a font file");
-}
-
 /// The next character of UTF-8 text from `i` on, which moves behind it; '?' for what is not UTF-8.
 char32_t next_character(const std::string& text, std::size_t& i) {
   const auto lead = static_cast<unsigned char>(text[i++]);
@@ -52,6 +34,24 @@ char32_t next_character(const std::string& text, std::size_t& i) {
 
 }  // namespace
 
+std::string font_file() {
+  if (const char* chosen = std::getenv("PINCHLAB_FONT")) {
+    if (std::filesystem::exists(chosen)) return chosen;
+    throw std::runtime_error(std::string("PINCHLAB_FONT names a file that does not exist: ") +
+                             chosen);
+  }
+  std::string tried;
+  for (const char* place : {PINCHLAB_FONT_FILE, "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                            "/usr/share/fonts/TTF/DejaVuSans.ttf",
+                            "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf"}) {
+    if (std::filesystem::exists(place)) return place;
+    tried += std::string(tried.empty() ? "" : ", ") + place;
+  }
+  throw std::runtime_error(
+      "no font for labels (looked for " + tried +
+      "): install Debian's fonts-dejavu-core, or let PINCHLAB_FONT name a font file");
+}
+
 struct Font::State {
   FT_Library library = nullptr;
   FT_Face face = nullptr;
@@ -62,7 +62,7 @@ struct Font::State {
 };
 
 Font::Font() : state_(std::make_unique<State>()) {
-  const std::string file = find_font();
+  const std::string file = font_file();
   if (FT_Init_FreeType(&state_->library) != 0) throw std::runtime_error("FreeType does not start");
   if (FT_New_Face(state_->library, file.c_str(), 0, &state_->face) != 0 ||
       FT_IS_SCALABLE(state_->face) == 0) {

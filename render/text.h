@@ -27,6 +27,9 @@ struct TextBitmap {
   }
 };
 
+/// Where the font of labels is. Throws std::runtime_error as Font does.
+std::string font_file();
+
 /// DejaVu Sans.
 class Font {
  public:

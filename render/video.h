@@ -17,14 +17,20 @@ enum class Codec {
   h264,  ///< H.264 in MP4, 4:2:0
   vp9,   ///< VP9 in WebM, 4:2:0
   ffv1,  ///< FFV1 in Matroska, lossless RGB
+  apng,  ///< animated PNG, lossless; this and the next two are previews that play for ever
+  webp,  ///< animated WebP, lossless
+  gif,   ///< animated GIF of 256 colours; its clock counts hundredths of a second
 };
 
-/// "h264", "vp9" or "ffv1", and back; codec_from_string throws std::invalid_argument that lists
-/// them.
+/// Whether the codec stores colour for 2 x 2 px.
+bool needs_even_sides(Codec codec);
+
+/// "h264", "vp9", "ffv1", "apng", "webp" or "gif", and back; codec_from_string throws
+/// std::invalid_argument that lists them.
 const char* to_string(Codec codec);
 Codec codec_from_string(const std::string& name);
 
-/// The ending of a codec's files, with its dot: ".mp4", ".webm" or ".mkv".
+/// The ending of a codec's files, with its dot, such as ".mp4".
 const char* file_ending(Codec codec);
 
 struct VideoSettings {

@@ -71,8 +71,12 @@ json schema_of(const KeyFormat& key) {
       return {{"oneOf",
                {{{"type", "number"}, {"minimum", key.low}, {"maximum", key.high}},
                 {{"const", "no_slip"}}}}};
+    case KeyType::colour:
+      return {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?$"}};
     case KeyType::object:
       return {{"$ref", child}};
+    case KeyType::object_or_word:
+      return {{"oneOf", {{{"$ref", child}}, {{"enum", key.choices}}}}};
     case KeyType::list:
       return {{"type", "array"},
               {"items", {{"$ref", child}}},
@@ -120,6 +124,7 @@ std::string documented_range(const KeyFormat& key) {
     case KeyType::list:
       return fmt::format("{} to {} entries", key.low, key.high);
     case KeyType::choice:
+    case KeyType::object_or_word:
       return fmt::format("`{}`", fmt::join(key.choices, "`, `"));
     default:
       return "";
@@ -128,7 +133,9 @@ std::string documented_range(const KeyFormat& key) {
 
 TEST(SceneFormat, DocumentationAgreesWithTheReader) {
   const std::string page = source_text("demos/README.md");
-  for (const ObjectFormat* format : all_formats()) {
+  std::vector<const ObjectFormat*> formats = all_formats();
+  formats.push_back(&theme_format());
+  for (const ObjectFormat* format : formats) {
     const std::size_t begin = page.find("### " + format->name + "\n");
     ASSERT_NE(begin, std::string::npos) << format->name;
     std::istringstream section(page.substr(begin, page.find("\n##", begin + 4) - begin));

@@ -220,7 +220,7 @@ std::vector<std::uint8_t> copy(const std::uint8_t* pixels, int width, int height
 TEST(Canvas, SamePictureSameBytesInAnyCanvas) {
   const Scene scene = testing::atwood();
   Picture picture;
-  compose(scene, make_world(scene, Method::pinch), picture);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
   Canvas first(240, 200), second(240, 200);
   const auto a = copy(first.draw(picture), 240, 200);
   second.draw(page());
@@ -236,8 +236,9 @@ TEST(Canvas, ReadsBackEverythingThatChanges) {
   Canvas canvas(160, 160);
   Picture picture;
   std::vector<std::uint8_t> last;
+  const Scenery scenery = set_scenery(scene);
   for (int frame = 0; frame < 12; ++frame) {
-    compose(scene, world, picture);
+    compose(scene, scenery, world, picture);
     if (frame == 5) picture.labels[0].text = "other";
     const auto pixels = copy(canvas.draw(picture), 160, 160);
     Canvas fresh(160, 160);
@@ -264,7 +265,7 @@ TEST(Canvas, ReadsBackEverythingThatChanges) {
 TEST(Canvas, PicturesSideBySideLookAsAlone) {
   const Scene scene = testing::atwood();
   Picture left, right = page();
-  compose(scene, make_world(scene, Method::pinch), left);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), left);
   right.add(
       Stroke{{-20.0, 48.0}, {60.0, 48.0}, 10.0, 0.0, ink, ink});  // would reach into the left one
   Canvas both(200, 100), one(100, 100);

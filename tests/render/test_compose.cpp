@@ -281,7 +281,7 @@ TEST(CablePath, MarksMoveContinuouslyThroughASimulation) {
 TEST(Compose, WeightsOfThingsOnCableEndsAreWritten) {
   const Scene scene = atwood();
   Picture picture;
-  compose(scene, make_world(scene, Method::pinch), picture);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
   ASSERT_EQ(picture.labels.size(), 2u);
   EXPECT_EQ(picture.labels[0].text, "1 kg");
   EXPECT_EQ(picture.labels[1].text, "1.05 kg");
@@ -292,8 +292,8 @@ TEST(Compose, WeightsOfThingsOnCableEndsAreWritten) {
 TEST(Compose, MethodsOfAPairLookAlike) {
   const Scene scene = atwood();
   Picture pinch, baseline;
-  compose(scene, make_world(scene, Method::pinch), pinch);
-  compose(scene, make_world(scene, Method::cable), baseline);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), pinch);
+  compose(scene, set_scenery(scene), make_world(scene, Method::cable), baseline);
   ASSERT_EQ(pinch.order.size(), baseline.order.size());
   for (std::size_t i = 0; i < pinch.strokes.size(); ++i) {
     EXPECT_EQ(pinch.strokes[i].fill, baseline.strokes[i].fill);
@@ -306,9 +306,9 @@ TEST(Compose, ABodyTurnsVisibly) {
   const Scene scene = atwood();
   World world = make_world(scene, Method::pinch);
   Picture before, after;
-  compose(scene, world, before);
+  compose(scene, set_scenery(scene), world, before);
   world.angle[1] += 2.0 * std::numbers::pi / 3.0;  // the spokes look the same, the dot does not
-  compose(scene, world, after);
+  compose(scene, set_scenery(scene), world, after);
   double moved = 0.0;
   for (std::size_t i = 0; i < before.strokes.size(); ++i) {
     if (before.strokes[i].a == before.strokes[i].b)
@@ -321,7 +321,7 @@ TEST(Compose, DrivenBodiesShowTheirSense) {
   Scene scene = atwood();
   scene.bodies[0].driven_angular_velocity = -2.0;
   Picture picture;
-  compose(scene, make_world(scene, Method::pinch), picture);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
   ASSERT_EQ(picture.strips.size(), 2u);  // the cable and the arrow's shaft
   const Strip& shaft = picture.strips[1];
   const StripPoint &first = picture.points[shaft.first], &next = picture.points[shaft.first + 1];
@@ -332,9 +332,9 @@ TEST(Compose, DrivenBodiesShowTheirSense) {
 TEST(Compose, ReusedPictureHoldsNothingOld) {
   const Scene scene = atwood(), other = hung(0.1);
   Picture picture, fresh;
-  compose(scene, make_world(scene, Method::pinch), picture);
-  compose(other, make_world(other, Method::pinch), picture);
-  compose(other, make_world(other, Method::pinch), fresh);
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
+  compose(other, set_scenery(other), make_world(other, Method::pinch), picture);
+  compose(other, set_scenery(other), make_world(other, Method::pinch), fresh);
   EXPECT_EQ(picture.order.size(), fresh.order.size());
   EXPECT_EQ(picture.points.size(), fresh.points.size());
   EXPECT_EQ(picture.labels.size(), fresh.labels.size());

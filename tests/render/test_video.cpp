@@ -25,8 +25,9 @@ std::vector<std::vector<std::uint8_t>> clip() {
   Canvas canvas(width, height);
   Picture picture;
   std::vector<std::vector<std::uint8_t>> all;
+  const Scenery scenery = set_scenery(scene);
   for (int i = 0; i < frames; ++i) {
-    compose(scene, world, picture);
+    compose(scene, scenery, world, picture);
     const std::uint8_t* pixels = canvas.draw(picture);
     all.emplace_back(pixels, pixels + width * height * 4);
     for (double& angle : world.angle) angle += 0.05;

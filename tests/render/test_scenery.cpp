@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a rehearsal finds: how far rails are used, what must be seen, where labels are out of the
+// way.
+
+#include "render/scenery.h"
+
+#include <gtest/gtest.h>
+
+#include "render/compose.h"
+#include "render/vector_canvas.h"
+#include "sim/step.h"
+#include "tests/render/scenes.h"
+
+namespace pinchlab {
+namespace {
+
+using testing::atwood;
+using testing::body;
+using testing::Folder;
+
+Scene short_atwood() {
+  Scene scene = atwood();
+  scene.frame_count = 30;
+  return scene;
+}
+
+/// A body that falls freely on a rail for half a second.
+Scene falling() {
+  Scene scene;
+  scene.name = "falling";
+  scene.bodies = {body("stone", BodyKind::rail, {0.0, 3.0}, 0.2)};
+  scene.frame_count = 30;
+  scene.view = {{-2.0, -2.0}, {2.0, 4.0}};
+  return scene;
+}
+
+TEST(Scenery, RailsReachAsFarAsTheBodyGoes) {
+  const Scenery scenery = set_scenery(falling());
+  EXPECT_NEAR(scenery.travel[0].high, 0.0, 1e-12);
+  const double last = 29.0 / 60.0;  // s
+  EXPECT_NEAR(scenery.travel[0].low, -0.5 * 9.81 * last * last, 0.01);
+}
+
+TEST(Scenery, BodiesOnOneLineShareARail) {
+  Scene scene = falling();
+  scene.bodies.push_back(body("other", BodyKind::rail, {0.0, 1.0}, 0.2));
+  scene.bodies[1].rail_axis = {0.0, -1.0};
+  const Scenery scenery = set_scenery(scene);
+  EXPECT_FALSE(scenery.travel[0].own);
+  EXPECT_TRUE(scenery.travel[1].own);
+  // From the other's highest place to its own lowest, along its own axis, which points down.
+  EXPECT_NEAR(scenery.travel[1].low, -2.0, 1e-9);
+  EXPECT_GT(scenery.travel[1].high, 1.0);
+}
+
+TEST(Scenery, AFittedViewShowsEverythingAllTheTime) {
+  const Scene scene = short_atwood();
+  SceneLook look;
+  look.fit_view = true;
+  const Scenery scenery = set_scenery(scene, look);
+  World world = make_world(scene, Method::pinch);
+  for (int i = 0; i < scene.frame_count * scene.steps_per_frame; ++i) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const double r = scene.bodies[b].radius;
+      EXPECT_TRUE(((world.position[b].array() - r) >= scenery.view.low.array()).all());
+      EXPECT_TRUE(((world.position[b].array() + r) <= scenery.view.high.array()).all());
+    }
+    step(scene, world);
+  }
+  EXPECT_LT((scenery.view.high - scenery.view.low).maxCoeff(), 3.5);
+}
+
+TEST(Scenery, LabelsCanBeSetHiddenAndPlaced) {
+  const Scene scene = short_atwood();
+  SceneLook look;
+  look.bodies.resize(3);
+  look.bodies[0].label = "a fixed pulley";
+  look.bodies[0].side = LabelSide::above;
+  look.bodies[1].label = "";
+  const Scenery scenery = set_scenery(scene, look);
+  ASSERT_EQ(scenery.labels.size(), 2U);
+  EXPECT_EQ(scenery.labels[0].text, "a fixed pulley");
+  EXPECT_GT(scenery.labels[0].offset.y(), 0.5);
+  EXPECT_EQ(scenery.labels[0].offset.x(), 0.0);
+  EXPECT_EQ(scenery.labels[1].body, 2U);
+  EXPECT_EQ(scenery.labels[1].text, "1.05 kg");
+}
+
+TEST(Scenery, ALabelMovesOffARope) {
+  // A weight on a rope that goes on below it: below is taken, so that the label stands beside it.
+  Scene scene = short_atwood();
+  Cable below;
+  below.name = "below";
+  below.start.body = 1;
+  below.end.point = {-0.55, -2.9};
+  below.slack = 2.0;
+  scene.cables.push_back(below);
+  const Scenery scenery = set_scenery(scene);
+  ASSERT_EQ(scenery.labels[0].body, 1U);
+  EXPECT_GT(std::abs(scenery.labels[0].offset.x()), 0.2);
+}
+
+TEST(Scenery, ThemeAndLooksReachThePicture) {
+  const Scene scene = short_atwood();
+  Theme theme;
+  theme.background = {1, 2, 3, 255};
+  SceneLook look;
+  look.bodies.resize(3);
+  look.cables.resize(1);
+  look.bodies[1].colour = Colour{10, 200, 10, 255};
+  look.bodies[1].marks = false;
+  look.cables[0].colour = Colour{9, 9, 200, 255};
+  look.cables[0].marks = false;
+  Picture plain, picture;
+  const World world = make_world(scene, Method::pinch);
+  compose(scene, set_scenery(scene), world, plain);
+  compose(scene, set_scenery(scene, look, theme), world, picture);
+  EXPECT_EQ(picture.background, theme.background);
+  EXPECT_EQ(picture.strips[0].fill, (Colour{9, 9, 200, 255}));
+  EXPECT_EQ(picture.strips[0].mark_length, 0.0);
+  EXPECT_EQ(plain.strokes.size(), picture.strokes.size() + 4) << "three spokes and a dot";
+  const auto green = [](const Stroke& s) { return s.fill == Colour{10, 200, 10, 255}; };
+  EXPECT_EQ(std::count_if(picture.strokes.begin(), picture.strokes.end(), green), 1);
+}
+
+TEST(Vector, SvgAndPdfAreTheSameTwice) {
+  const Scene scene = short_atwood();
+  Picture picture;
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
+  const Folder folder;
+  for (const auto& [format, ending, begin] :
+       {std::tuple(VectorFormat::svg, ".svg", "<?xml"), {VectorFormat::pdf, ".pdf", "%PDF"}}) {
+    const std::string a = folder.file(std::string("a") + ending);
+    const std::string b = folder.file(std::string("b") + ending);
+    write_vector(a, format, 200, 200, {{picture, ""}});
+    write_vector(b, format, 200, 200, {{picture, ""}});
+    const auto raw = testing::bytes_of(a);
+    EXPECT_EQ(raw, testing::bytes_of(b));
+    EXPECT_TRUE(std::string(raw.begin(), raw.end()).starts_with(begin));
+  }
+  const auto raw = testing::bytes_of(folder.file("a.svg"));
+  const std::string svg(raw.begin(), raw.end());
+  EXPECT_NE(svg.find("width=\"200"), std::string::npos);
+  EXPECT_EQ(svg.find("<image"), std::string::npos) << "shapes, not pixels";
+  write_vector(folder.file("sheet.svg"), VectorFormat::svg, 100, 100,
+               {{picture, "A, 0.00 s"}, {picture, "B, 0.00 s"}}, 2);
+  EXPECT_THROW(write_vector(folder.file("no/a.svg"), VectorFormat::svg, 10, 10, {{picture, ""}}),
+               std::runtime_error);
+  EXPECT_THROW(write_vector(folder.file("none.svg"), VectorFormat::svg, 10, 10, {}),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pinchlab
