@@ -101,6 +101,7 @@ class Rehearsal {
   void look(const World& world, bool keep);
   double overlap(const Box& box, const Vec2& offset, std::size_t body, double own_radius) const;
   Box label_box(const SceneryLabel& label) const;
+  Vec2 arrow_centre(std::size_t body) const;
   std::vector<Vec2> label_places(std::size_t body, const Box& box, bool choose) const;
 
   const Scene& scene_;
@@ -210,6 +211,12 @@ void Rehearsal::place_arrows() {
   }
 }
 
+/// The middle of a motor's arrow, m from the body's centre.
+Vec2 Rehearsal::arrow_centre(std::size_t body) const {
+  const double angle = scenery_.arrow_middle[body];
+  return arrow_radius(scene_, scenery_, body) * Vec2(std::cos(angle), std::sin(angle));
+}
+
 /// Where a label may stand beside its body, the best place first: near its rim, then beyond the
 /// cable that may run round it.
 std::vector<Vec2> Rehearsal::label_places(std::size_t i, const Box& box, bool choose) const {
@@ -247,12 +254,15 @@ void Rehearsal::place_labels() {
     for (const Vec2& offset : label_places(label.body, box, choose)) {
       double sum =
           choose ? overlap(box, offset, label.body, scene_.bodies[label.body].radius) : 0.0;
+      const Box here{offset + box.low, offset + box.high};
+      if (is_driven(scene_.bodies[label.body]) &&
+          here.touches_disc(arrow_centre(label.body), 5.2 * scenery_.unit())) {
+        sum += 2.0;
+      }
       for (const auto& [other, other_box] : placed) {
         for (const Snapshot& snapshot : snapshots_) {
-          const Vec2 here = snapshot.position[label.body] + offset;
-          const Vec2 there = snapshot.position[other];
-          const bool both = Box{here + box.low, here + box.high}.touches(
-              {there + other_box.low, there + other_box.high});
+          const Vec2 apart = snapshot.position[other] - snapshot.position[label.body];
+          const bool both = here.touches({apart + other_box.low, apart + other_box.high});
           sum += static_cast<double>(both) / static_cast<double>(snapshots_.size());
         }
       }

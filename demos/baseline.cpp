@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/baseline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "demos/player.h"
+
+namespace pinchlab {
+namespace {
+
+/// A method's motion, frame by frame.
+struct Motion {
+  std::vector<std::vector<Vec2>> position;
+  std::vector<std::vector<double>> angle;
+  std::vector<std::vector<char>> at_wall;  // whether a body touches a wall
+};
+
+Motion play(const SceneFile& file, MethodFigures& figures) {
+  Player player(file, file.scene, figures.method);
+  Motion motion;
+  try {
+    for (int frame = 0; frame < file.scene.frame_count; ++frame) {
+      player.advance_to(frame);
+      const World& world = player.world();
+      motion.position.push_back(world.position);
+      motion.angle.push_back(world.angle);
+      motion.at_wall.emplace_back(world.position.size(), 0);
+      for (const Contact& contact : world.contacts) {
+        if (contact.wall < 0 || !contact.touching) continue;
+        motion.at_wall.back()[static_cast<std::size_t>(contact.a)] = 1;
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    figures.problems.emplace_back(error.what());
+  }
+  for (const std::string& line : player.broken_promises()) figures.problems.push_back(line);
+  return motion;
+}
+
+double roughness(const Motion& motion) {
+  double sum = 0.0;
+  for (std::size_t i = 3; i < motion.position.size(); ++i) {
+    double largest = 0.0;
+    for (std::size_t b = 0; b < motion.position[i].size(); ++b) {
+      bool knocked = false;
+      for (std::size_t k = i - 3; k <= i; ++k) knocked = knocked || motion.at_wall[k][b] != 0;
+      if (knocked) continue;
+      const auto at = [&](std::size_t k) { return motion.position[k][b]; };
+      const Vec2 third = at(i) - 3.0 * at(i - 1) + 3.0 * at(i - 2) - at(i - 3);
+      largest = std::max(largest, third.norm());
+    }
+    sum += largest;
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, motion.position.size()));
+}
+
+void compare(const Motion& pinch, const Motion& other, MethodFigures& figures) {
+  const std::size_t frames = std::min(pinch.position.size(), other.position.size());
+  for (std::size_t i = 0; i < frames; ++i) {
+    for (std::size_t b = 0; b < pinch.position[i].size(); ++b) {
+      figures.largest_distance = std::max(figures.largest_distance,
+                                          (pinch.position[i][b] - other.position[i][b]).norm());
+      figures.largest_turn =
+          std::max(figures.largest_turn, std::abs(pinch.angle[i][b] - other.angle[i][b]));
+    }
+  }
+}
+
+void decide(BaselineAdvice& advice) {
+  const double ratio = advice.cable.roughness / advice.no_contact.roughness;
+  if (advice.cable.problems.size() > advice.no_contact.problems.size()) {
+    advice.recommended = Method::pinch_no_contact;
+    advice.reason = "Plain cable joints break here: " + advice.cable.problems.front() + ".";
+  } else if (ratio > fair_roughness) {
+    advice.recommended = Method::pinch_no_contact;
+    advice.reason = fmt::format(
+        "Plain cable joints jitter here: {:.1f} times as rough as pinch joints without contact, "
+        "under which bodies come equally close.",
+        ratio);
+  } else {
+    advice.recommended = Method::cable;
+    advice.reason =
+        "Plain cable joints work here: they break nothing and move as smoothly as pinch joints "
+        "without contact.";
+  }
+}
+
+}  // namespace
+
+BaselineAdvice advise_baseline(const SceneFile& file) {
+  BaselineAdvice advice;
+  advice.no_contact.method = Method::pinch_no_contact;
+  advice.cable.method = Method::cable;
+  const Motion pinch = play(file, advice.pinch);
+  for (MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
+    const Motion motion = figures == &advice.pinch ? pinch : play(file, *figures);
+    figures->roughness = roughness(motion);
+    compare(pinch, motion, *figures);
+  }
+  decide(advice);
+  return advice;
+}
+
+std::string text(const SceneFile& file, const BaselineAdvice& advice) {
+  std::string out = fmt::format("{:<18}{:>20}{:>24}{:>20}\n", "method", "roughness (mm)",
+                                "from pinch joints (mm)", "turned (degrees)");
+  for (const MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
+    out += fmt::format("{:<18}{:>20.3g}{:>24.3g}{:>20.3g}\n", to_string(figures->method),
+                       1e3 * figures->roughness, 1e3 * figures->largest_distance,
+                       figures->largest_turn * 180.0 / std::numbers::pi);
+  }
+  for (const MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
+    for (const std::string& problem : figures->problems) out += problem + "\n";
+  }
+  const nlohmann::ordered_json baseline = {{"method", to_string(advice.recommended)},
+                                           {"reason", advice.reason}};
+  out += fmt::format("\nRecommended: {}. {}\n", to_string(advice.recommended), advice.reason);
+  out += file.scene.baseline == advice.recommended
+             ? "The scene has it already.\n"
+             : fmt::format("In the scene: \"baseline\": {}\n", baseline.dump());
+  return out;
+}
+
+}  // namespace pinchlab

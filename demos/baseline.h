@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Which baseline is fair for a scene: plain cable joints where they work, pinch joints without
+// contact where they break.
+
+#include <string>
+#include <vector>
+
+#include "demos/scene_json.h"
+
+namespace pinchlab {
+
+/// What a method does in a scene.
+struct MethodFigures {
+  Method method = Method::pinch;
+  /// m: mean over the frames of the largest third difference of a body's positions. Jitter makes it
+  /// large; bodies that touch a wall are left out, for a knock is as rough with any method.
+  double roughness = 0.0;
+  double largest_distance = 0.0;      ///< m, of a body from where pinch joints have it
+  double largest_turn = 0.0;          ///< rad, likewise
+  std::vector<std::string> problems;  ///< promises broken, or why it ended early
+};
+
+struct BaselineAdvice {
+  MethodFigures pinch, no_contact, cable;
+  Method recommended = Method::cable;
+  std::string reason;  ///< fit for the scene's own `baseline`
+};
+
+/// Plain joints are taken where they break nothing that pinch joints without contact keep, and
+/// move at most this many times as roughly.
+constexpr double fair_roughness = 1.2;
+
+/// Plays the scene with all three methods. Throws SceneFileError where the geometry cannot exist.
+BaselineAdvice advise_baseline(const SceneFile& file);
+
+/// A table, the recommendation, and the lines to put into the scene.
+std::string text(const SceneFile& file, const BaselineAdvice& advice);
+
+}  // namespace pinchlab
