@@ -172,9 +172,10 @@ class Writer {
       rows.push_back(&result.row);
       scales.push_back(&result.scale);
     }
-    thesis_table("2AFC results, chi-square analysis", rows, 3);
+    const bool independent = rows.front()->why_not_independent.empty();
+    thesis_table(independent ? "2AFC results, chi-square analysis" : "2AFC results", rows, 3);
     add(FigureBlock{"shares"});
-    if (!rows.front()->why_not_independent.empty()) {
+    if (!independent) {
       participant_table(rows, scales);
       return;
     }
