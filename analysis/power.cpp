@@ -12,7 +12,7 @@
 #include "analysis/binomial.h"
 #include "analysis/clustered.h"
 #include "analysis/gsl_support.h"
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 
 namespace pinchlab::analysis {
 

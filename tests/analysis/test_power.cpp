@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "analysis/clustered.h"
-#include "analysis/input_error.h"
 #include "analysis/power.h"
 #include "analysis/tests_2afc.h"
+#include "base/input_error.h"
 #include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {
