@@ -66,7 +66,7 @@ double psnr_db(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_
 
 void advance_frame(const Scene& scene, World& world) {
   for (int s = 0; s < scene.steps_per_frame; ++s) {
-    if (step(scene, world) != StepStatus::ok)
+    if (step(scene, world, work) != StepStatus::ok)
       throw std::runtime_error(scene.name + ": " + world.failure);
   }
 }

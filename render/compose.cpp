@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
-#include "sim/cable.h"
-#include "sim/tangent.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiments/bare_pass.h"
 
-#include "sim/tangent.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab::experiments {
 

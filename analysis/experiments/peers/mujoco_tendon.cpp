@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "analysis/experiments/experiment.h"
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 
 namespace pinchlab::experiments {
 
