@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "demos/scene_format.h"
-#include "sim/step.h"
 
 namespace pinchlab {
 namespace {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "demos/scene_json.h"
+#include "sim/step.h"
 
 namespace pinchlab {
 

@@ -11,7 +11,6 @@
 #include "demos/output_file.h"
 #include "demos/progress.h"
 #include "demos/scene_format.h"
-#include "sim/step.h"
 
 namespace pinchlab {
 namespace {
