@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/study_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <stdexcept>
 
-#include "analysis/json_object.h"
-#include "study/durable_file.h"
+#include "base/durable_file.h"
+#include "base/json_object.h"
+#include "base/strict_json.h"
 #include "study/secrets.h"
 
 namespace pinchlab::study {
@@ -59,8 +57,8 @@ StudyFile open_study_file(const fs::path& answers, const Config& config,
     write_study_file(answers, config, study);
     return study;
   }
-  const json file = analysis::read_json_file(path, largest_file);
-  analysis::JsonObject object(file, path.string(), "");
+  const json file = read_json_file(path, largest_file);
+  JsonObject object(file, path.string(), "");
   object.choice("format", {"pinchlab-running 1"});
   study.seed = static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
   study.link_secret = object.text("link_secret", 64);
@@ -92,24 +90,6 @@ void write_study_file(const fs::path& answers, const Config& config, const Study
                      {"used_links", study.used_links},
                      {"plan", fingerprint(config)}};
   write_durably(study_path(answers), file.dump(2) + "\n");
-}
-
-FolderLock::FolderLock(const fs::path& answers)
-    : folder_(::open(running_folder(answers).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (folder_ < 0) {
-    throw std::runtime_error(running_folder(answers).string() +
-                             ": is not a folder that can be used");
-  }
-  if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(folder_);
-    throw std::runtime_error(
-        fmt::format("{}: another server is using this folder; stop it or use another --answers",
-                    answers.string()));
-  }
-}
-
-FolderLock::~FolderLock() {
-  ::close(folder_);
 }
 
 }  // namespace pinchlab::study

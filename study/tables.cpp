@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "analysis/answer_file.h"
-#include "analysis/json_object.h"
+#include "base/csv.h"
+#include "base/durable_file.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 
 namespace pinchlab::study {
 namespace {
@@ -19,18 +20,6 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
-
-// RFC 4180.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string result = "\"";
-  for (const char c : text) {
-    result += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return result + "\"";
-}
 
 std::string value_of(const json& object, const char* key) {
   if (!object.contains(key)) {
@@ -100,7 +89,7 @@ const std::vector<Column> columns = {
 std::string row(const std::vector<std::string>& values) {
   std::string text;
   for (const std::string& value : values) {
-    text += (text.empty() ? "" : ",") + quoted(value);
+    text += (text.empty() ? "" : ",") + csv_cell(value);
   }
   return text + "\n";
 }
@@ -168,7 +157,7 @@ std::string answers_csv(const fs::path& folder) {
   }
   std::string csv = row(names);
   for (const fs::path& path : answer_files(folder)) {
-    const json file = analysis::read_json_file(path, largest_file);
+    const json file = read_json_file(path, largest_file);
     analysis::parse_answer_file(file, path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
