@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "demos/scene_format.h"
-#include "sim/step.h"
 
 namespace pinchlab {
 namespace {
@@ -76,7 +75,7 @@ Player::Player(const SceneFile& file, const Scene& scene, const Configuration& c
 void Player::advance_to(int frame) {
   for (; frame_ < frame; ++frame_) {
     for (int i = 0; i < scene_.steps_per_frame; ++i) {
-      if (step(scene_, world_) != StepStatus::ok) {
+      if (step(scene_, world_, work_) != StepStatus::ok) {
         throw std::runtime_error(failure_report(file_.path, scene_, world_, frame_ + 1));
       }
     }

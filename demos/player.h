@@ -7,6 +7,7 @@
 #include <string>
 
 #include "demos/scene_json.h"
+#include "sim/step.h"
 
 namespace pinchlab {
 
@@ -43,11 +44,14 @@ class Player {
   double time() const { return static_cast<double>(frame_) / scene_.frames_per_second; }
   const Scene& scene() const { return scene_; }
   const World& world() const { return world_; }
+  /// At the time of the frame.
+  Velocities velocities() const { return velocities_now(scene_, world_, work_); }
 
  private:
   const SceneFile& file_;
   Scene scene_;
   World world_;
+  mutable Workspace work_;  // changes no result
   int frame_ = 0;
 };
 

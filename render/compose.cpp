@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
-#include "sim/cable.h"
-#include "sim/tangent.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 
@@ -163,8 +163,8 @@ class Composer {
             disc(link_centre(world_, *link), 1.05 * cable.half_width, palette::cable_edge));
       } else {
         const double r = std::max(1.7 * cable.half_width, 0.6 * page_.unit);
-        picture_.add(disc(link->attachment, r, palette::ink));
-        picture_.add(disc(link->attachment, 0.4 * r, palette::paper));
+        picture_.add(disc(link->offset, r, palette::ink));
+        picture_.add(disc(link->offset, 0.4 * r, palette::paper));
       }
     }
   }
