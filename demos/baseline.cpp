@@ -63,8 +63,8 @@ void compare(const Motion& pinch, const Motion& other, MethodFigures& figures) {
   const std::size_t frames = std::min(pinch.position.size(), other.position.size());
   for (std::size_t i = 0; i < frames; ++i) {
     for (std::size_t b = 0; b < pinch.position[i].size(); ++b) {
-      figures.largest_distance = std::max(figures.largest_distance,
-                                          (pinch.position[i][b] - other.position[i][b]).norm());
+      figures.largest_distance =
+          std::max(figures.largest_distance, (pinch.position[i][b] - other.position[i][b]).norm());
       figures.largest_turn =
           std::max(figures.largest_turn, std::abs(pinch.angle[i][b] - other.angle[i][b]));
     }

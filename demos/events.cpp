@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 
 namespace pinchlab {
 

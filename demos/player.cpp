@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "demos/scene_format.h"
-#include "sim/step.h"
 
 namespace pinchlab {
 namespace {
@@ -79,7 +78,7 @@ void Player::advance_to(int frame) {
 
 void Player::advance_to_step(std::int64_t wanted) {
   for (; step_ < wanted; ++step_) {
-    if (step(scene_, world_) != StepStatus::ok) {
+    if (step(scene_, world_, work_) != StepStatus::ok) {
       throw std::runtime_error(failure_report(file_.path, scene_, world_, frame() + 1));
     }
   }

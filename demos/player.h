@@ -8,6 +8,7 @@
 #include <string>
 
 #include "demos/scene_json.h"
+#include "sim/step.h"
 
 namespace pinchlab {
 
@@ -50,11 +51,14 @@ class Player {
   }
   const Scene& scene() const { return scene_; }
   const World& world() const { return world_; }
+  /// At the time of the frame.
+  Velocities velocities() const { return velocities_now(scene_, world_, work_); }
 
  private:
   const SceneFile& file_;
   Scene scene_;
   World world_;
+  mutable Workspace work_;  // changes no result
   std::int64_t step_ = 0;
 };
 

@@ -11,7 +11,6 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/scene_format.h"
-#include "sim/step.h"
 
 namespace pinchlab {
 namespace {
@@ -19,7 +18,7 @@ namespace {
 void add_bodies(const Player& player, std::string& rows) {
   const Scene& scene = player.scene();
   const World& world = player.world();
-  const Velocities velocity = velocities_now(scene, world);
+  const Velocities velocity = player.velocities();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     fmt::format_to(std::back_inserter(rows), "{},{},{},{},{},{},{},{}\n", player.time(),
                    scene.bodies[i].name, world.position[i].x(), world.position[i].y(),

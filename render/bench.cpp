@@ -64,9 +64,9 @@ double psnr_db(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_
                    : infinity;
 }
 
-void advance_frame(const Scene& scene, World& world) {
+void advance_frame(const Scene& scene, World& world, Workspace& work) {
   for (int s = 0; s < scene.steps_per_frame; ++s) {
-    if (step(scene, world) != StepStatus::ok)
+    if (step(scene, world, work) != StepStatus::ok)
       throw std::runtime_error(scene.name + ": " + world.failure);
   }
 }
@@ -76,6 +76,7 @@ void time_stages(const Scene& scene, const Scenery& scenery, const Configuration
                  Canvas& canvas, VideoWriter& writer, RenderCost& cost) {
   std::vector<double> simulate, draw, convert, encode;
   World world = make_world(scene, method);
+  Workspace work;
   Picture picture;
   for (int frame = 0; frame < cost.frames; ++frame) {
     const double start = processor_seconds();
@@ -86,7 +87,7 @@ void time_stages(const Scene& scene, const Scenery& scenery, const Configuration
     convert.push_back(writer.convert_seconds());
     encode.push_back(writer.encode_seconds());
     const double encoded = processor_seconds();
-    advance_frame(scene, world);
+    advance_frame(scene, world, work);
     simulate.push_back(processor_seconds() - encoded);
   }
   writer.finish();
@@ -103,13 +104,14 @@ void measure_clip(const Scene& scene, const Scenery& scenery, const Configuratio
   VideoWriter writer(path, settings);
   std::vector<double> encode;
   World world = make_world(scene, method);
+  Workspace work;
   Picture picture;
   for (int frame = 0; frame < cost.frames; ++frame) {
     compose(scene, scenery, world, picture);
     const std::uint8_t* pixels = canvas.draw(picture);
     writer.add(pixels, canvas.changed());
     encode.push_back(writer.encode_seconds());
-    advance_frame(scene, world);
+    advance_frame(scene, world, work);
   }
   writer.finish();
   cost.encode_stimuli_ms = median_ms(encode);
@@ -124,7 +126,7 @@ void measure_clip(const Scene& scene, const Scenery& scenery, const Configuratio
     const std::vector<std::uint8_t> luma =
         luma_of(canvas.draw(picture), canvas.width(), canvas.height());
     cost.least_luma_psnr_db = std::min(cost.least_luma_psnr_db, psnr_db(luma, decoded->luma));
-    advance_frame(scene, world);
+    advance_frame(scene, world, work);
   }
 }
 

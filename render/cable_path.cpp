@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "render/hanging.h"
-#include "sim/cable.h"
-#include "sim/tangent.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
-#include "sim/cable.h"
-#include "sim/tangent.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 
@@ -185,8 +185,8 @@ class Composer {
         picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
       } else {
         const double r = anchor_radius(cable.half_width);
-        picture_.add(disc(link->attachment, r, theme_.ink));
-        picture_.add(disc(link->attachment, 0.4 * r, theme_.background));
+        picture_.add(disc(link->offset, r, theme_.ink));
+        picture_.add(disc(link->offset, 0.4 * r, theme_.background));
       }
     }
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/tangent.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 

@@ -83,11 +83,12 @@ class Rehearsal {
 
   void play(const Configuration& configuration) {
     World world = make_world(scene_, configuration);
+    Workspace work;
     const int every = std::max(1, scene_.frame_count / most_snapshots);
     for (int frame = 0; frame < scene_.frame_count; ++frame) {
       look(world, frame % every == 0);
       for (int i = 0; i < scene_.steps_per_frame; ++i) {
-        if (step(scene_, world) != StepStatus::ok) return;
+        if (step(scene_, world, work) != StepStatus::ok) return;
       }
     }
   }
@@ -296,10 +297,10 @@ std::vector<Anchor> find_anchors(const Scene& scene) {
     if (cable.closed || cable.links.size() < 2) continue;
     const Segment &first = cable.segments[1], &last = cable.segments.back();
     if (cable.links.front().body < 0) {
-      anchors.push_back({cable.links.front().attachment, -first.direction, cable.half_width});
+      anchors.push_back({cable.links.front().offset, -first.direction, cable.half_width});
     }
     if (cable.links.back().body < 0) {
-      anchors.push_back({cable.links.back().attachment, last.direction, cable.half_width});
+      anchors.push_back({cable.links.back().offset, last.direction, cable.half_width});
     }
   }
   return anchors;

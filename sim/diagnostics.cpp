@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
+#include "sim/workspace.h"
 
 namespace pinchlab {
 
 bool check_finite(const Scene& scene, World& world) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     if (std::isfinite(world.velocity[b].x()) && std::isfinite(world.velocity[b].y()) &&
         std::isfinite(world.angular_velocity[b])) {
       continue;
@@ -33,14 +34,13 @@ bool check_finite(const Scene& scene, World& world) {
   return true;
 }
 
-void measure_energy(const Scene& scene, World& world) {
-  const Scratch& s = world.scratch;
+void measure_energy(const Scene& scene, World& world, const Workspace& work) {
   double energy = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const BodyProperties& body = world.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
-    const Vec2 v = 0.5 * (s.velocity_before[b] + world.velocity[b]);
-    const double omega = 0.5 * (s.angular_velocity_before[b] + world.angular_velocity[b]);
+    const Vec2 v = 0.5 * (work.velocity_before[b] + world.velocity[b]);
+    const double omega = 0.5 * (work.angular_velocity_before[b] + world.angular_velocity[b]);
     energy += 0.5 * disc_inertia(body) * omega * omega;
     if (body.kind == BodyKind::fixed_axle) continue;
     energy += 0.5 * body.mass * v.squaredNorm() - body.mass * scene.gravity.dot(world.position[b]);

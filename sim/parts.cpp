@@ -5,22 +5,17 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/cable.h"
-#include "sim/world.h"
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/solve/capstan.h"
+#include "sim/workspace.h"
 
 namespace pinchlab {
 
 namespace {
 
-/// Below this nothing moves (m/s, and rad/s times radius): far above round-off, and a nanometre a
-/// second.
-constexpr double rest_speed = 1e-9;
 /// After this long (s) at rest a part stays at rest: all its forces are constant.
 constexpr double rest_time = 0.5;
-
-std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 int find_root(std::vector<int>& root, int body) {
   while (root[index(body)] != body) {
@@ -56,32 +51,32 @@ bool structure_changed(const World& world, Parts& parts) {
   return true;
 }
 
-int body_of_contact(const Scene& scene, const Contact& contact) {
-  return is_static(scene.bodies[index(contact.a)]) ? contact.b : contact.a;
+int body_of_contact(const World& world, const Contact& contact) {
+  return is_static(at(world.bodies, contact.a)) ? contact.b : contact.a;
 }
 
 /// The first body of a cable that is not static, or -1.
-int body_of_cable(const Scene& scene, const CableState& cable) {
+int body_of_cable(const World& world, const CableState& cable) {
   for (const Link& link : cable.links) {
-    if (link.body >= 0 && !is_static(scene.bodies[index(link.body)])) return link.body;
+    if (link.body >= 0 && !is_static(at(world.bodies, link.body))) return link.body;
   }
   return -1;
 }
 
-void join_bodies(const Scene& scene, const World& world, std::vector<int>& root) {
-  root.resize(scene.bodies.size());
+void join_bodies(const World& world, std::vector<int>& root) {
+  root.resize(world.bodies.size());
   std::iota(root.begin(), root.end(), 0);
   for (const CableState& cable : world.cables) {
     int first = -1;
     for (const Link& link : cable.links) {
-      if (link.body < 0 || is_static(scene.bodies[index(link.body)])) continue;
+      if (link.body < 0 || is_static(at(world.bodies, link.body))) continue;
       if (first < 0) first = link.body;
       join(root, first, link.body);
     }
   }
   for (const Contact& contact : world.contacts) {
-    if (contact.b < 0 || is_static(scene.bodies[index(contact.a)]) ||
-        is_static(scene.bodies[index(contact.b)])) {
+    if (contact.b < 0 || is_static(at(world.bodies, contact.a)) ||
+        is_static(at(world.bodies, contact.b))) {
       continue;
     }
     join(root, contact.a, contact.b);
@@ -109,106 +104,153 @@ void list_by_part(std::vector<Part>& list, int count, PartOf part_of, int Part::
   }
 }
 
-void divide(const Scene& scene, const World& world, Parts& parts) {
-  ++parts.divisions;
-  join_bodies(scene, world, parts.root);
-  const int bodies = static_cast<int>(scene.bodies.size());
-  const int cables = static_cast<int>(world.cables.size());
+/// Which part each body and each cable is in; returns how many parts there are. Their order is that
+/// of their first bodies, then of cables without any.
+int number_parts(const World& world, Parts& parts) {
+  join_bodies(world, parts.root);
+  const int bodies = static_cast<int>(world.bodies.size());
   int count = 0;
   parts.of_body.assign(index(bodies), -1);
-  parts.local.assign(index(bodies), -1);
-  parts.mobile.assign(index(bodies), -1);
   parts.immobile.resize(index(bodies));
   for (int b = 0; b < bodies; ++b) {
-    parts.immobile[index(b)] = !can_move(scene.bodies[index(b)]);
-    if (is_static(scene.bodies[index(b)])) continue;
+    at(parts.immobile, b) = !can_move(at(world.bodies, b));
+    if (is_static(at(world.bodies, b))) continue;
     const int root = find_root(parts.root, b);
-    parts.of_body[index(b)] = root == b ? count++ : parts.of_body[index(root)];
+    at(parts.of_body, b) = root == b ? count++ : at(parts.of_body, root);
   }
-  parts.of_cable.assign(index(cables), -1);
-  for (int c = 0; c < cables; ++c) {
-    const int body = body_of_cable(scene, world.cables[index(c)]);
-    parts.of_cable[index(c)] = body >= 0 ? parts.of_body[index(body)] : count++;
+  parts.of_cable.assign(world.cables.size(), -1);
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const int body = body_of_cable(world, world.cables[c]);
+    parts.of_cable[c] = body >= 0 ? at(parts.of_body, body) : count++;
   }
+  return count;
+}
+
+/// What a part is like, from its bodies and cables; and the places of its bodies.
+void describe(const World& world, Parts& parts, Part& part) {
+  for (const int c : cables_of(parts, part)) {
+    part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
+  }
+  for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
+    const int b = at(parts.bodies, k);
+    at(parts.local, b) = k - part.bodies_begin;
+    if (!can_move(at(world.bodies, b))) continue;
+    part.lightest = std::min(part.lightest, at(world.bodies, b).mass);
+    part.can_move = true;
+  }
+}
+
+bool same(std::span<const int> a, std::span<const int> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// The part before that had the bodies and cables of this one, or nothing.
+const Part* predecessor(const Parts& before, const Parts& parts, const Part& part) {
+  const std::span<const int> bodies = bodies_of(parts, part), cables = cables_of(parts, part);
+  const bool has_bodies = !bodies.empty();
+  const int first = has_bodies ? bodies.front() : cables.front();
+  const std::vector<int>& of = has_bodies ? before.of_body : before.of_cable;
+  if (index(first) >= of.size()) return nullptr;
+  const Part& old = at(before.list, at(of, first));
+  const bool stands = same(bodies, bodies_of(before, old)) && same(cables, cables_of(before, old));
+  return stands ? &old : nullptr;
+}
+
+/// Gives every part the system of its predecessor, or one that no part has, made anew.
+void assign_systems(const Parts& before, Parts& parts, std::vector<PartSystem>& systems) {
+  std::vector<char>& taken = parts.taken;
+  taken.assign(std::max(systems.size(), parts.list.size()), 0);
+  for (Part& part : parts.list) {
+    const Part* old = predecessor(before, parts, part);
+    if (old == nullptr) continue;
+    part.system = old->system;
+    at(taken, part.system) = 1;
+  }
+  systems.resize(taken.size());
+  int next = 0;
+  for (Part& part : parts.list) {
+    if (part.system >= 0) continue;
+    while (at(taken, next)) ++next;
+    part.system = next;
+    at(taken, next) = 1;
+    forget(at(systems, next));
+  }
+}
+
+void divide(const World& world, Parts& before, Parts& parts, std::vector<PartSystem>& systems) {
+  std::swap(before.list, parts.list);
+  std::swap(before.bodies, parts.bodies);
+  std::swap(before.cables, parts.cables);
+  std::swap(before.of_body, parts.of_body);
+  std::swap(before.of_cable, parts.of_cable);
+  const int count = number_parts(world, parts);
   parts.list.assign(index(count), Part{});
+  parts.local.assign(world.bodies.size(), -1);
   list_by_part(
-      parts.list, bodies, [&parts](int b) { return parts.of_body[index(b)]; }, &Part::bodies_begin,
-      &Part::bodies_end, parts.bodies);
+      parts.list, static_cast<int>(world.bodies.size()),
+      [&parts](int b) { return at(parts.of_body, b); }, &Part::bodies_begin, &Part::bodies_end,
+      parts.bodies);
   list_by_part(
-      parts.list, cables, [&parts](int c) { return parts.of_cable[index(c)]; }, &Part::cables_begin,
-      &Part::cables_end, parts.cables);
+      parts.list, static_cast<int>(world.cables.size()),
+      [&parts](int c) { return at(parts.of_cable, c); }, &Part::cables_begin, &Part::cables_end,
+      parts.cables);
   list_by_part(
       parts.list, static_cast<int>(world.contacts.size()),
-      [&](int i) { return parts.of_body[index(body_of_contact(scene, world.contacts[index(i)]))]; },
+      [&](int i) { return at(parts.of_body, body_of_contact(world, at(world.contacts, i))); },
       &Part::contacts_begin, &Part::contacts_end, parts.contacts);
-  for (Part& part : parts.list) {
-    for (const int c : cables_of(parts, part)) {
-      part.may_slide = part.may_slide || slides_somewhere(scene, world.cables[index(c)]);
-    }
-    for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
-      const std::size_t b = index(parts.bodies[index(k)]);
-      const Body& body = scene.bodies[b];
-      parts.local[b] = k - part.bodies_begin;
-      const bool turns = body.kind != BodyKind::fixed && !body.driven_angular_velocity;
-      if (can_move(body) || turns) parts.mobile[b] = parts.local[b];
-      if (can_move(body)) part.lightest = std::min(part.lightest, body.mass);
-      part.can_move = part.can_move || !parts.immobile[b];
+  for (Part& part : parts.list) describe(world, parts, part);
+  assign_systems(before, parts, systems);
+}
+
+/// Below this speed (m/s; at the rim for turning) a body is at rest: a part in 1e8 of its size a
+/// second, or what round-off of its coordinates makes of a step, whichever is more.
+double rest_speed(const World& world, int body) {
+  constexpr double slow = 1e-8, rounding = 1e-14;
+  const double coordinate = at(world.position, body).cwiseAbs().maxCoeff();
+  return std::max(slow * at(world.bodies, body).radius, rounding * coordinate / world.step_length);
+}
+
+bool rests(const Parts& parts, const Part& part, const World& world) {
+  double slowest = infinity;  // of the bodies' rest speeds
+  for (const int b : bodies_of(parts, part)) {
+    const double least = rest_speed(world, b);
+    slowest = std::min(slowest, least);
+    if (at(world.velocity, b).cwiseAbs().maxCoeff() > least) return false;
+    if (std::abs(at(world.angular_velocity, b)) * at(world.bodies, b).radius > least) return false;
+  }
+  if (!part.slides) return true;
+  for (const int c : cables_of(parts, part)) {
+    for (const Link& link : at(world.cables, c).links) {
+      if (std::abs(link.slip_speed) > slowest) return false;
     }
   }
+  return true;
 }
 
 }  // namespace
 
-bool slides_somewhere(const Scene& scene, const CableState& cable) {
-  return std::any_of(cable.links.begin(), cable.links.end(), [&scene](const Link& link) {
-    return link.orientation != 0 && scene.bodies[index(link.body)].cable_friction < infinity;
-  });
-}
-
-void find_parts(const Scene& scene, World& world) {
-  Parts& parts = world.scratch.parts;
-  if (structure_changed(world, parts)) divide(scene, world, parts);
+void find_parts(const World& world, Workspace& work) {
+  Parts& parts = work.parts;
+  if (structure_changed(world, parts)) divide(world, work.parts_before, parts, work.systems);
   parts.any_moves = false;
-  const auto note_moving = [&parts](const Part& part) {
-    parts.any_moves = parts.any_moves || (!part.asleep && part.can_move);
-  };
-  if (!world.configuration.sleep) {
-    std::for_each(parts.list.begin(), parts.list.end(), note_moving);
-    return;
-  }
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {
     const bool before = part.asleep;
-    part.asleep = part.bodies_begin < part.bodies_end;
+    part.asleep = world.configuration.sleep && part.bodies_begin < part.bodies_end;
     for (const int b : bodies_of(parts, part)) {
-      if (world.still_steps[index(b)] < enough) {
-        part.asleep = false;
-        break;
-      }
+      if (!part.asleep) break;
+      part.asleep = at(world.still_steps, b) >= enough;
     }
     part.kept = before && part.asleep;
-    note_moving(part);
+    parts.any_moves = parts.any_moves || (!part.asleep && part.can_move);
   }
 }
 
-void note_rest(const Scene& scene, World& world, const Part& part) {
-  const Parts& parts = world.scratch.parts;
-  bool rests = true;
+void note_rest(const Parts& parts, const Part& part, World& world) {
+  const bool still = rests(parts, part, world);
   for (const int b : bodies_of(parts, part)) {
-    rests =
-        rests && world.velocity[index(b)].cwiseAbs().maxCoeff() <= rest_speed &&
-        std::abs(world.angular_velocity[index(b)]) * scene.bodies[index(b)].radius <= rest_speed;
-    if (!rests) break;
-  }
-  if (rests && part.slides) {
-    for (const int c : cables_of(parts, part)) {
-      for (const Link& link : world.cables[index(c)].links) {
-        rests = rests && std::abs(link.slip_speed) <= rest_speed;
-      }
-    }
-  }
-  for (const int b : bodies_of(parts, part)) {
-    world.still_steps[index(b)] = rests ? world.still_steps[index(b)] + 1 : 0;
+    int& steps = at(world.still_steps, b);
+    steps = still ? steps + 1 : 0;
   }
 }
 

@@ -10,10 +10,11 @@
 
 namespace pinchlab {
 
-struct CableState;
 struct World;
+struct Workspace;
 
 struct Part {
+  int system = -1;                           // of Workspace::systems: its own while it stands
   int bodies_begin = 0, bodies_end = 0;      // of Parts::bodies
   int cables_begin = 0, cables_end = 0;      // of Parts::cables
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
@@ -22,7 +23,7 @@ struct Part {
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool kept = false;                         // asleep, and was so in the step before
-  bool slides = false;                       // by solve: cable may slide over bodies
+  bool slides = false;                       // by solve_parts: cable may slide over bodies
 };
 
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
@@ -36,11 +37,10 @@ struct Parts {
   std::vector<int> local;      // place of the body in its part's bodies, or -1: fixed
   bool any_moves = true;       // a body of a part that is awake can do more than turn
   std::vector<char> immobile;  // whether the body's centre cannot move
-  std::vector<int> mobile;     // `local` of bodies that impulses can move or turn, or -1
   std::vector<int> structure;  // what the parts were found for: pairs in contact
-  int divisions = 0;           // so far
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found
+  std::vector<char> taken;     // systems that go on with their parts, while parts are found
 };
 
 inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {
@@ -57,17 +57,9 @@ inline std::span<const int> contacts_of(const Parts& parts, const Part& part) {
   return slice(parts.contacts, part.contacts_begin, part.contacts_end);
 }
 
-/// Whether nothing about the body ever changes.
-inline bool is_static(const Body& body) {
-  return body.kind == BodyKind::fixed && !body.driven_angular_velocity;
-}
-
-/// Whether the cable touches a body that it may slide over.
-bool slides_somewhere(const Scene& scene, const CableState& cable);
-
 /// Divides the scene into parts, by its cables and by world.contacts, and finds which of them
-/// sleep.
-void find_parts(const Scene& scene, World& world);
+/// sleep. A part of the same bodies and cables as before keeps its system.
+void find_parts(const World& world, Workspace& work);
 
 /// Whether the body's centre is where it was: it cannot move, or its part sleeps.
 inline bool is_still(const Parts& parts, int body) {
@@ -82,8 +74,8 @@ inline bool sleeps(const Parts& parts, std::size_t cable) {
          parts.list[static_cast<std::size_t>(parts.of_cable[cable])].asleep;
 }
 
-/// Counts for how many steps the bodies of a part have been slower than `rest_speed`, after the
-/// solve. A part with a body that is faster is wide awake.
-void note_rest(const Scene& scene, World& world, const Part& part);
+/// Counts for how many steps the bodies of a part have been at rest, after the solve. A part with a
+/// body that is faster is wide awake.
+void note_rest(const Parts& parts, const Part& part, World& world);
 
 }  // namespace pinchlab

@@ -3,6 +3,7 @@
 // The immutable description of a simulation: what a scene file says, in SI units, checked.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,7 +15,7 @@ using Vec2 = Eigen::Vector2d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// How pinched cables are handled (model.md, "The methods to compare"; thesis 3.3.1 and 4.2).
+/// How pinched cables are handled (thesis 3.3.1 and 4.2).
 enum class Method {
   pinch,             ///< pinch joints: no body comes nearer to another than the cable between them
   pinch_no_contact,  ///< pinch joints without their contact rows: bodies clip into the cable
@@ -28,17 +29,12 @@ enum class BodyKind {
   fixed,       ///< neither moves nor turns
 };
 
-/// A circular body.
-struct Body {
-  std::string name;  ///< unique in the scene
+/// What a circular body is, for all time.
+struct BodyProperties {
   BodyKind kind = BodyKind::free;
   double radius = 0.5;                            ///< m, > 0
   double mass = 1.0;                              ///< kg, > 0; unused for fixed bodies
   std::optional<double> inertia;                  ///< kg m^2, > 0; default: disc, m r^2 / 2
-  Vec2 position = Vec2::Zero();                   ///< m
-  double angle = 0.0;                             ///< rad, counter-clockwise
-  Vec2 velocity = Vec2::Zero();                   ///< m/s, at time 0
-  double angular_velocity = 0.0;                  ///< rad/s, at time 0
   Vec2 rail_axis = Vec2(0.0, 1.0);                ///< unit vector; rail bodies only
   std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
   double torque = 0.0;                            ///< N m, constant
@@ -47,6 +43,15 @@ struct Body {
   double cable_friction = infinity;  ///< capstan coefficient mu >= 0; infinity: no slip
   double contact_friction = 0.5;     ///< Coulomb coefficient >= 0 between bare surfaces
   double restitution = 0.0;          ///< 0..1, of bodies that hit each other or a wall
+};
+
+/// A circular body and its state at time 0.
+struct Body : BodyProperties {
+  std::string name;               ///< unique in the scene
+  Vec2 position = Vec2::Zero();   ///< m
+  double angle = 0.0;             ///< rad, counter-clockwise
+  Vec2 velocity = Vec2::Zero();   ///< m/s
+  double angular_velocity = 0.0;  ///< rad/s; a driven body has its driven one instead
 };
 
 /// Where an end of an open cable is held.
@@ -82,6 +87,13 @@ struct Wall {
   double restitution = 0.0;
 };
 
+/// The point of a wall that is nearest to x (m).
+inline Vec2 nearest_point(const Wall& wall, const Vec2& x) {
+  const Vec2 d = wall.b - wall.a;
+  const double t = std::clamp((x - wall.a).dot(d) / d.squaredNorm(), 0.0, 1.0);
+  return wall.a + t * d;
+}
+
 /// The part of the plane that a frame shows, m. Its aspect is fitted into the frame's.
 struct View {
   Vec2 low = Vec2(-1.0, -1.0), high = Vec2(1.0, 1.0);
@@ -107,12 +119,22 @@ inline double step_length(const Scene& scene) {  // s
 }
 
 /// Whether the body's centre can move.
-inline bool can_move(const Body& body) {
+inline bool can_move(const BodyProperties& body) {
   return body.kind == BodyKind::free || body.kind == BodyKind::rail;
 }
 
-inline double disc_inertia(const Body& body) {  // kg m^2
+inline double disc_inertia(const BodyProperties& body) {  // kg m^2
   return body.inertia.value_or(0.5 * body.mass * body.radius * body.radius);
+}
+
+/// Whether nothing about the body ever changes.
+inline bool is_static(const BodyProperties& body) {
+  return body.kind == BodyKind::fixed && !body.driven_angular_velocity;
+}
+
+/// Whether impulses can move or turn the body.
+inline bool is_mobile(const BodyProperties& body) {
+  return can_move(body) || (body.kind != BodyKind::fixed && !body.driven_angular_velocity);
 }
 
 const char* to_string(Method method);

@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <chrono>
 
-#include "sim/active_set.h"
-#include "sim/all_pairs.h"
-#include "sim/cable.h"
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/detect/pinch.h"
+#include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
-#include "sim/gauss_seidel.h"
-#include "sim/pinch.h"
-#include "sim/span_hits.h"
+#include "sim/solve/active_set.h"
+#include "sim/solve/light_bodies.h"
+#include "sim/solve/rows.h"
+#include "sim/solve/solution.h"
+#include "sim/thesis/all_pairs.h"
+#include "sim/thesis/gauss_seidel.h"
 
 namespace pinchlab {
 
@@ -23,72 +27,87 @@ double kick_length(const World& world) {
   return world.step == 0 ? 0.5 * world.step_length : world.step_length;
 }
 
-// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
-// f/m.
-void apply_forces(const Scene& scene, World& world) {
+/// What of a part's bodies lasts from step to step.
+void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
+  s.mobility_changed = true;
+  s.mobility_kick = kick;
+  s.mobility.clear();
+  s.mobile.clear();
+  s.span_masses.clear();
+  for (const int b : bodies) {
+    s.mobility.push_back(mobility_of(at(world.bodies, b), kick));
+    s.mobile.push_back(is_mobile(at(world.bodies, b)));
+  }
+  s.mobility.emplace_back();  // nothing moves the world
+  s.mobile.push_back(false);
+  s.free_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
+}
+
+/// Velocity of a body after a kick of k seconds by forces alone.
+///
+/// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
+/// f/m.
+Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, const Vec2& v,
+                              double omega, double k) {
+  const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
+  Vec2 free = Vec2::Zero();
+  if (can_move(body)) {
+    Vec2 pull = k * scene.gravity;
+    if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
+    free = ((1.0 - linear) * v + pull) / (1.0 + linear);
+  }
+  if (body.driven_angular_velocity) {
+    omega = *body.driven_angular_velocity;
+  } else if (angular != 0.0 || body.torque != 0.0) {
+    omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
+  }
+  return {free.x(), free.y(), omega};
+}
+
+/// Free velocities of all bodies that are awake, in their parts' systems.
+void apply_forces(const Scene& scene, const World& world, Workspace& work) {
   const double k = kick_length(world);
-  Scratch& s = world.scratch;
-  if (s.mobility.empty() || s.mobility_kick != k) {
-    set_mobilities(scene, k, s.mobility);
-    s.mobility_kick = k;
-    s.velocity_free.assign(scene.bodies.size(), Vec2::Zero());
-    s.angular_velocity_free.assign(scene.bodies.size(), 0.0);
-  }
-  if (world.configuration.diagnostics) {
-    s.velocity_before = world.velocity;
-    s.angular_velocity_before = world.angular_velocity;
-  }
-  for (const Part& part : s.parts.list) {
+  for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
-    for (const int number : bodies_of(s.parts, part)) {
-      const auto b = static_cast<std::size_t>(number);
-      const Body& body = scene.bodies[b];
-      const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
-      if (can_move(body)) {
-        Vec2 pull = k * scene.gravity;
-        if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
-        s.velocity_free[b] = ((1.0 - linear) * world.velocity[b] + pull) / (1.0 + linear);
-      }
-      double& omega = s.angular_velocity_free[b];
-      omega = body.driven_angular_velocity.value_or(world.angular_velocity[b]);
-      if (body.driven_angular_velocity || (angular == 0.0 && body.torque == 0.0)) continue;
-      omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
+    PartSystem& s = at(work.systems, part.system);
+    const std::span<const int> bodies = bodies_of(work.parts, part);
+    s.mobility_changed = false;
+    if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
+    s.extent = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const auto b = index(bodies[i]);
+      s.free_velocity[i] =
+          free_velocity(scene, world.bodies[b], world.velocity[b], world.angular_velocity[b], k);
+      s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
+    }
+    for (const int c : cables_of(work.parts, part)) {
+      const CableState& cable = at(world.cables, c);
+      const auto segments = static_cast<double>(cable.segments.size());
+      s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
     }
   }
 }
 
 /// Positions, and the material that slides over bodies, with the velocities just found.
-void move_bodies(World& world) {
+void move_bodies(const Parts& parts, World& world) {
   const double h = world.step_length;
-  const Parts& parts = world.scratch.parts;
   for (const Part& part : parts.list) {
     if (part.asleep) continue;
     for (const int number : bodies_of(parts, part)) {
-      const auto b = static_cast<std::size_t>(number);
+      const auto b = index(number);
       world.position[b] += h * world.velocity[b];
       world.angle[b] += h * world.angular_velocity[b];
     }
     if (!part.slides) continue;
     for (const int c : cables_of(parts, part)) {
-      for (Link& link : world.cables[static_cast<std::size_t>(c)].links) {
-        link.material -= h * link.slip_speed;
-      }
+      for (Link& link : at(world.cables, c).links) link.material -= h * link.slip_speed;
     }
   }
 }
 
-bool all_asleep(const World& world) {
-  const auto& parts = world.scratch.parts.list;
-  return std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.asleep; });
-}
-
-void solve(const Scene& scene, World& world, int part, double kick) {
-  switch (world.configuration.solver) {
-    case Solver::direct:
-      return solve_direct(scene, world, part, kick);
-    case Solver::iterative:
-      return solve_iterative(scene, world, part, kick);
-  }
+bool all_asleep(const Parts& parts) {
+  return std::all_of(parts.list.begin(), parts.list.end(),
+                     [](const Part& part) { return part.asleep; });
 }
 
 class Stopwatch {
@@ -110,80 +129,115 @@ class Stopwatch {
   Clock::time_point last_;
 };
 
-/// Velocities that meet all constraints, part by part.
-void solve_parts(const Scene& scene, World& world, Stopwatch& watch) {
-  world.diagnostics.active_set_solves = 0;
-  Parts& parts = world.scratch.parts;
-  for (int p = 0; p < static_cast<int>(parts.list.size()); ++p) {
-    Part& part = parts.list[static_cast<std::size_t>(p)];
+/// Velocities of a part's bodies that meet all of its constraints, in its system; whether the
+/// states settled.
+bool solve_part(const Scene& scene, const World& world, Workspace& work, const Part& part,
+                Stopwatch& watch) {
+  PartSystem& s = at(work.systems, part.system);
+  const double kick = kick_length(world);
+  work.solve.step_length = world.step_length;
+  steady_light_bodies(world, work.parts, part, kick, s);
+  make_segment_rows(scene, world, work.parts, part, kick, s);
+  watch.lap(Stage::init_segments);
+  make_contact_rows(scene, world, work.parts, part, s, work.solve);
+  watch.lap(Stage::init_contacts);
+  if (world.configuration.solver == Solver::direct) {
+    return solve_direct(world, work.parts, part, s, work.solve);
+  }
+  solve_iterative(world, work.parts, part, s, work.solve, work.sweeps);
+  return true;
+}
+
+void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
+  Diagnostics& d = world.diagnostics;
+  d.active_set_solves = 0;
+  for (Part& part : work.parts.list) {
     if (part.asleep) continue;
-    make_segment_rows(scene, world, part, kick_length(world));
-    watch.lap(Stage::init_segments);
-    make_contact_rows(scene, world, part);
-    watch.lap(Stage::init_contacts);
-    solve(scene, world, p, kick_length(world));
-    part.slides =
-        !world.scratch.active_set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
-    note_rest(scene, world, part);
+    if (!solve_part(scene, world, work, part, watch)) ++d.fallbacks;
+    const PartSystem& s = at(work.systems, part.system);
+    store_solution(work.parts, part, at(work.systems, part.system), work.solve.capstan,
+                   kick_length(world), world);
+    if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
+      store_middles(s, work.solve, work.sweeps, world);
+    }
+    part.slides = !work.solve.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
+    d.active_set_solves = std::max(d.active_set_solves, work.solve.solves);
+    note_rest(work.parts, part, world);
     watch.lap(Stage::solve);
   }
-  world.diagnostics.total_solves += world.diagnostics.active_set_solves;
+  d.total_solves += d.active_set_solves;
+}
+
+void note_velocities(const World& world, Workspace& work) {
+  work.velocity_before = world.velocity;
+  work.angular_velocity_before = world.angular_velocity;
 }
 
 }  // namespace
 
-void detect(const Scene& scene, World& world, StageTimes* times) {
+void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
-  update_segments(world);
+  update_segments(world, work);
   watch.lap(Stage::update_segments);
-  remove_links(world);
+  remove_links(world, work);
   watch.lap(Stage::remove_links);
   const bool sweep = world.configuration.detection == Detection::sweep;
-  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world);
+  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world, work);
   watch.lap(Stage::broad_phase);
-  (sweep ? find_span_pairs : find_all_span_pairs)(scene, world);
-  add_hit_links(scene, world);
+  (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
+  add_hit_links(world, work);
   watch.lap(Stage::intersect_segments);
-  find_contacts(scene, world);
+  find_contacts(scene, world, work);
   watch.lap(Stage::find_contacts);
-  configure_pinches(scene, world);
-  find_parts(scene, world);
-  assign_contacts(world);
+  configure_pinches(world, work);
+  find_parts(world, work);
+  assign_contacts(world, work);
   watch.lap(Stage::configure_pinches);
 }
 
-StepStatus step(const Scene& scene, World& world, StageTimes* times) {
-  if (all_asleep(world)) {
+StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  fit(world, work);
+  if (all_asleep(work.parts)) {
     ++world.step;
+    mark(world, work);
     return StepStatus::ok;
   }
   Stopwatch watch(times);
-  apply_forces(scene, world);
+  if (world.configuration.diagnostics) note_velocities(world, work);
+  apply_forces(scene, world, work);
   watch.lap(Stage::apply_forces);
-  solve_parts(scene, world, watch);
+  solve_parts(scene, world, work, watch);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
-  if (world.configuration.diagnostics) measure_energy(scene, world);
+  if (world.configuration.diagnostics) measure_energy(scene, world, work);
   watch.lap(Stage::diagnose);
-  move_bodies(world);
+  move_bodies(work.parts, world);
   ++world.step;
   watch.lap(Stage::move_bodies);
-  detect(scene, world, times);
+  detect(scene, world, work, times);
   watch = Stopwatch(times);
   if (world.configuration.diagnostics) measure_cables(scene, world);
+  mark(world, work);
   watch.lap(Stage::diagnose);
   return StepStatus::ok;
 }
 
-Velocities velocities_now(const Scene& scene, const World& world) {
-  if (world.step == 0) return {world.velocity, world.angular_velocity};
-  World next = world;
-  apply_forces(scene, next);
-  Stopwatch untimed(nullptr);
-  solve_parts(scene, next, untimed);
+Velocities velocities_now(const Scene& scene, const World& world, Workspace& work) {
   Velocities now{world.velocity, world.angular_velocity};
-  for (std::size_t b = 0; b < now.linear.size(); ++b) {
-    now.linear[b] = 0.5 * (world.velocity[b] + next.velocity[b]);
-    now.angular[b] = 0.5 * (world.angular_velocity[b] + next.angular_velocity[b]);
+  if (world.step == 0) return now;
+  fit(world, work);
+  Stopwatch untimed(nullptr);
+  apply_forces(scene, world, work);
+  for (const Part& part : work.parts.list) {
+    if (part.asleep) continue;
+    solve_part(scene, world, work, part, untimed);
+    const PartSystem& s = at(work.systems, part.system);
+    const std::span<const int> bodies = bodies_of(work.parts, part);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      Vec2& linear = at(now.linear, bodies[i]);
+      double& angular = at(now.angular, bodies[i]);
+      linear = 0.5 * (linear + s.velocity[i].head<2>());
+      angular = 0.5 * (angular + s.velocity[i].z());
+    }
   }
   return now;
 }

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/world.h"
+#include "sim/workspace.h"
 
 namespace pinchlab {
 
@@ -38,18 +38,21 @@ struct StageTimes {
 /// long, constraints solved at the positions that the kick is made at. Smooth motion is second
 /// order in the step. After StepStatus::not_finite the world is not usable and world.failure says
 /// where and when. With `times` each stage is timed.
-StepStatus step(const Scene& scene, World& world, StageTimes* times = nullptr);
+///
+/// `work` may be any Workspace: one that served the step before makes this one faster, and changes
+/// no bit of it.
+StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
 
 /// Velocities at the time of the positions (m/s, rad/s, one a body), second-order accurate: the
-/// mean of the half-step velocities before and after. Costs about one step; does not change the
-/// world.
+/// mean of the half-step velocities before and after. Costs what forces, rows and solve of a step
+/// cost.
 struct Velocities {
   std::vector<Vec2> linear;
   std::vector<double> angular;
 };
-Velocities velocities_now(const Scene& scene, const World& world);
+Velocities velocities_now(const Scene& scene, const World& world, Workspace& work);
 
 /// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
-void detect(const Scene& scene, World& world, StageTimes* times = nullptr);
+void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
 
 }  // namespace pinchlab

@@ -8,20 +8,39 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/cable.h"
-#include "sim/pinch.h"
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/detect/pinch.h"
 #include "sim/scene_error.h"
 #include "sim/step.h"
-#include "sim/tangent.h"
 
 namespace pinchlab {
 
 namespace {
 
 constexpr double turn = 2.0 * std::numbers::pi;
-/// Two things may overlap by this much (m) at the start: what decimal figures in a scene file
-/// leave.
-constexpr double overlap_allowed = 1e-9;
+/// Two things may overlap by this much (m) at the start, what decimal figures in a scene file
+/// leave: a share of the scene's largest coordinate, length or radius.
+double overlap_allowed(const Scene& scene) {
+  constexpr double share = 1e-9;
+  double size = 0.0;
+  const auto include = [&size](const Vec2& x) { size = std::max(size, x.cwiseAbs().maxCoeff()); };
+  for (const Body& body : scene.bodies) {
+    include(body.position);
+    size = std::max(size, body.radius);
+  }
+  for (const Cable& cable : scene.cables) {
+    if (cable.closed) continue;
+    include(cable.start.point);
+    include(cable.end.point);
+  }
+  for (const Wall& wall : scene.walls) {
+    include(wall.a);
+    include(wall.b);
+  }
+  return share * size;
+}
 
 std::string in_mm(double metres) {
   return fmt::format("{:.3g} mm", 1000.0 * metres);
@@ -42,7 +61,7 @@ Link rolling_link(const Scene& scene, const Cable& cable, const Wrap& wrap) {
 Link attached_link(const Attachment& attachment) {
   Link link;
   link.body = attachment.body;
-  link.attachment = attachment.point;
+  link.offset = attachment.point;
   return link;
 }
 
@@ -62,19 +81,20 @@ std::string place_of(const CableState& cable, std::size_t cable_index, std::size
 
 /// Tangents of all segments; refuses those that cannot be.
 void lay_tangents(const Scene& scene, const World& world, std::size_t c, CableState& cable) {
+  const double allowed = overlap_allowed(scene);
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
     const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(i)));
     const Link &from = cable.links[tail], &to = cable.links[i];
     const double distance = (link_centre(world, to) - link_centre(world, from)).norm();
     const double needed = std::abs(to.signed_radius() - from.signed_radius());
-    if (wound_end(from, to) && std::abs(distance - needed) > overlap_allowed) {
+    if (wound_end(from, to) && std::abs(distance - needed) > allowed) {
       throw SceneError(
           place_of(cable, c, from.orientation == 0 ? 0 : i),
           fmt::format("an end on the body that the cable is wound on must lie at its rim, "
                       "{} m from the centre (radius + half width), not {} m",
                       needed, distance));
     }
-    if (distance < needed - overlap_allowed) {
+    if (distance < needed - allowed) {
       const bool end = from.orientation == 0 || to.orientation == 0;
       throw SceneError(
           place_of(cable, c, i),
@@ -171,35 +191,33 @@ CableState make_cable(const Scene& scene, const World& world, std::size_t c) {
   return cable;
 }
 
-void refuse_overlaps(const Scene& scene, const World& world) {
-  for (const BodyPair& pair : world.scratch.broad_phase.body_pairs) {
+void refuse_overlaps(const Scene& scene, const BroadPhase& broad) {
+  const double allowed = overlap_allowed(scene);
+  for (const BodyPair& pair : broad.body_pairs) {
     const Body &a = scene.bodies[static_cast<std::size_t>(pair.a)],
                &b = scene.bodies[static_cast<std::size_t>(pair.b)];
     const double gap = (b.position - a.position).norm() - a.radius - b.radius;
-    if (gap < -overlap_allowed) {
+    if (gap < -allowed) {
       throw SceneError(pointer("bodies", static_cast<std::size_t>(pair.b)),
                        fmt::format("body '{}' overlaps body '{}' by {}; move them apart", b.name,
                                    a.name, in_mm(-gap)));
     }
   }
-  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-    const Wall& wall = scene.walls[w];
-    const Vec2 d = wall.b - wall.a;
-    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-      const Body& body = scene.bodies[i];
-      const double t = std::clamp((body.position - wall.a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-      const double gap = (wall.a + t * d - body.position).norm() - body.radius;
-      if (gap < -overlap_allowed) {
-        throw SceneError(pointer("bodies", i),
-                         fmt::format("body '{}' overlaps wall {} by {}; move it away", body.name, w,
-                                     in_mm(-gap)));
-      }
+  for (const WallPair& pair : broad.wall_pairs) {
+    const Body& body = at(scene.bodies, pair.body);
+    const Vec2 nearest = nearest_point(at(scene.walls, pair.wall), body.position);
+    const double gap = (nearest - body.position).norm() - body.radius;
+    if (gap < -allowed) {
+      throw SceneError(pointer("bodies", index(pair.body)),
+                       fmt::format("body '{}' overlaps wall {} by {}; move it away", body.name,
+                                   pair.wall, in_mm(-gap)));
     }
   }
 }
 
-void refuse_cables_through_bodies(const Scene& scene, const World& world) {
-  for (const SpanPair& pair : world.scratch.broad_phase.span_pairs) {
+void refuse_cables_through_bodies(const Scene& scene, const World& world, const BroadPhase& broad) {
+  const double allowed = overlap_allowed(scene);
+  for (const SpanPair& pair : broad.span_pairs) {
     const CableState& cable = world.cables[static_cast<std::size_t>(pair.cable)];
     const Segment& segment = cable.segments[static_cast<std::size_t>(pair.segment)];
     const Body& body = scene.bodies[static_cast<std::size_t>(pair.body)];
@@ -210,7 +228,7 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world) {
     const Vec2 x = body.position - segment.tail;
     const double along = std::clamp(segment.direction.dot(x), 0.0, segment.length);
     const double overlap = body.radius + cable.half_width - (x - along * segment.direction).norm();
-    if (overlap > overlap_allowed) {
+    if (overlap > allowed) {
       throw SceneError(
           pointer("cables", static_cast<std::size_t>(pair.cable)),
           fmt::format("the cable runs through body '{}' ({} deep) on its way to {}; add the body "
@@ -223,8 +241,9 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world) {
 }
 
 void refuse_squeezed_wraps(const Scene& scene, const World& world) {
+  const double allowed = overlap_allowed(scene);
   for (const Contact& contact : world.contacts) {
-    if (contact.gap < contact.target - overlap_allowed) {
+    if (contact.gap < contact.target - allowed) {
       const Body &a = scene.bodies[static_cast<std::size_t>(contact.a)],
                  &b = scene.bodies[static_cast<std::size_t>(contact.b)];
       throw SceneError(
@@ -237,15 +256,81 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
   }
 }
 
+/// What a scene's reader checks too, for scenes that are made by a program: whatever the geometry
+/// below takes for granted.
+void refuse_impossible_figures(const Scene& scene) {
+  const auto refuse = [](bool wrong, const std::string& place, const char* message) {
+    if (wrong) throw SceneError(place, message);
+  };
+  const auto positive = [](double x) { return x > 0.0 && x < infinity; };
+  const int bodies = static_cast<int>(scene.bodies.size());
+  refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
+         "frames per second and steps per frame must be at least 1");
+  for (int b = 0; b < bodies; ++b) {
+    const Body& body = at(scene.bodies, b);
+    const std::string place = pointer("bodies", index(b));
+    refuse(!positive(body.radius), place, "the radius must be a number above 0");
+    refuse(!positive(body.mass) && body.kind != BodyKind::fixed, place,
+           "the mass must be a number above 0");
+    refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
+    refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
+           "position and velocity must be finite");
+    refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
+           "the rail's axis must have a direction");
+  }
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const Cable& cable = scene.cables[c];
+    const std::string place = pointer("cables", c);
+    refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
+    refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+    refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
+    for (const Attachment* end : {&cable.start, &cable.end}) {
+      const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
+      refuse(!cable.closed && !there, place, "an end is on a body that is not in the scene");
+    }
+    for (const Wrap& wrap : cable.wraps) {
+      refuse(wrap.body < 0 || wrap.body >= bodies, place,
+             "it runs round a body that is not in the scene");
+      refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
+             "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
+    }
+  }
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const double length = (scene.walls[w].b - scene.walls[w].a).norm();
+    refuse(!positive(length), pointer("walls", w), "the wall must have a length");
+  }
+}
+
+World bodies_of_scene(const Scene& scene) {
+  World world;
+  world.step_length = step_length(scene);
+  for (const Body& body : scene.bodies) {
+    world.bodies.push_back(body);
+    world.position.push_back(body.position);
+    world.angle.push_back(body.angle);
+    world.still_steps.push_back(0);
+    Vec2 v = can_move(body) ? body.velocity : Vec2::Zero();
+    if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
+    world.velocity.push_back(v);
+    const double turning = body.kind == BodyKind::fixed ? 0.0 : body.angular_velocity;
+    world.angular_velocity.push_back(body.driven_angular_velocity.value_or(turning));
+  }
+  return world;
+}
+
 /// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not
 /// held yet gives way and lowers them, so that it takes some trials.
 void find_first_tensions(const Scene& scene, World& world) {
   constexpr int most_trials = 10;
   for (int i = 0; i < most_trials; ++i) {
     World trial = world;
+    Workspace work;
     trial.configuration.diagnostics = false;
-    if (step(scene, trial) != StepStatus::ok) return;
-    if (i > 0 && trial.scratch.span_masses.empty()) return;  // no body is nearly too light
+    if (step(scene, trial, work) != StepStatus::ok) return;
+    if (i > 0 && std::all_of(work.systems.begin(), work.systems.end(),
+                             [](const PartSystem& s) { return s.span_masses.empty(); })) {
+      return;  // no body is nearly too light
+    }
     for (std::size_t c = 0; c < world.cables.size(); ++c) {
       std::vector<Segment>& segments = world.cables[c].segments;
       if (segments.size() != trial.cables[c].segments.size()) continue;
@@ -275,35 +360,23 @@ World make_world(const Scene& scene, Configuration configuration) {
     throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
                                             configuration.iterations));
   }
-  World world;
+  refuse_impossible_figures(scene);
+  World world = bodies_of_scene(scene);
+  Workspace work;
   // A scene is judged by the full model, whatever it is run with.
   world.configuration = Method::pinch;
-  world.step_length = step_length(scene);
-  for (const Body& body : scene.bodies) {
-    world.position.push_back(body.position);
-    world.angle.push_back(body.angle);
-    world.still_steps.push_back(0);
-    const bool moves = body.kind == BodyKind::free || body.kind == BodyKind::rail;
-    Vec2 v = moves ? body.velocity : Vec2::Zero();
-    if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
-    world.velocity.push_back(v);
-    world.angular_velocity.push_back(
-        body.kind == BodyKind::fixed
-            ? 0.0
-            : body.driven_angular_velocity.value_or(body.angular_velocity));
-  }
-  find_body_pairs(scene, world);
-  refuse_overlaps(scene, world);
+  find_body_pairs(scene, world, work);
+  refuse_overlaps(scene, work.broad_phase);
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     world.cables.push_back(make_cable(scene, world, c));
   }
-  find_body_pairs(scene, world);
-  find_span_pairs(scene, world);
-  refuse_cables_through_bodies(scene, world);
-  find_contacts(scene, world);
-  configure_pinches(scene, world);
-  find_parts(scene, world);
-  assign_contacts(world);
+  find_body_pairs(scene, world, work);
+  find_span_pairs(world, work);
+  refuse_cables_through_bodies(scene, world, work.broad_phase);
+  find_contacts(scene, world, work);
+  configure_pinches(world, work);
+  find_parts(world, work);
+  assign_contacts(world, work);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
   if (configuration.method != Method::pinch) {
@@ -312,8 +385,8 @@ World make_world(const Scene& scene, Configuration configuration) {
       world.cables.push_back(make_cable(scene, world, c));
     }
     world.contacts.clear();
-    world.scratch.parts = {};  // nothing is known of the new contacts
-    detect(scene, world);
+    work = {};  // nothing is known of the new contacts
+    detect(scene, world, work);
   }
   find_first_tensions(scene, world);
   return world;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The mutable state of a simulation. Arrays are indexed as in Scene; links and segments come and
+// The mutable state of a simulation: all that a restart needs, and nothing that follows from it
+// (that is in a Workspace). Bodies and cables are indexed as in Scene; links and segments come and
 // go.
 
 #include <cstdint>
@@ -11,28 +12,28 @@
 #include "sim/configuration.h"
 #include "sim/contact.h"
 #include "sim/scene.h"
-#include "sim/scratch.h"
 
 namespace pinchlab {
 
-/// Where a cable touches a body: a rolling link, or (radius 0) an attachment at its end.
+/// A circle fixed to a body, which a cable touches: rolling round it, or (of radius 0) attached to
+/// it at an end of the cable.
 ///
 /// The material at the link's tail tangent has the coordinate material + p (alpha_tail - angle),
 /// that at its head tangent material + p (alpha_head - angle), where p = orientation * radius,
 /// alpha is the direction of the segment before or after, and angle is the body's. Without slip
 /// `material` is constant, so the cable's total length is conserved by construction.
 struct Link {
-  int body = -1;                   // index, or -1: attached to the world
-  int orientation = 0;             // +1 counter-clockwise, -1 clockwise, 0 attachment
-  double radius = 0.0;             // m, body radius + cable half width; 0 at an attachment
-  Vec2 attachment = Vec2::Zero();  // m, body frame (or world); attachments only
-  double material = 0.0;           // m along the cable; changed by slip only
-  double wrap = 0.0;               // rad, angle of cable stored on the body, may exceed 2 pi
-  bool pinch_middle = false;       // middle link of a non-transitional pinch: no wrap, the links
-                                   // before and after lie on the pinched body
-  Slip slip = Slip::stick;         // by the active set
-  double slip_speed = 0.0;         // m/s of material over the body's surface, forward positive
-  int contact = -1;                // pinch_middle: the contact that presses it, by confirm_pinches
+  int body = -1;               // index, or -1: attached to the world
+  int orientation = 0;         // +1 counter-clockwise, -1 clockwise, 0 attachment
+  double radius = 0.0;         // m, body radius + cable half width; 0 at an attachment
+  Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
+  double material = 0.0;       // m along the cable; changed by slip only
+  double wrap = 0.0;           // rad, angle of cable stored on the body, may exceed 2 pi
+  bool pinch_middle = false;   // middle link of a non-transitional pinch: no wrap, the links
+                               // before and after lie on the pinched body
+  Slip slip = Slip::stick;     // by the active set
+  double slip_speed = 0.0;     // m/s of material over the body's surface, forward positive
+  int contact = -1;            // pinch_middle: the contact that presses it, by confirm_pinches
 
   double signed_radius() const { return orientation * radius; }
 };
@@ -91,24 +92,31 @@ struct Diagnostics {
   std::int64_t fallbacks = 0;                // parts of steps whose active set did not settle
 };
 
+/// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
+/// bits.
 struct World {
   Configuration configuration;
   double step_length = 0.0;  // s
   std::int64_t step = 0;     // steps done; the time is step * step_length
 
-  std::vector<Vec2> position;            // m, one a body, at `time()`
-  std::vector<double> angle;             // rad
-  std::vector<Vec2> velocity;            // m/s, half a step before `time()` (leapfrog), see step.h
+  std::vector<BodyProperties> bodies;    // by make_world
+  std::vector<Vec2> position;            // m, one a body, at `time()`; by move_bodies
+  std::vector<double> angle;             // rad, likewise
+  std::vector<Vec2> velocity;            // m/s, half a step before `time()` (leapfrog), see step.h;
+                                         // by store_solution
   std::vector<double> angular_velocity;  // rad/s, likewise
-  std::vector<CableState> cables;
-
-  std::vector<int> still_steps;  // steps for which the body's part has been at rest, by note_rest
-
-  std::vector<Contact> contacts;  // sorted by (a, b, wall)
+  std::vector<CableState> cables;        // geometry by update_segments, links by add_hit_links,
+                                         // remove_links and configure_pinches, forces and states by
+                                         // store_solution
+  std::vector<int> still_steps;          // steps for which the body's part has been at rest, by
+                                         // note_rest
+  std::vector<Contact> contacts;         // sorted by (a, b, wall); by find_contacts, forces and
+                                         // states by store_solution
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite
 
-  Scratch scratch;  // storage kept from step to step; no state of the simulation
+  std::uint64_t stamp = 0;  // what a Workspace knows this state by; 0: none does. Set it to 0 after
+                            // changing positions, cables or contacts by hand
 
   double time() const { return static_cast<double>(step) * step_length; }
 };

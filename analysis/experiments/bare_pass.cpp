@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiments/bare_pass.h"
 
-#include "sim/tangent.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab::experiments {
 
@@ -9,7 +9,7 @@ BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.s
   const CableState& cable = world.cables.front();
   compliance = 1.0 / (scene.cables.front().axial_stiffness * step_length * step_length);
   for (const Link& link : cable.links) {
-    Body body{link.attachment, Vec2::Zero(), 0.0, 0.0, 0.0, link.signed_radius()};
+    Body body{link.offset, Vec2::Zero(), 0.0, 0.0, 0.0, link.signed_radius()};
     if (link.body >= 0) {
       const auto b = static_cast<std::size_t>(link.body);
       const pinchlab::Body& given = scene.bodies[b];

@@ -9,11 +9,12 @@
 
 #include "analysis/experiments/scenes.h"
 #include "analysis/experiments/step_cost.h"
-#include "sim/cable.h"
-#include "sim/capstan.h"
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/detect/pinch.h"
 #include "sim/diagnostics.h"
-#include "sim/pinch.h"
-#include "sim/rows.h"
+#include "sim/solve/capstan.h"
+#include "sim/solve/rows.h"
 
 namespace pinchlab::experiments {
 
@@ -33,8 +34,8 @@ Configuration configured(Method method, bool sleep) {
   return configuration;
 }
 
-void step_or_throw(const Scene& scene, World& world) {
-  if (step(scene, world) != StepStatus::ok) {
+void step_or_throw(const Scene& scene, World& world, Workspace& work) {
+  if (step(scene, world, work) != StepStatus::ok) {
     throw std::runtime_error(scene.name + ": " + world.failure);
   }
 }
@@ -54,9 +55,10 @@ double difference(const Scene& scene, const Configuration& with, const Configura
   std::vector<World> kept;  // so that the next ones lie elsewhere
   for (int round = 0; round < rounds; ++round) {
     World a = make_world(scene, with), b = make_world(scene, without);
+    Workspace work_a, work_b;
     if (round % 2 == 1) std::swap(a, b), a.configuration = with, b.configuration = without;
-    const BothCosts both =
-        measure_both([&] { step_or_throw(scene, a); }, [&] { step_or_throw(scene, b); }, part);
+    const BothCosts both = measure_both([&] { step_or_throw(scene, a, work_a); },
+                                        [&] { step_or_throw(scene, b, work_b); }, part);
     differences.insert(differences.end(), both.differences.begin(), both.differences.end());
     kept.push_back(std::move(round % 3 == 0 ? a : b));
   }
@@ -89,7 +91,8 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
                                  const Effort& effort) {
   const Configuration ours = configured(Method::pinch, false);
   World world = make_world(scene, ours);
-  const StepCost step_cost = measure_steps(scene, world, effort);
+  Workspace work;
+  const StepCost step_cost = measure_steps(scene, world, work, effort);
   const double step_s = step_cost.step_s.median;
   const Effort little{0.3 * effort.seconds, effort.samples};
   // Less the call itself, which is of this program and not of the step.
@@ -102,14 +105,19 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
     costs.push_back({name, feature, how, seconds, step_s});
   };
   add("slip", "`find_runs`", call([&] {
-        for (const Part& part : world.scratch.parts.list) find_runs(scene, world, part);
+        for (const Part& part : work.parts.list) {
+          find_runs(world, work.parts, part, at(work.systems, part.system), work.solve);
+        }
       }));
   add("pinch", "`pinch` less `cable`",
       difference(scene, ours, configured(Method::cable, false), effort));
   add("contacts", "`make_contact_rows`, `find_contacts`, `configure_pinches`", call([&] {
-        for (const Part& part : world.scratch.parts.list) make_contact_rows(scene, world, part);
-        find_contacts(scene, world);
-        configure_pinches(scene, world);
+        for (const Part& part : work.parts.list) {
+          make_contact_rows(scene, world, work.parts, part, at(work.systems, part.system),
+                            work.solve);
+        }
+        find_contacts(scene, world, work);
+        configure_pinches(world, work);
       }));
   add("loops", "`previous_link`, `next_link`", loop_seconds(world, little));
   add("diagnostics", "`diagnose` less `check_finite`",
@@ -132,10 +140,11 @@ SleepingCables measure_sleeping_cables(int count, int moving, int steps, const E
   const Scene scene = disconnected_scene(count, moving);
   World on = make_world(scene, configured(Method::pinch, true));
   World off = make_world(scene, configured(Method::pinch, false));
+  Workspace on_work, off_work, only_work;
   SleepingCables result{count, moving, steps};
   for (int i = 0; i < steps; ++i) {
-    step_or_throw(scene, on);
-    step_or_throw(scene, off);
+    step_or_throw(scene, on, on_work);
+    step_or_throw(scene, off, off_work);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       double& largest = b < 2 * static_cast<std::size_t>(moving)
                             ? result.largest_difference_moving
@@ -143,13 +152,14 @@ SleepingCables measure_sleeping_cables(int count, int moving, int steps, const E
       largest = std::max(largest, (on.position[b] - off.position[b]).norm());
     }
   }
-  const BothCosts both =
-      measure_both([&] { step_or_throw(scene, on); }, [&] { step_or_throw(scene, off); }, effort);
+  const BothCosts both = measure_both([&] { step_or_throw(scene, on, on_work); },
+                                      [&] { step_or_throw(scene, off, off_work); }, effort);
   result.on_s = both.first.seconds.median;
   result.off_s = both.second.seconds.median;
   const Scene few = disconnected_scene(moving, moving);
   World only = make_world(few, configured(Method::pinch, false));
-  result.only_moving_s = measure_call([&] { step_or_throw(few, only); }, effort).seconds.median;
+  result.only_moving_s =
+      measure_call([&] { step_or_throw(few, only, only_work); }, effort).seconds.median;
   return result;
 }
 

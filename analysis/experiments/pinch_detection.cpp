@@ -49,9 +49,10 @@ Result measure(const std::string& method, const Variant& variant, int load, cons
   Configuration configuration = *configuration_from_string(method);
   configuration.sleep = false;
   World world = make_world(scene, configuration);
+  Workspace work;
   Result result{method, variant.name, load, scene.bodies.size(), 0, 0, 0, {}};
-  result.cost = measure_steps(scene, world, effort);
-  result.near_pairs = world.scratch.broad_phase.body_pairs.size();
+  result.cost = measure_steps(scene, world, work, effort);
+  result.near_pairs = work.broad_phase.body_pairs.size();
   result.contacts = world.contacts.size();
   result.pinches = count_elements(world).non_transitional;
   return result;

@@ -89,9 +89,9 @@ BothCosts measure_both(const std::function<void()>& first, const std::function<v
   return both;
 }
 
-StepCost measure_steps(const Scene& scene, World& world, const Effort& effort) {
+StepCost measure_steps(const Scene& scene, World& world, Workspace& work, const Effort& effort) {
   StepCost cost;
-  const auto one_step = [&] { must_be_finite(step(scene, world), scene, world); };
+  const auto one_step = [&] { must_be_finite(step(scene, world, work), scene, world); };
   const std::int64_t batch = batch_size(one_step);
   const std::int64_t solves_before = world.diagnostics.total_solves, first_step = world.step;
   std::vector<double> whole;
@@ -102,7 +102,7 @@ StepCost measure_steps(const Scene& scene, World& world, const Effort& effort) {
     whole.push_back(timed(one_step, batch));
     StageTimes times;
     for (std::int64_t i = 0; i < batch; ++i)
-      must_be_finite(step(scene, world, &times), scene, world);
+      must_be_finite(step(scene, world, work, &times), scene, world);
     for (std::size_t s = 0; s < stage_count; ++s) {
       const double each = times.seconds[s] / static_cast<double>(batch);
       const int laps = s == static_cast<std::size_t>(Stage::diagnose) ? 2 : 1;

@@ -48,7 +48,7 @@ struct StepCost {
 };
 
 /// Goes on with `world`. Throws std::runtime_error where a step is not finite.
-StepCost measure_steps(const Scene& scene, World& world, const Effort& effort);
+StepCost measure_steps(const Scene& scene, World& world, Workspace& work, const Effort& effort);
 
 /// Least and greatest tension, N, of the segments that are not the zero-length parts of a
 /// non-transitional pinch (those hold the change of tension, not the tension).

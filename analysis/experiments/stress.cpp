@@ -33,25 +33,27 @@ Configuration thesis_cable() {
 StressResult measure(const StressCase& one, int load, const Effort& effort) {
   const Scene scene = stress_scene(load, one.spacing);
   World world = make_world(scene, one.configuration);
+  Workspace work;
   StressResult result{one.name, load, {}, {}, {}};
-  result.cost = measure_steps(scene, world, effort);
+  result.cost = measure_steps(scene, world, work, effort);
   result.elements = count_elements(world);
   result.tensions = tensions_of(world);
   return result;
 }
 
-void step_or_throw(const Scene& scene, World& world) {
-  if (step(scene, world) != StepStatus::ok) {
+void step_or_throw(const Scene& scene, World& world, Workspace& work) {
+  if (step(scene, world, work) != StepStatus::ok) {
     throw std::runtime_error(scene.name + ": " + world.failure);
   }
 }
 
 BareResult measure_bare(const char* name, const Scene& scene, Method method, const Effort& effort) {
   World world = make_world(scene, awake(method));
+  Workspace work;
   BarePass pass(scene, world);
   BareResult result{name, pass.rows.size(), {}, {}};
   const BothCosts both =
-      measure_both([&] { pass.step(); }, [&] { step_or_throw(scene, world); }, effort);
+      measure_both([&] { pass.step(); }, [&] { step_or_throw(scene, world, work); }, effort);
   result.bare = both.first;
   result.step = both.second;
   return result;
@@ -62,8 +64,9 @@ SlackResult measure_slack(int load, double solves_with) {
   scene.cables.front().slack = 0.0;
   scene.cables.front().axial_stiffness = infinity;
   World world = make_world(scene, awake(Method::pinch));
+  Workspace work;
   constexpr int steps = 10;
-  for (int i = 0; i < steps; ++i) step_or_throw(scene, world);
+  for (int i = 0; i < steps; ++i) step_or_throw(scene, world, work);
   return {load, solves_with, static_cast<double>(world.diagnostics.total_solves) / steps,
           world.diagnostics.fallbacks};
 }
@@ -73,10 +76,11 @@ SleepResult measure_sleep(int load, double awake_s, const Effort& effort) {
   Configuration configuration = Method::pinch;
   configuration.sleep = true;
   World world = make_world(scene, configuration);
+  Workspace work;
   const double settling_s = 2.0;
-  while (world.time() < settling_s) step_or_throw(scene, world);
+  while (world.time() < settling_s) step_or_throw(scene, world, work);
   const Effort little{0.2 * effort.seconds, effort.samples};
-  const CallCost asleep = measure_call([&] { step_or_throw(scene, world); }, little);
+  const CallCost asleep = measure_call([&] { step_or_throw(scene, world, work); }, little);
   return {load, awake_s, asleep.seconds.median};
 }
 

@@ -42,6 +42,7 @@ Recording simulate(const Problem& problem, Configuration configuration, int step
   Scene scene = problem.scene;
   scene.steps_per_frame = steps_per_frame;
   World world = make_world(scene, configuration);
+  Workspace work;
   Recording recording;
   recording.motion.assign(static_cast<std::size_t>(problem.frames) + 1,
                           std::vector<Place>(problem.watched.size()));
@@ -49,7 +50,7 @@ Recording simulate(const Problem& problem, Configuration configuration, int step
   const double start = cpu_seconds();
   for (std::size_t frame = 1; frame < recording.motion.size(); ++frame) {
     for (int i = 0; i < steps_per_frame; ++i) {
-      if (step(scene, world) != StepStatus::ok) recording.finite = false;
+      if (step(scene, world, work) != StepStatus::ok) recording.finite = false;
       if (!recording.finite) return recording;
     }
     record(problem, world, recording.motion[frame]);

@@ -10,9 +10,12 @@
 #include "demos/scene_json.h"
 #include "render/scenery.h"
 #include "sim/step.h"
+#include "tests/sim/same_state.h"
 
 namespace pinchlab {
 namespace {
+
+using testing::same_state;
 
 struct Motion {
   // m, mean over the frames of the largest third difference of a position; of bodies that have not
@@ -35,12 +38,13 @@ Motion play(const Scene& scene, Method method) {
   Configuration configuration = method;
   configuration.diagnostics = true;
   World world = make_world(scene, configuration);
+  Workspace work;
   Motion motion;
   std::vector<std::vector<Vec2>> frames{world.position};
   std::vector<int> wall_frame(scene.bodies.size(), -4);  // the last in which the body touched one
   for (int frame = 1; frame < scene.frame_count; ++frame) {
     for (int i = 0; i < scene.steps_per_frame; ++i) {
-      EXPECT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+      EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
       motion.gap_violation =
           std::max(motion.gap_violation, world.diagnostics.largest_gap_violation);
       motion.length_error = std::max(motion.length_error, world.diagnostics.cable_length_error);
@@ -113,9 +117,10 @@ TEST_P(Demonstration, DiffersWithinTheFirstSecond) {
   const Scenery scenery = set_scenery(scene_, file_.look);
   const double visible = scenery.unit();  // m
   World pinch = make_world(scene_, Method::pinch), baseline = make_world(scene_, scene_.baseline);
+  Workspace pinch_work, baseline_work;
   for (int i = 0; i < scene_.frames_per_second * scene_.steps_per_frame; ++i) {
-    ASSERT_EQ(step(scene_, pinch), StepStatus::ok);
-    ASSERT_EQ(step(scene_, baseline), StepStatus::ok);
+    ASSERT_EQ(step(scene_, pinch, pinch_work), StepStatus::ok);
+    ASSERT_EQ(step(scene_, baseline, baseline_work), StepStatus::ok);
   }
   double apart = 0.0;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
@@ -130,8 +135,9 @@ TEST_P(Demonstration, LabelsStayInTheFrame) {
   const Scenery scenery = set_scenery(scene_, file_.look);
   for (const Method method : {Method::pinch, scene_.baseline}) {
     World world = make_world(scene_, method);
+    Workspace work;
     for (int i = 0; i < scene_.frame_count * scene_.steps_per_frame; ++i) {
-      ASSERT_EQ(step(scene_, world), StepStatus::ok);
+      ASSERT_EQ(step(scene_, world, work), StepStatus::ok);
       for (const SceneryLabel& label : scenery.labels) {
         const Vec2 centre = world.position[label.body] + label.offset;
         const Vec2 half(0.28 * scenery.text() * static_cast<double>(label.text.size()),
@@ -171,11 +177,25 @@ TEST_P(Demonstration, MovesAlikeWithEitherDetection) {
   Configuration all_pairs;
   all_pairs.detection = Detection::all_pairs;
   World first = make_world(scene_, Method::pinch), second = make_world(scene_, all_pairs);
+  Workspace first_work, second_work;
   for (int i = 0; i < scene_.frame_count * scene_.steps_per_frame; ++i) {
-    ASSERT_EQ(step(scene_, first), StepStatus::ok);
-    ASSERT_EQ(step(scene_, second), StepStatus::ok);
+    ASSERT_EQ(step(scene_, first, first_work), StepStatus::ok);
+    ASSERT_EQ(step(scene_, second, second_work), StepStatus::ok);
     ASSERT_EQ(first.position, second.position) << i;
     ASSERT_EQ(first.angle, second.angle) << i;
+  }
+}
+
+TEST_P(Demonstration, AClearedWorkspaceChangesNoBit) {
+  for (const Method method : {Method::pinch, scene_.baseline}) {
+    World kept = make_world(scene_, method), cleared = kept;
+    Workspace work;
+    for (int i = 0; i < scene_.frame_count * scene_.steps_per_frame; ++i) {
+      Workspace fresh;
+      ASSERT_EQ(step(scene_, kept, work), StepStatus::ok);
+      ASSERT_EQ(step(scene_, cleared, fresh), StepStatus::ok);
+      ASSERT_TRUE(same_state(kept, cleared)) << i;
+    }
   }
 }
 

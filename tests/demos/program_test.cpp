@@ -164,7 +164,7 @@ TEST(Simulate, WritesOneRowABodyAndFrame) {
   for (int frame = 0; frame < 60; ++frame) {
     player.advance_to(frame);
     EXPECT_EQ(player.world().step, 4 * frame);
-    const Velocities velocity = velocities_now(player.scene(), player.world());
+    const Velocities velocity = player.velocities();
     for (std::size_t body = 0; body < 3; ++body) {
       const auto& row = rows[1 + 3 * static_cast<std::size_t>(frame) + body];
       ASSERT_EQ(row.size(), 8U);

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "render/cable_path.h"
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
 
@@ -92,6 +92,7 @@ TEST(CablePath, FollowsTheCableAndItsMaterial) {
 TEST(CablePath, MaterialTurnsWithABodyThatDoesNotSlip) {
   const Scene scene = atwood();
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   const double top = 1.5 + 0.55 * 0.5 * std::numbers::pi;  // m of material at the top of the pulley
   ASSERT_NEAR((place_of(path_of(scene, world), top) - Vec2(0.0, 0.55)).norm(), 0.0, 1e-9);
   const auto angle_at = [&](double m) {
@@ -102,19 +103,20 @@ TEST(CablePath, MaterialTurnsWithABodyThatDoesNotSlip) {
   world.angle[0] -= 0.3;
   world.position[1].y() += 0.3 * 0.55;
   world.position[2].y() -= 0.3 * 0.55;
-  update_segments(world);
+  update_segments(world, work);
   EXPECT_NEAR(angle_at(top), before - 0.3, 1e-9);
 }
 
 TEST(CablePath, SlippingMovesTheMarksAndNotThePulley) {
   const Scene scene = atwood();
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   const auto before = path_of(scene, world);
   for (std::size_t i : {std::size_t{1}})
     world.cables[0].links[i].material += 0.1;  // 0.1 m to the left
   world.position[1].y() -= 0.1;
   world.position[2].y() += 0.1;
-  update_segments(world);
+  update_segments(world, work);
   const auto after = path_of(scene, world);
   // The material that was at m on the wrap is now where m - 0.1 was.
   const Vec2 now = place_of(after, 2.3), then = place_of(before, 2.2);
@@ -142,10 +144,11 @@ TEST(CablePath, SlackSpansHangWithTheirRestLength) {
 TEST(CablePath, HangingIsContinuousWhereASpanGoesSlack) {
   const Scene scene = hung(0.0);
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   auto last = path_of(scene, world);
   for (int k = 0; k < 400; ++k) {
     world.cables[0].links[2].material += 1e-6 * k;  // slack of the second span grows from nothing
-    update_segments(world);
+    update_segments(world, work);
     const auto now = path_of(scene, world);
     for (double m = 0.0; m < 4.0; m += 0.05) {
       EXPECT_LT((place_of(now, m) - place_of(last, m)).norm(), 2e-3) << k << " " << m;
@@ -165,10 +168,11 @@ TEST(CablePath, ALinkWithoutWrapChangesNothing) {
   scene.cables = {cable};
   scene.view = {{-1.0, -1.0}, {1.0, 1.0}};
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   const auto before = path_of(scene, world);
-  if (world.cables[0].links.size() == 2) insert_link(scene, world, world.cables[0], 1, 0, 1);
+  if (world.cables[0].links.size() == 2) insert_link(world, world.cables[0], 1, 0, 1);
   ASSERT_EQ(world.cables[0].links.size(), 3u);
-  update_segments(world);
+  update_segments(world, work);
   const auto after = path_of(scene, world);
   expect_smooth(after);
   for (double m = 0.0; m <= 2.0; m += 0.1) {
@@ -186,8 +190,9 @@ Scene pinching() {
 TEST(CablePath, APinchOnAWrapIsDrawnOnce) {
   const Scene scene = pinching();
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   for (int k = 0; k < 40 && world.cables[0].links.size() == 3; ++k)
-    ASSERT_EQ(step(scene, world), StepStatus::ok);
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
   ASSERT_EQ(world.cables[0].links.size(), 5u) << "the roller pinches the wrap";
   ASSERT_TRUE(world.cables[0].links[2].pinch_middle);
   const auto points = path_of(scene, world);
@@ -213,8 +218,9 @@ TEST(CablePath, ClippingBodiesStillShowOneSmoothCable) {
   cable.end.point = {0.35, 2.5};
   scene.cables = {cable};
   World world = make_world(scene, Method::pinch_no_contact);
+  Workspace work;
   world.position[1].y() -= 0.05;
-  update_segments(world);
+  update_segments(world, work);
   ASSERT_TRUE(world.cables[0].segments[2].pinched);
   const auto points = path_of(scene, world);
   expect_smooth(points);
@@ -257,6 +263,7 @@ TEST(CablePath, MarksMoveContinuouslyThroughASimulation) {
   scene.cables[0].start = {-1, {-2.5, 0.6}};
   scene.bodies[1] = body("roller", BodyKind::free, {-1.4, 1.4}, 0.2);
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   std::vector<StripPoint> last;
   std::size_t fewest = 99, most = 0;
   for (int frame = 0; frame < 240; ++frame) {
@@ -273,7 +280,7 @@ TEST(CablePath, MarksMoveContinuouslyThroughASimulation) {
     last = now;
     fewest = std::min(fewest, world.cables[0].links.size());
     most = std::max(most, world.cables[0].links.size());
-    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(scene, world), StepStatus::ok);
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
   }
   EXPECT_LT(fewest, most) << "a link has come on the way";
 }
@@ -293,6 +300,7 @@ TEST(CablePath, SlackThatHasNoRoomIsShownBesideIt) {
   cable.end.point = {49.661, 8.008};
   scene.cables = {cable};
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   double most_hidden = 0.0, largest_change = 0.0, last = world.cables[0].length;  // m
   std::size_t changes = 0, links = world.cables[0].links.size();
   for (int frame = 0; frame < 160; ++frame) {
@@ -302,7 +310,7 @@ TEST(CablePath, SlackThatHasNoRoomIsShownBesideIt) {
     last = drawn;
     changes += static_cast<std::size_t>(world.cables[0].links.size() != links);
     links = world.cables[0].links.size();
-    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(scene, world), StepStatus::ok);
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
   }
   EXPECT_GE(changes, 1U) << "the links change on the way";
   EXPECT_LT(most_hidden, 0.02);

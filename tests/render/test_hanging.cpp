@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/tangent.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 namespace {

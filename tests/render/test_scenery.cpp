@@ -59,13 +59,14 @@ TEST(Scenery, AFittedViewShowsEverythingAllTheTime) {
   look.fit_view = true;
   const Scenery scenery = set_scenery(scene, look);
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   for (int i = 0; i < scene.frame_count * scene.steps_per_frame; ++i) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       const double r = scene.bodies[b].radius;
       EXPECT_TRUE(((world.position[b].array() - r) >= scenery.view.low.array()).all());
       EXPECT_TRUE(((world.position[b].array() + r) <= scenery.view.high.array()).all());
     }
-    step(scene, world);
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
   }
   EXPECT_LT((scenery.view.high - scenery.view.low).maxCoeff(), 3.5);
 }

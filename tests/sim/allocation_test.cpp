@@ -36,9 +36,10 @@ long allocations_of_warm_steps(const Scene& scene) {
   for (const Configuration& configuration :
        {Configuration(Method::pinch), three, thesis_configuration()}) {
     World world = make_world(scene, configuration);
-    for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+    Workspace work;
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world, work), StepStatus::ok);
     const long before = allocations;
-    for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world), StepStatus::ok);
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(step(scene, world, work), StepStatus::ok);
     most = std::max(most, allocations - before);
   }
   return most;

@@ -26,8 +26,9 @@ TEST(Invariants, CableLengthOverAHundredThousandSteps) {
   for (const double friction : {infinity, 0.2, 0.0}) {
     Scene scene = busy_scene(friction);
     World world = make_world(scene, measured());
+    Workspace work;
     for (int i = 0; i < 100000; ++i) {
-      ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
       ASSERT_LT(world.diagnostics.cable_length_error, 1e-12)
           << "friction " << friction << ", step " << i;
     }
@@ -97,10 +98,11 @@ TEST(Invariants, ConservesMomentumWithoutForces) {
   scene.bodies[1].angular_velocity = 3.0;
   scene.cables.push_back(cable({0, {0.2, 0.3}}, {{1, 1, 0}}, {2, {-0.1, 0.2}}));
   World world = make_world(scene, measured());
+  Workspace work;
   const auto momenta = [&] {
     Vec2 linear = Vec2::Zero();
     double angular = 0.0;
-    const Velocities now = velocities_now(scene, world);
+    const Velocities now = velocities_now(scene, world, work);
     for (std::size_t b = 0; b < 3; ++b) {
       const Vec2 p = scene.bodies[b].mass * now.linear[b];
       linear += p;
@@ -161,7 +163,8 @@ TEST(Invariants, ReportingVelocitiesDoesNotChangeTheRun) {
   for (int i = 0; i < 480; ++i) {
     run(scene, first, 1);
     run(scene, second, 1);
-    velocities_now(scene, second);
+    Workspace work;
+    velocities_now(scene, second, work);
   }
   for (std::size_t b = 0; b < first.position.size(); ++b)
     EXPECT_EQ(first.position[b], second.position[b]);
@@ -170,9 +173,10 @@ TEST(Invariants, ReportingVelocitiesDoesNotChangeTheRun) {
 TEST(Invariants, NotFiniteStopsWithPlaceAndTime) {
   Scene scene = load_chain(1, 1.0, 2.0, 1.0);
   World world = make_world(scene, measured());
+  Workspace work;
   run(scene, world, 10);
   world.velocity[1].x() = std::nan("");
-  EXPECT_EQ(step(scene, world), StepStatus::not_finite);
+  EXPECT_EQ(step(scene, world, work), StepStatus::not_finite);
   EXPECT_NE(world.failure.find("step 10"), std::string::npos) << world.failure;
   EXPECT_NE(world.failure.find("not finite"), std::string::npos) << world.failure;
 }
@@ -184,8 +188,10 @@ TEST_P(RandomScene, StaysSound) {
   for (const Method method : {Method::pinch, Method::pinch_no_contact, Method::cable}) {
     const Scene scene = random_scene(GetParam());
     World world = make_world(scene, measured(method));
+    Workspace work;
     for (int i = 0; i < 240 * 4; ++i) {
-      ASSERT_EQ(step(scene, world), StepStatus::ok) << to_string(method) << ": " << world.failure;
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok)
+          << to_string(method) << ": " << world.failure;
       if (method != Method::pinch) continue;
       ASSERT_LT(world.diagnostics.cable_length_error, 1e-12) << i;
       ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-3 * 0.05) << i;

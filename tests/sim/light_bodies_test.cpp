@@ -49,9 +49,10 @@ TEST(LightBodies, RideWithAMovingLine) {
 TEST(LightBodies, NothingChangesWhereStepsCanFollow) {
   const Scene scene = weighted_line(100.0, 0.05);
   World world = make_world(scene, measured());
+  Workspace work;
   for (int i = 0; i < 240; ++i) {
-    run(scene, world, 1);
-    const Mobility& light = world.scratch.mobility[0];
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    const Mobility& light = work.systems[0].mobility[0];
     ASSERT_EQ(light.xx, 1.0);
     ASSERT_EQ(light.xy, 0.0);
     ASSERT_EQ(light.yy, 1.0);

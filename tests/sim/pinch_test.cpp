@@ -2,7 +2,7 @@
 // Bodies that squeeze cables: gaps, rest, many bodies and cables, and the change between kinds of
 // pinch.
 
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -48,9 +48,10 @@ TEST_P(Stack, OfTenPinchingBodiesComesToRest) {
   scene.steps_per_frame = GetParam();
   scene.bodies.back().linear_drag = scene.bodies.back().angular_drag = 5.0;
   World world = make_world(scene, measured());
+  Workspace work;
   const int second = 60 * GetParam();
   for (int i = 0; i < 10 * second; ++i) {
-    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
     ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-6 * w) << "step " << i;
   }
   std::vector<Vec2> settled = world.position;
@@ -78,8 +79,9 @@ TEST(Pinch, FallingTowerIsCaughtWithoutSqueezingAtOneStepAFrame) {
     scene.frames_per_second = frames_per_second;
     scene.steps_per_frame = 1;
     World world = make_world(scene, measured());
+    Workspace work;
     for (int i = 0; i < 2 * frames_per_second; ++i) {
-      ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
       for (std::size_t b = 1; b <= 20; ++b) {
         ASSERT_GT(least_gap(world, scene, b - 1, b), 2.0 * w * (1.0 - 1e-6)) << i << ", " << b;
       }
@@ -105,8 +107,9 @@ TEST(Pinch, NeverSqueezesTheCableWhileFalling) {
     scene.bodies[1].position.y() = 6.0;  // hits at 10 m/s
     scene.steps_per_frame = steps_per_frame;
     World world = make_world(scene, measured());
+    Workspace work;
     for (int i = 0; i < 120 * steps_per_frame; ++i) {
-      ASSERT_EQ(step(scene, world), StepStatus::ok);
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok);
       ASSERT_GE(least_gap(world, scene, 0, 1), 2.0 * w - 1e-12);
     }
     EXPECT_NEAR(least_gap(world, scene, 0, 1), 2.0 * w, 1e-12);
@@ -223,9 +226,10 @@ TEST(Pinch, RollsOverAWrapThroughAllKindsOfPinch) {
   scene.bodies.push_back(roller);
   scene.cables.push_back(cable(at(-2.1, 0.95), {{1, 1, 0}, {0, -1, 0}}, at(2.0, -1.1)));
   World world = make_world(scene, measured());
+  Workspace work;
   bool middle = false, before = false, behind = false;
   for (int i = 0; i < 60 * 16 * 2 && world.position[1].x() < 1.2; ++i) {
-    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
     ASSERT_LT(world.diagnostics.largest_gap_violation, 1e-3 * w);
     ASSERT_LT(world.diagnostics.cable_length_error, 1e-12);
     const auto& links = world.cables[0].links;
@@ -278,13 +282,14 @@ TEST(Pinch, SlippingCableUnderARollerTurnsTheDrum) {
   scene.bodies[1].driven_angular_velocity = -10.0;
   scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
   World world = make_world(scene, measured());
+  Workspace work;
   double last = 0.0;
   for (int i = 0; i < 60; ++i) {
     run(scene, world, 1);
     EXPECT_GE(world.angle[0], last);
     last = world.angle[0];
   }
-  const Velocities now = velocities_now(scene, world);
+  const Velocities now = velocities_now(scene, world, work);
   const double cable_speed = -now.linear[2].y(), rim_speed = now.angular[0] * R;
   EXPECT_GT(rim_speed, 0.0);
   EXPECT_GT(cable_speed, rim_speed) << "the cable slips over the drum";

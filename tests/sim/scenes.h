@@ -77,7 +77,10 @@ inline Scene load_chain(int pulleys, double m1, double m2, double pulley_mass,
 }
 
 inline void run(const Scene& scene, World& world, int steps) {
-  for (int i = 0; i < steps; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+  Workspace work;
+  for (int i = 0; i < steps; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+  }
 }
 
 }  // namespace pinchlab::testing

@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "sim/profile_lu.h"
+#include "sim/solve/profile_lu.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -59,12 +59,12 @@ TEST(Solver, AnUnusedFeatureIsNotOnTheStepsPath) {
   // pinch.
   Scene scene = load_chain(21, 3.0, 2.0, 1.0);
   World world = make_world(scene, Method::pinch);
-  run(scene, world, 10);
-  const ActiveSet& set = world.scratch.active_set;
-  EXPECT_TRUE(set.capstan.runs.empty());
-  EXPECT_TRUE(set.capstan.passages.empty());
+  Workspace work;
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+  EXPECT_TRUE(work.solve.capstan.runs.empty());
+  EXPECT_TRUE(work.solve.capstan.passages.empty());
   EXPECT_TRUE(world.contacts.empty());
-  EXPECT_EQ(world.scratch.contacts_of_body.begin.size(), 0u) << "the search for pinches never ran";
+  EXPECT_EQ(work.contacts.contacts_of_body.begin.size(), 0u) << "the search for pinches never ran";
 }
 
 TEST(Solver, ARestingSceneOnlyCountsItsSteps) {
@@ -82,8 +82,9 @@ TEST(Solver, ARestingSceneOnlyCountsItsSteps) {
 TEST(Solver, StagesAreTimedOnRequest) {
   Scene scene = load_chain(21, 3.0, 2.0, 1.0);
   World world = make_world(scene, Method::pinch);
+  Workspace work;
   StageTimes times;
-  for (int i = 0; i < 50; ++i) step(scene, world, &times);
+  for (int i = 0; i < 50; ++i) step(scene, world, work, &times);
   for (std::size_t stage = 0; stage < times.seconds.size(); ++stage) {
     EXPECT_GT(times.seconds[stage], 0.0) << to_string(static_cast<Stage>(stage));
   }

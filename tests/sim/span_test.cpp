@@ -24,11 +24,12 @@ TEST_P(Bullet, NeverPassesACable) {
   const auto [speed, offset, slack] = GetParam();
   Scene scene = shot(speed, offset, 0.05, slack);
   World world = make_world(scene, measured());
+  Workspace work;
   // The cable reaches at most this far up: an ellipse about its ends.
   const double half = 0.5 * (4.0 + slack), highest = std::sqrt(half * half - 4.0) + 0.1;
   const double energy = 0.5 * 0.1 * speed * speed;
   for (int i = 0; i < 480; ++i) {
-    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
     // A step may end beyond the cable by the step's own motion, while the link already pulls back.
     ASSERT_LT(world.position[0].y(), highest + speed * world.step_length) << i;
     if (speed * world.step_length > 0.5)

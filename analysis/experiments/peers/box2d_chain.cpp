@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "analysis/experiments/experiment.h"
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 
 namespace pinchlab::experiments {
 

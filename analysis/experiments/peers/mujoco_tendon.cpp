@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 #include "analysis/experiments/experiment.h"
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 
 namespace pinchlab::experiments {
 
@@ -110,7 +110,7 @@ void add_pulley(const World& world, const CableState& cable, std::size_t i, Path
 
 std::string end_site(const Link& link, const char* name, Path& path) {
   if (link.body >= 0) return fmt::format("<site site='end{}'/>", link.body);
-  path.world += fmt::format("<site name='{}' pos='{}'/>\n", name, point(link.attachment));
+  path.world += fmt::format("<site name='{}' pos='{}'/>\n", name, point(link.offset));
   return fmt::format("<site site='{}'/>", name);
 }
 

@@ -118,8 +118,9 @@ Csv speeds_table(const Item& item) {
   if (middle == item.cases.end()) throw std::logic_error("speeds_table: there is no stack of four");
   for (const std::string& method : item.methods) {
     World world = make_world(middle->scene, configuration_of(method));
+    Workspace work;
     for (std::int64_t i = 0; i < step_count(*middle); ++i) {
-      if (step(middle->scene, world) != StepStatus::ok) break;
+      if (step(middle->scene, world, work) != StepStatus::ok) break;
       double fastest = 0.0;
       for (std::size_t b = 1; b + 1 < middle->scene.bodies.size(); ++b) {
         fastest = std::max(fastest, std::abs(world.velocity[b].y()));

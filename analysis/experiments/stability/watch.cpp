@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments::stability {
@@ -153,11 +153,12 @@ Result watch(const Case& test, const std::string& method, const Configuration& c
   Configuration measured = configuration;
   measured.diagnostics = true;
   World world = make_world(test.scene, measured);
+  Workspace work;
   const std::int64_t steps = step_count(test), last_tenth = steps - steps / 10;
   double start_energy = 0.0;
   std::int64_t links = link_count(world);
   for (; result.steps < steps && m.finite; ++result.steps) {
-    if (step(test.scene, world) != StepStatus::ok) {
+    if (step(test.scene, world, work) != StepStatus::ok) {
       m.finite = false;
       break;
     }

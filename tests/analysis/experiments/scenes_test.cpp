@@ -50,7 +50,9 @@ TEST(StressScene, KeepsItsElementsAndTensionWhileItRuns) {
   for (const std::size_t n : {1UL, 5UL, 20UL, 50UL, 100UL, 200UL, 500UL, 1000UL, 2000UL}) {
     const Scene scene = stress_scene(static_cast<int>(n), pinched_spacing);
     World world = make_world(scene, awake(Method::pinch));
-    for (int i = 0; i < 10; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    Workspace work;
+    for (int i = 0; i < 10; ++i)
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
     const ElementCounts counts{4 * n, 4 * n - 2, 2 * n, 4 * n - 1, 12 * n - 2, 12 * n - 3};
     EXPECT_EQ(count_elements(world), counts) << "load " << n;
     EXPECT_EQ(counts.attachments(), 8 * n);
@@ -69,7 +71,9 @@ TEST(PinchDetectionScene, PressesTheCableOnlyWhereItShould) {
       for (const std::size_t n : {1UL, 2UL, 20UL}) {
         const Scene scene = pinch_detection_scene(static_cast<int>(n), pinching, other);
         World world = make_world(scene, awake(Method::pinch));
-        for (int i = 0; i < 60; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+        Workspace work;
+        for (int i = 0; i < 60; ++i)
+          ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
         const ElementCounts counts = count_elements(world);
         EXPECT_EQ(counts.bodies, 2 * n + n * (pinching ? 1 : 0) + n * (other ? 1 : 0));
         EXPECT_EQ(counts.non_transitional, pinching ? n : 0);
@@ -85,8 +89,10 @@ TEST(PinchDetectionScene, PressesTheCableOnlyWhereItShould) {
 TEST(ChainScene, FallsAsItsMassesSay) {
   const Scene scene = chain_scene(81);
   World world = make_world(scene, awake(Method::pinch));
+  Workspace work;
   const int steps = 240;
-  for (int i = 0; i < steps; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+  for (int i = 0; i < steps; ++i)
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
   // Discs of 0.1 kg: their surfaces, w inside of the cable's centre line, roll at its speed.
   const double ratio = 0.5 / 0.55;
   const double inertia = 1999.0 + 81 * 0.05 * ratio * ratio;
@@ -97,9 +103,10 @@ TEST(ChainScene, FallsAsItsMassesSay) {
 TEST(SwingingScene, SwingsForEverWithoutContactsAndPinches) {
   const Scene scene = swinging_scene(5);
   World world = make_world(scene, awake(Method::pinch));
+  Workspace work;
   double fastest = 0.0;
   for (int i = 0; i < 24000; ++i) {
-    ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
     if (i >= 23000) fastest = std::max(fastest, world.velocity[0].norm());
   }
   EXPECT_NEAR(fastest, 0.5, 0.01);
@@ -110,7 +117,9 @@ TEST(SwingingScene, SwingsForEverWithoutContactsAndPinches) {
 TEST(DisconnectedScene, SomeSwingAndOthersHangStill) {
   const Scene scene = disconnected_scene(20, 3);
   World world = make_world(scene, awake(Method::pinch));
-  for (int i = 0; i < 240; ++i) ASSERT_EQ(step(scene, world), StepStatus::ok) << world.failure;
+  Workspace work;
+  for (int i = 0; i < 240; ++i)
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
   for (std::size_t b = 1; b < scene.bodies.size(); b += 2) {
     if (b < 6) {
       EXPECT_GT(world.velocity[b].norm(), 1e-3) << b;
@@ -125,9 +134,10 @@ TEST(DisconnectedScene, SleepsWithoutDisturbingWhatMoves) {
   const int moving = 3, count = 20;
   const Scene scene = disconnected_scene(count, moving);
   World with = make_world(scene, Method::pinch), without = make_world(scene, awake(Method::pinch));
+  Workspace with_work, without_work;
   for (int i = 0; i < 480; ++i) {
-    ASSERT_EQ(step(scene, with), StepStatus::ok) << with.failure;
-    ASSERT_EQ(step(scene, without), StepStatus::ok) << without.failure;
+    ASSERT_EQ(step(scene, with, with_work), StepStatus::ok) << with.failure;
+    ASSERT_EQ(step(scene, without, without_work), StepStatus::ok) << without.failure;
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (b < 2 * moving) {
@@ -139,7 +149,7 @@ TEST(DisconnectedScene, SleepsWithoutDisturbingWhatMoves) {
     }
   }
   int asleep = 0;
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with.scratch.parts, c);
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with_work.parts, c);
   EXPECT_EQ(asleep, count - moving);
 }
 

@@ -10,7 +10,7 @@
 #include "analysis/experiments/stability/border.h"
 #include "analysis/experiments/stability/scenes.h"
 #include "analysis/experiments/stability/stability.h"
-#include "sim/cable.h"
+#include "sim/cable/cable.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments::stability {

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/cable.h"
+
+#include <algorithm>
+
+#include "sim/cable/tangent.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Below this wrap (rad) a link is gone. Far above round-off, far below what a frame could show.
+constexpr double gone = -1e-9;
+
+std::ptrdiff_t at(std::size_t i) {
+  return static_cast<std::ptrdiff_t>(i);
+}
+
+std::size_t tail_link(const CableState& cable, std::size_t segment) {
+  return segment == 0 ? cable.links.size() - 1 : segment - 1;
+}
+
+}  // namespace
+
+double alpha_head(const CableState& cable, std::size_t link) {
+  if (link + 1 < cable.segments.size()) return cable.segments[link + 1].alpha;
+  return cable.segments[0].alpha + cable.turning;
+}
+
+double tail_material(const CableState& cable, std::size_t i, double angle) {
+  const Link& link = cable.links[i];
+  return link.material + link.signed_radius() * (cable.segments[i].alpha - angle);
+}
+
+double head_material(const CableState& cable, std::size_t i, double angle) {
+  const Link& link = cable.links[i];
+  return link.material + link.signed_radius() * (alpha_head(cable, i) - angle);
+}
+
+Vec2 link_centre(const World& world, const Link& link) {
+  if (link.body < 0) return link.offset;
+  const Vec2& centre = world.position[static_cast<std::size_t>(link.body)];
+  if (link.offset.isZero(0.0)) return centre;
+  const double angle = world.angle[static_cast<std::size_t>(link.body)];
+  const double c = std::cos(angle), s = std::sin(angle);
+  return centre +
+         Vec2(c * link.offset.x() - s * link.offset.y(), s * link.offset.x() + c * link.offset.y());
+}
+
+void update_tangent(const World& world, CableState& cable, std::size_t i) {
+  const Link& from = cable.links[tail_link(cable, i)];
+  const Link& to = cable.links[i];
+  Segment& segment = cable.segments[i];
+  const Vec2 a = link_centre(world, from), b = link_centre(world, to);
+  Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius());
+  if (wound_end(from, to)) {
+    const bool arrives = from.orientation == 0;  // at the body, from its rim
+    const Vec2 rim = arrives ? Vec2(a - b) : Vec2(b - a);
+    t.direction = (from.orientation + to.orientation) * left(rim.normalized());
+    t.length = 0.0;
+    t.pinched = true;
+  }
+  if (from.pinch_middle || to.pinch_middle) {
+    // Held between two bodies: the limit of the tangent, also while the bodies part by round-off.
+    const double delta = to.signed_radius() - from.signed_radius();
+    t.direction = -std::copysign(1.0, delta) / t.distance * left(b - a);
+    t.length = 0.0;
+    t.pinched = true;
+  }
+  segment.moved = true;
+  segment.tail_centre = a;
+  segment.head_centre = b;
+  segment.direction = t.direction;
+  segment.length = t.length;
+  segment.pinched = t.pinched;
+  segment.alpha = unwrapped(std::atan2(t.direction.y(), t.direction.x()), segment.alpha);
+  segment.tail = tangent_point(a, from.signed_radius(), t.direction);
+  segment.head = tangent_point(b, to.signed_radius(), t.direction);
+}
+
+namespace {
+
+void update_wraps(CableState& cable) {
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    Link& link = cable.links[i];
+    if (link.orientation != 0) {
+      link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
+    }
+  }
+}
+
+void update_rest_lengths(const World& world, CableState& cable) {
+  for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
+    const std::size_t from = tail_link(cable, i);
+    cable.segments[i].rest_length =
+        tail_material(cable, i, body_angle(world, cable.links[i])) -
+        head_material(cable, from, body_angle(world, cable.links[from])) +
+        (i == 0 ? cable.length : 0.0);
+  }
+}
+
+}  // namespace
+
+void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
+  update_wraps(cable);
+  update_rest_lengths(world, cable);
+}
+
+void update_segments(World& world, Workspace& work) {
+  work.released.clear();
+  work.spans_moved = false;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(work.parts, c)) continue;
+    CableState& cable = world.cables[c];
+    bool moved = false;
+    Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
+    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+      Segment& segment = cable.segments[i];
+      const Vec2 to = link_centre(world, cable.links[i]);
+      segment.previous_tail = segment.tail;
+      segment.previous_head = segment.head;
+      segment.moved = from != segment.tail_centre || to != segment.head_centre;
+      if (segment.moved) {
+        update_tangent(world, cable, i);
+        moved = true;
+      }
+      from = to;
+    }
+    if (moved) update_wraps(cable);
+    update_rest_lengths(world, cable);
+    work.spans_moved = work.spans_moved || moved;
+  }
+}
+
+void remove_link(const World& world, CableState& cable, int link) {
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now.
+  cable.links[static_cast<std::size_t>(before)].pinch_middle = false;
+  cable.links[static_cast<std::size_t>(after)].pinch_middle = false;
+  const bool merge = cable.links[static_cast<std::size_t>(before)].body ==
+                         cable.links[static_cast<std::size_t>(after)].body &&
+                     cable.links[static_cast<std::size_t>(before)].orientation ==
+                         cable.links[static_cast<std::size_t>(after)].orientation &&
+                     cable.links[static_cast<std::size_t>(before)].orientation != 0 &&
+                     before != after;
+  ++cable.changes;
+  // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
+  // computed anew from the link before. In a merge the earlier link on the body stays.
+  const auto erase = [&cable](int i) {
+    cable.links.erase(cable.links.begin() + i);
+    cable.segments.erase(cable.segments.begin() + i);
+  };
+  if (merge) {
+    erase(std::max(link, after));
+    erase(std::min(link, after));
+  } else {
+    erase(link);
+  }
+  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+    const Vec2 tail = cable.segments[i].tail, head = cable.segments[i].head;
+    update_tangent(world, cable, i);
+    if (cable.segments[i].tail != tail || cable.segments[i].head != head) {
+      cable.segments[i].previous_tail = cable.segments[i].tail;
+      cable.segments[i].previous_head = cable.segments[i].head;
+    }
+  }
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+void remove_links(World& world, Workspace& work) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    CableState& cable = world.cables[c];
+    bool changed = !sleeps(work.parts, c);
+    while (changed) {
+      changed = false;
+      for (std::size_t i = 0; i < cable.links.size(); ++i) {
+        const Link& link = cable.links[i];
+        const bool needed = cable.closed && cable.links.size() <= 2;
+        if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed) {
+          work.released.push_back({static_cast<int>(c), link.body});
+          remove_link(world, cable, static_cast<int>(i));
+          changed = true;
+          break;
+        }
+      }
+    }
+  }
+}
+
+void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
+                 int orientation) {
+  // A link put into the segment that closes a loop comes last, so that indices stay where they are.
+  const std::size_t position = segment == 0 ? cable.links.size() : segment;
+  const Segment old = cable.segments[segment];
+  const std::size_t from = tail_link(cable, segment);
+  const double start = head_material(cable, from, body_angle(world, cable.links[from]));
+
+  Link link;
+  link.body = body;
+  link.orientation = orientation;
+  link.radius = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  cable.links.insert(cable.links.begin() + at(position), link);
+  Segment arriving = old;
+  if (segment == 0) arriving.alpha = old.alpha + cable.turning;
+  cable.segments.insert(cable.segments.begin() + at(position), arriving);
+
+  const std::size_t leaving = segment == 0 ? 0 : position + 1;
+  update_tangent(world, cable, position);
+  update_tangent(world, cable, leaving);
+  Segment& first = cable.segments[position];
+  Segment& second = cable.segments[leaving];
+  for (Segment* part : {&first, &second}) {
+    part->previous_tail = part->tail;
+    part->previous_head = part->head;
+  }
+  // Both parts get the same strain: rest lengths in the ratio of the lengths.
+  ++cable.changes;
+  Link& added = cable.links[position];
+  const double stored = link.radius * orientation * (alpha_head(cable, position) - first.alpha);
+  const double free_length = first.length + second.length;
+  const double share = free_length > 0.0 ? first.length / free_length : 0.5;
+  const double arrives = start + share * (old.rest_length - stored);
+  added.material = arrives - added.signed_radius() * (first.alpha - body_angle(world, added));
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+void insert_pinch(const World& world, CableState& cable, std::size_t i, double arc, int body) {
+  const Link whole = cable.links[i];
+  const double alpha = cable.segments[i].alpha + whole.orientation * arc;
+  const double angle = body_angle(world, whole);
+  const double pressed = whole.material + whole.signed_radius() * (alpha - angle);
+
+  Link middle;
+  middle.body = body;
+  middle.orientation = -whole.orientation;
+  middle.radius = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  middle.pinch_middle = true;
+  middle.material =
+      pressed - middle.signed_radius() * (alpha - world.angle[static_cast<std::size_t>(body)]);
+  Segment between;
+  between.alpha = alpha;
+  ++cable.changes;
+  cable.links.insert(cable.links.begin() + at(i + 1), {middle, whole});
+  cable.segments.insert(cable.segments.begin() + at(i + 1), {between, between});
+  for (std::size_t s : {i + 1, i + 2}) {
+    update_tangent(world, cable, s);
+    cable.segments[s].previous_tail = cable.segments[s].tail;
+    cable.segments[s].previous_head = cable.segments[s].head;
+  }
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Links and segments: geometry and transport, insertion, removal and merging.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Workspace;
+
+/// Centre of the circle that the cable touches at a link (m).
+Vec2 link_centre(const World& world, const Link& link);
+
+/// Angle (rad) of the body that carries the link; 0 for the world.
+inline double body_angle(const World& world, const Link& link) {
+  return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
+}
+
+/// Links inserted and removed so far, of all cables.
+inline int changes_of_cables(const World& world) {
+  int changes = 0;
+  for (const CableState& cable : world.cables) changes += cable.changes;
+  return changes;
+}
+
+/// First segment that exists: 1 in an open cable, 0 in a closed one.
+inline std::size_t first_segment(const CableState& cable) {
+  return cable.closed ? 0 : 1;
+}
+
+/// Index of the link before or after `link`, around a closed cable; -1 beyond an end.
+inline int previous_link(const CableState& cable, int link) {
+  if (link > 0) return link - 1;
+  return cable.closed ? static_cast<int>(cable.links.size()) - 1 : -1;
+}
+inline int next_link(const CableState& cable, int link) {
+  if (link + 1 < static_cast<int>(cable.links.size())) return link + 1;
+  return cable.closed ? 0 : -1;
+}
+
+/// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
+inline bool opposite(const Link& a, const Link& b) {
+  return a.orientation * b.orientation < 0;
+}
+
+/// Whether the segment between the two only fastens the cable's end to the rim of the body that it
+/// is wound on. It has no length and exerts nothing.
+inline bool wound_end(const Link& a, const Link& b) {
+  return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0);
+}
+
+/// Whether the span that ends at link `end` is held by `body` there, and cannot be hit by it:
+/// always so but for an end that is held at the body's rim.
+inline bool holds_span(const World& world, const CableState& cable, const Link& end, int body) {
+  if (end.body != body) return false;
+  const double margin = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  return end.orientation != 0 || end.offset.norm() < margin * (1.0 - 1e-9);
+}
+
+/// New tangents, directions, wraps and rest lengths for the bodies' present positions (thesis:
+/// UpdateSegments). Material stays where it is on every body.
+void update_segments(World& world, Workspace& work);
+
+/// Tangent, direction and length of segment i alone; its angle is kept continuous.
+void update_tangent(const World& world, CableState& cable, std::size_t segment);
+
+/// Wraps of all links and rest lengths of all segments of a cable whose tangents are up to date.
+void update_wraps_and_rest_lengths(const World& world, CableState& cable);
+
+/// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
+/// RemoveJoints).
+void remove_links(World& world, Workspace& work);
+
+/// Takes link i out of the cable. If its neighbours lie on one body they become one link.
+void remove_link(const World& world, CableState& cable, int link);
+
+/// Puts a rolling link on `body` into free segment i, between its tail and head links, and shares
+/// the segment's material so that both parts are stretched alike (thesis: AddJoints).
+void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
+                 int orientation);
+
+/// Splits link i, `arc` rad after its tail, by a middle link on `body`: i, middle, i + 2
+/// (thesis 4.2.2).
+void insert_pinch(const World& world, CableState& cable, std::size_t link, double arc, int body);
+
+}  // namespace pinchlab

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/detect/broad_phase.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// The skin as a share of the mean radius: pairs then last for some frames of ordinary motion, and
+/// are few more than needed.
+constexpr double skin_share = 0.2;
+
+/// What all bodies of a scene reach beyond their radii.
+struct Margin {
+  double widest = 0.0;  // m, half width of the widest cable
+  double fall = 0.0;    // m, by gravity in one step
+
+  Margin(const Scene& scene, const World& world) {
+    for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
+    fall = scene.gravity.norm() * world.step_length * world.step_length;
+  }
+};
+
+/// How far from its centre a body and the cables round it may reach from the last step to the next.
+double reach_of_body(const World& world, const Margin& margin, std::size_t b) {
+  const double radius = world.bodies[b].radius;
+  if (!can_move(world.bodies[b])) return radius + margin.widest;
+  const double speed = world.velocity[b].cwiseAbs().sum();
+  return 1.02 * radius + margin.widest + 2.0 * (speed * world.step_length + margin.fall);
+}
+
+bool holds(const Box& box, const Vec2& point, double reach) {
+  return point.x() - reach >= box.low.x() && point.x() + reach <= box.high.x() &&
+         point.y() - reach >= box.low.y() && point.y() + reach <= box.high.y();
+}
+
+bool overlap(const Box& a, const Box& b, int axis) {
+  return a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis];
+}
+
+/// Sweeps along the axis in which the scene is longer; the order is nearly that of the last time.
+void sort_bodies(BroadPhase& broad) {
+  const std::size_t count = broad.boxes.size();
+  if (broad.order.size() != count) {
+    broad.order.resize(count);
+    for (std::size_t b = 0; b < count; ++b) broad.order[b] = static_cast<int>(b);
+    Box all = broad.boxes[0];
+    for (const Box& box : broad.boxes) {
+      all.low = all.low.cwiseMin(box.low);
+      all.high = all.high.cwiseMax(box.high);
+    }
+    const Vec2 size = all.high - all.low;
+    broad.axis = size.x() >= size.y() ? 0 : 1;
+    std::sort(broad.order.begin(), broad.order.end(), [&broad](int a, int b) {
+      const double ka = broad.boxes[index(a)].low[broad.axis];
+      const double kb = broad.boxes[index(b)].low[broad.axis];
+      return ka != kb ? ka < kb : a < b;
+    });
+  }
+  for (std::size_t i = 1; i < count; ++i) {
+    const int body = broad.order[i];
+    const double key = broad.boxes[index(body)].low[broad.axis];
+    std::size_t j = i;
+    for (; j > 0; --j) {
+      const int other = broad.order[j - 1];
+      const double other_key = broad.boxes[index(other)].low[broad.axis];
+      if (other_key < key || (other_key == key && other < body)) break;
+      broad.order[j] = other;
+    }
+    broad.order[j] = body;
+  }
+  broad.key.resize(count);
+  broad.longest_box = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Box& box = broad.boxes[index(broad.order[i])];
+    broad.key[i] = box.low[broad.axis];
+    broad.longest_box = std::max(broad.longest_box, box.high[broad.axis] - box.low[broad.axis]);
+  }
+}
+
+void list_body_pairs(const World& world, BroadPhase& broad) {
+  broad.body_pairs.clear();
+  const int axis = broad.axis;
+  for (std::size_t i = 0; i < broad.order.size(); ++i) {
+    const int a = broad.order[i];
+    const Box& box = broad.boxes[index(a)];
+    for (std::size_t j = i + 1; j < broad.order.size() && broad.key[j] <= box.high[axis]; ++j) {
+      const int b = broad.order[j];
+      if (!overlap(box, broad.boxes[index(b)], 1 - axis)) continue;
+      if (at(world.bodies, a).kind == BodyKind::fixed &&
+          at(world.bodies, b).kind == BodyKind::fixed) {
+        continue;
+      }
+      broad.body_pairs.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::sort(
+      broad.body_pairs.begin(), broad.body_pairs.end(),
+      [](const BodyPair& p, const BodyPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
+}
+
+/// Calls visit(body) for the bodies whose boxes overlap with `box`.
+template <class Visit>
+void visit_overlapping(const BroadPhase& broad, const Box& box, Visit visit) {
+  const int axis = broad.axis;
+  const double least = box.low[axis] - broad.longest_box;
+  auto it = std::lower_bound(broad.key.begin(), broad.key.end(), least);
+  for (; it != broad.key.end() && *it <= box.high[axis]; ++it) {
+    const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];
+    const Box& other = at(broad.boxes, body);
+    if (overlap(box, other, axis) && overlap(box, other, 1 - axis)) visit(body);
+  }
+}
+
+void list_wall_pairs(const Scene& scene, BroadPhase& broad) {
+  broad.wall_pairs.clear();
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const Wall& wall = scene.walls[w];
+    visit_overlapping(broad, {wall.a.cwiseMin(wall.b), wall.a.cwiseMax(wall.b)}, [&](int body) {
+      const Box& box = at(broad.boxes, body);  // the circle round it is nearer to slanting walls
+      const Vec2 centre = 0.5 * (box.low + box.high);
+      const double reach = 0.5 * (box.high - box.low).norm();
+      if ((nearest_point(wall, centre) - centre).norm() > reach) return;
+      broad.wall_pairs.push_back({body, static_cast<int>(w)});
+    });
+  }
+  std::sort(broad.wall_pairs.begin(), broad.wall_pairs.end(),
+            [](const WallPair& p, const WallPair& q) {
+              return std::tie(p.body, p.wall) < std::tie(q.body, q.wall);
+            });
+}
+
+void list_span_pairs(const World& world, BroadPhase& broad) {
+  broad.span_pairs.clear();
+  broad.span_boxes.clear();
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      const Segment& segment = cable.segments[s];
+      Box box = span_box(segment);
+      box.low -= Vec2::Constant(broad.skin);
+      box.high += Vec2::Constant(broad.skin);
+      broad.span_boxes.push_back(box);
+      const Link& to = cable.links[s];
+      const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
+      visit_overlapping(broad, box, [&](int body) {
+        if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
+        broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
+      });
+    }
+  }
+  std::sort(broad.span_pairs.begin(), broad.span_pairs.end(),
+            [](const SpanPair& p, const SpanPair& q) {
+              return std::tie(p.cable, p.segment, p.body) < std::tie(q.cable, q.segment, q.body);
+            });
+}
+
+/// Whether all spans are where their boxes allow for. Where a span was a step ago was checked then.
+bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& broad) {
+  std::size_t box = 0;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    const std::size_t first = first_segment(cable);
+    if (sleeps(parts, c)) {
+      box += cable.segments.size() - first;
+      continue;
+    }
+    for (std::size_t s = first; s < cable.segments.size(); ++s, ++box) {
+      const Segment& segment = cable.segments[s];
+      if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
+          !holds(broad.span_boxes[box], segment.head, 0.0)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes) {
+  boxes.resize(world.bodies.size());
+  const Margin margin(scene, world);
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const Vec2 reach =
+        Vec2::Constant(reach_of_body(world, margin, b) + (can_move(world.bodies[b]) ? skin : 0.0));
+    boxes[b] = {world.position[b] - reach, world.position[b] + reach};
+  }
+}
+
+Box span_box(const Segment& segment) {
+  return {segment.tail.cwiseMin(segment.head)
+              .cwiseMin(segment.previous_tail)
+              .cwiseMin(segment.previous_head),
+          segment.tail.cwiseMax(segment.head)
+              .cwiseMax(segment.previous_tail)
+              .cwiseMax(segment.previous_head)};
+}
+
+void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
+  BroadPhase& broad = work.broad_phase;
+  const std::size_t count = world.bodies.size();
+  const Margin margin(scene, world);
+  bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
+  for (std::size_t b = 0; valid && b < count; ++b) {
+    valid = !can_move(world.bodies[b]) || is_still(work.parts, static_cast<int>(b)) ||
+            holds(broad.boxes[b], world.position[b], reach_of_body(world, margin, b));
+  }
+  if (valid) return;
+  broad.cables = world.cables.size();
+  broad.bodies_changed = true;
+  broad.body_pairs.clear();
+  broad.wall_pairs.clear();
+  if (count == 0) return;
+  double radii = 0.0;
+  for (const BodyProperties& body : world.bodies) radii += body.radius;
+  broad.skin = skin_share * radii / static_cast<double>(count);
+  update_boxes(scene, world, broad.skin, broad.boxes);
+  sort_bodies(broad);
+  list_body_pairs(world, broad);
+  list_wall_pairs(scene, broad);
+}
+
+void find_span_pairs(const World& world, Workspace& work) {
+  BroadPhase& broad = work.broad_phase;
+  const int changes = changes_of_cables(world);
+  if (!broad.bodies_changed && broad.changes == changes &&
+      (!work.spans_moved || spans_in_boxes(world, work.parts, broad))) {
+    return;
+  }
+  broad.bodies_changed = false;
+  broad.changes = changes;
+  list_span_pairs(world, broad);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/detect/pinch.h"
+
+#include <algorithm>
+#include <numbers>
+#include <tuple>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+double full_width(const World& world) {
+  double width = 0.0;
+  if (world.configuration.method != Method::cable) {
+    for (const CableState& cable : world.cables) width = std::max(width, 2.0 * cable.half_width);
+  }
+  return width;
+}
+
+/// How much nearer two things whose speeds add up to `speed` may come within the next step,
+/// generously.
+double reach(const Scene& scene, const World& world, double speed, double radius) {
+  const double h = world.step_length;
+  return 2.0 * h * (speed + scene.gravity.norm() * h) + 0.01 * radius;
+}
+
+double normal_speed(const World& world, const Contact& contact) {
+  Vec2 v = -world.velocity[static_cast<std::size_t>(contact.a)];
+  if (contact.b >= 0) v += world.velocity[static_cast<std::size_t>(contact.b)];
+  return contact.normal.dot(v);
+}
+
+/// Whether the bodies press what lies between them: they did in the last step, or will in the next.
+bool presses(const World& world, const Contact& contact, double gap) {
+  if (world.configuration.method == Method::pinch_no_contact) return contact.gap <= gap;
+  return contact.touching || contact.gap <= gap * (1.0 + 1e-12) ||
+         contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
+}
+
+/// The contact of two bodies, or nothing; `hint` is where it was.
+Contact* find_contact(World& world, int body, int other, int hint) {
+  const int a = std::min(body, other), b = std::max(body, other);
+  if (hint >= 0 && hint < static_cast<int>(world.contacts.size())) {
+    Contact& contact = world.contacts[static_cast<std::size_t>(hint)];
+    if (contact.a == a && contact.b == b) return &contact;
+  }
+  const auto it = std::lower_bound(
+      world.contacts.begin(), world.contacts.end(), std::pair(a, b),
+      [](const Contact& c, const std::pair<int, int>& p) { return std::pair(c.a, c.b) < p; });
+  return it != world.contacts.end() && it->a == a && it->b == b ? &*it : nullptr;
+}
+
+struct NewPinch {
+  int cable, link;
+  double arc;
+  int body;
+};
+
+/// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
+/// than the cable's width it would press the span against the link's body, so it must keep that
+/// distance already before it hits the span.
+bool over_adjacent_span(const World& world, const CableState& cable, std::size_t i, int other) {
+  const int after = next_link(cable, static_cast<int>(i));
+  for (const int s : {static_cast<int>(i), after}) {
+    const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
+    const Vec2 x = world.position[static_cast<std::size_t>(other)] - segment.tail;
+    const double along = segment.direction.dot(x);
+    const double side = cross(segment.direction, x) * cable.links[i].orientation;
+    if (!segment.pinched && along > 0.0 && along < segment.length && side < 0.0) return true;
+  }
+  return false;
+}
+
+/// Whether direction u from the body's centre surely misses the cable on link i, of less than half
+/// a turn: by the signs of sin(arc) and sin(wrap - arc), with the tolerance.
+bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  const int after = next_link(cable, static_cast<int>(i));
+  const Vec2& arrives = cable.segments[i].direction;
+  const Vec2& leaves = cable.segments[static_cast<std::size_t>(after)].direction;
+  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
+  const double after_tail = link.orientation * cross(arrives, e);
+  const double before_head = link.orientation * cross(e, leaves);
+  return after_tail < -arc_tolerance || before_head < -arc_tolerance;
+}
+
+/// The turns of link i that `contact` presses, apart from the end at which the other body is the
+/// cable's next or previous one (there the pinch is transitional or made already).
+void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_t i, int other,
+                     const Vec2& u, std::vector<NewPinch>& found) {
+  CableState& cable = world.cables[static_cast<std::size_t>(cable_index)];
+  const Link& link = cable.links[i];
+  const int before = previous_link(cable, static_cast<int>(i));
+  const int after = next_link(cable, static_cast<int>(i));
+  const auto is_other = [&](int neighbour) {
+    return neighbour >= 0 && cable.links[static_cast<std::size_t>(neighbour)].body == other &&
+           opposite(cable.links[static_cast<std::size_t>(neighbour)], link);
+  };
+  constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
+  const bool after_other = is_other(before), before_other = is_other(after);
+  const bool few = link.wrap < std::numbers::pi;  // less than half a turn: no other turn is near
+  if (few && ((after_other && cable.segments[i].pinched) ||
+              (before_other && cable.segments[static_cast<std::size_t>(after)].pinched))) {
+    return;  // the pinch is there
+  }
+  const double width = 2.0 * cable.half_width;
+  if (world.configuration.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
+    contact.target = std::max(contact.target, width);
+    contact.pinch_linked = true;
+  }
+  if (few && (after_other || before_other || off_arc(cable, i, u))) return;
+  const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
+  for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
+    const double arc = least + k * turn;
+    if (after_other && arc < near_end) continue;
+    if (before_other && link.wrap - arc < near_end) continue;
+    if (world.configuration.method == Method::pinch)
+      contact.target = std::max(contact.target, width);
+    contact.pinch_linked = true;
+    if (arc >= 0.0 && arc <= link.wrap && presses(world, contact, width)) {
+      found.push_back({cable_index, static_cast<int>(i), arc, other});
+    }
+  }
+}
+
+/// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
+/// closes by the second-order gap of a rolling step.
+void remove_open_pinches(World& world, const Parts& parts) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(parts, c)) continue;
+    CableState& cable = world.cables[c];
+    for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
+      const Link& link = cable.links[static_cast<std::size_t>(i)];
+      if (!link.pinch_middle) continue;
+      const int pressed = cable.links[static_cast<std::size_t>(previous_link(cable, i))].body;
+      const Contact* contact = find_contact(world, link.body, pressed, link.contact);
+      const double width = 2.0 * cable.half_width;
+      if (contact == nullptr ||
+          (!presses(world, *contact, width) && contact->gap > width * (1.0 + 5e-4))) {
+        remove_link(world, cable, i);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
+  double arc = link.orientation * (std::atan2(e.y(), e.x()) - cable.segments[i].alpha);
+  constexpr double turn = 2.0 * std::numbers::pi;
+  arc -= turn * std::floor((arc + arc_tolerance) / turn);
+  return arc;
+}
+
+void find_contacts(const Scene& scene, World& world, Workspace& work) {
+  bool& all_kept = work.contacts.contacts_kept;
+  std::vector<Contact>& old = work.contacts.old_contacts;
+  const BroadPhase& broad = work.broad_phase;
+  if (world.contacts.empty() && broad.body_pairs.empty() && broad.wall_pairs.empty()) {
+    all_kept = true;
+    old.clear();
+    return;
+  }
+  all_kept = !work.parts.list.empty() && !work.parts.any_moves;
+  if (all_kept) return;
+  std::swap(old, world.contacts);
+  world.contacts.clear();
+  std::size_t kept = 0;
+  const double width = full_width(world);
+  const auto less = [](const Contact& p, const Contact& q) {
+    return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
+  };
+  // Between bodies that are where they were, what was a contact is one.
+  const auto keep = [&](int a, int b, int wall) {
+    Contact wanted;
+    wanted.a = a;
+    wanted.b = b;
+    wanted.wall = wall;
+    const auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
+    if (it == old.end() || less(wanted, *it)) return;
+    world.contacts.push_back(*it);
+    ++kept;
+  };
+  for (const BodyPair& pair : broad.body_pairs) {
+    if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
+      keep(pair.a, pair.b, -1);
+      continue;
+    }
+    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
+    const Vec2 d = world.position[b] - world.position[a];
+    const double distance = d.norm();
+    const double radii = world.bodies[a].radius + world.bodies[b].radius;
+    const double least = std::min(world.bodies[a].radius, world.bodies[b].radius);
+    // Bodies that move together have no speed between them until one is stopped within the step.
+    const double speed = world.velocity[a].norm() + world.velocity[b].norm();
+    if (distance - radii > width + reach(scene, world, speed, least)) continue;
+    Contact contact;
+    contact.a = pair.a;
+    contact.b = pair.b;
+    contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(1.0, 0.0);
+    contact.gap = distance - radii;
+    world.contacts.push_back(contact);
+  }
+  for (const WallPair& pair : broad.wall_pairs) {
+    if (!can_move(at(world.bodies, pair.body))) continue;
+    if (is_still(work.parts, pair.body)) {
+      keep(pair.body, -1, pair.wall);
+      continue;
+    }
+    const auto b = static_cast<std::size_t>(pair.body);
+    const Vec2 d = nearest_point(at(scene.walls, pair.wall), world.position[b]) - world.position[b];
+    const double distance = d.norm(), radius = world.bodies[b].radius;
+    if (distance - radius > reach(scene, world, world.velocity[b].norm(), radius)) continue;
+    Contact contact;
+    contact.a = pair.body;
+    contact.wall = pair.wall;
+    contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(0.0, -1.0);
+    contact.gap = distance - radius;
+    world.contacts.push_back(contact);
+  }
+  if (!broad.wall_pairs.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
+  all_kept = kept == world.contacts.size() && kept == old.size();
+  auto previous = old.begin();
+  for (Contact& contact : world.contacts) {
+    while (previous != old.end() && less(*previous, contact)) ++previous;
+    if (previous != old.end() && !less(contact, *previous)) {
+      contact.touching = previous->touching;
+      contact.slip = previous->slip;
+      contact.normal_force = previous->normal_force;
+      contact.tangent_force = previous->tangent_force;
+    }
+  }
+}
+
+void configure_pinches(World& world, Workspace& work) {
+  if (world.configuration.method == Method::cable) return;
+  if (world.contacts.empty() && work.contacts.old_contacts.empty()) return;
+  ContactScratch& scratch = work.contacts;
+  scratch.pinches_kept = scratch.contacts_kept && !work.spans_moved &&
+                         scratch.configured_changes == changes_of_cables(world);
+  if (scratch.pinches_kept) return;
+  remove_open_pinches(world, work.parts);
+
+  // Only links of bodies that have contacts matter.
+  auto& contacts_of_body = scratch.contacts_of_body;
+  contacts_of_body.begin.assign(world.bodies.size() + 1, 0);
+  for (const Contact& c : world.contacts) {
+    if (c.b < 0) continue;
+    ++contacts_of_body.begin[static_cast<std::size_t>(c.a) + 1];
+    ++contacts_of_body.begin[static_cast<std::size_t>(c.b) + 1];
+  }
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    contacts_of_body.begin[b + 1] += contacts_of_body.begin[b];
+  }
+  contacts_of_body.items.resize(static_cast<std::size_t>(contacts_of_body.begin.back()));
+  auto& next = scratch.fill;
+  next = contacts_of_body.begin;
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const Contact& c = world.contacts[i];
+    if (c.b < 0) continue;
+    for (const int body : {c.a, c.b}) {
+      auto& position = next[static_cast<std::size_t>(body)];
+      contacts_of_body.items[static_cast<std::size_t>(position++)] = static_cast<int>(i);
+    }
+  }
+  std::vector<NewPinch> found;  // allocates only when a pinch is made
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    for (std::size_t i = 0; i < world.cables[c].links.size(); ++i) {
+      const Link& link = world.cables[c].links[i];
+      if (link.orientation == 0 || link.pinch_middle) continue;
+      const auto body = static_cast<std::size_t>(link.body);
+      const int after = next_link(world.cables[c], static_cast<int>(i));
+      const bool moved = world.cables[c].segments[i].moved ||
+                         world.cables[c].segments[static_cast<std::size_t>(after)].moved;
+      for (int k = contacts_of_body.begin[body]; k < contacts_of_body.begin[body + 1]; ++k) {
+        Contact& contact = world.contacts[static_cast<std::size_t>(
+            contacts_of_body.items[static_cast<std::size_t>(k)])];
+        const bool still = is_still(work.parts, contact.a) && is_still(work.parts, contact.b);
+        if (still && !moved) continue;
+        const bool is_a = contact.a == link.body;
+        find_pinches_on(world, contact, static_cast<int>(c), i, is_a ? contact.b : contact.a,
+                        is_a ? contact.normal : Vec2(-contact.normal), found);
+      }
+    }
+  }
+  // Last first, so that indices and arcs of those before stay true.
+  std::sort(found.begin(), found.end(), [](const NewPinch& p, const NewPinch& q) {
+    return std::tie(p.cable, p.link, p.arc, p.body) > std::tie(q.cable, q.link, q.arc, q.body);
+  });
+  for (const NewPinch& pinch : found) {
+    insert_pinch(world, world.cables[static_cast<std::size_t>(pinch.cable)],
+                 static_cast<std::size_t>(pinch.link), pinch.arc, pinch.body);
+  }
+  scratch.configured_changes = changes_of_cables(world);
+}
+
+void assign_contacts(World& world, const Workspace& work) {
+  if (world.configuration.method == Method::cable) return;
+  if (world.contacts.empty() && work.contacts.old_contacts.empty()) return;
+  if (work.contacts.pinches_kept) return;
+  const Parts& parts = work.parts;
+  for (const Part& part : parts.list) {
+    if (part.kept) continue;
+    for (const int i : contacts_of(parts, part)) {
+      world.contacts[static_cast<std::size_t>(i)].pinch_points = 0;
+    }
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (parts.list[static_cast<std::size_t>(parts.of_cable[c])].kept) continue;
+    CableState& cable = world.cables[c];
+    const double width = 2.0 * cable.half_width;
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      Link& to = cable.links[s];
+      const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
+      const Link& from = cable.links[tail];
+      Segment& segment = cable.segments[s];
+      const int hint = to.pinch_middle ? to.contact : segment.contact;
+      segment.contact = to.contact = -1;
+      if (!opposite(from, to) || from.pinch_middle) continue;
+      Contact* contact = find_contact(world, from.body, to.body, hint);
+      if (contact == nullptr) continue;
+      if (world.configuration.method == Method::pinch)
+        contact->target = std::max(contact->target, width);
+      contact->pinch_linked = true;
+      const int index = static_cast<int>(contact - world.contacts.data());
+      ++contact->pinch_points;
+      if (to.pinch_middle) {
+        to.contact = index;
+      } else {
+        segment.contact = index;
+      }
+    }
+  }
+}
+
+}  // namespace pinchlab

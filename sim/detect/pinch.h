@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Contacts of bodies, and which of them press a cable (thesis: PinchNarrowPhase, PinchConfirm,
+// ConfigurePinchJoints).
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Workspace;
+
+/// Contacts of all pairs and walls that can touch within the next step; states of old ones are
+/// kept.
+void find_contacts(const Scene& scene, World& world, Workspace& work);
+
+/// Which contacts press a cable, and the gap that they therefore keep. Puts middle links into new
+/// non-transitional pinches and takes them out of those that have opened.
+void configure_pinches(World& world, Workspace& work);
+
+/// Tells each pinch of the parts that are awake its contact, and each contact how many cables it
+/// presses and how far apart it must keep its bodies.
+void assign_contacts(World& world, const Workspace& work);
+
+/// Arc (rad after the tail) at which the direction `u` from the body's centre meets the cable
+/// stored on link i, in [-tolerance, 2 pi - tolerance); the same plus whole turns up to link.wrap
+/// also do.
+double arc_of_direction(const CableState& cable, std::size_t link, const Vec2& u);
+constexpr double arc_tolerance = 0.02;  // rad
+
+}  // namespace pinchlab

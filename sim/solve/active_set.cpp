@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/active_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/at.h"
+#include "sim/solve/friction.h"
+#include "sim/solve/ordering.h"
+#include "sim/solve/solve_scratch.h"
+#include "sim/solve/system.h"
+
+namespace pinchlab {
+
+namespace {
+
+bool is_friction(const Row& row) {
+  return row.friction >= 0;
+}
+
+/// Friction rows bear force only where their contact does.
+void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
+  for (Friction& friction : s.frictions) {
+    if (friction.repeats >= 0) continue;
+    Row& row = at(s.rows, friction.row);
+    if (friction.normal >= 0) row.on = at(s.rows, friction.normal).on;
+    bool slack = false;
+    if (friction.run >= 0) {
+      const Run& run = at(capstan.runs, friction.run);
+      slack = !at(s.rows, run.row_in).on && !at(s.rows, run.row_out).on;
+    }
+    friction.bound = bound_in_force(friction, slack);
+    if (friction.bound == 0.0 || friction.dropped) row.on = false;
+    if (friction.bound == infinity) row.slip = Slip::stick;
+  }
+}
+
+struct Tolerances {
+  double speed;    // m/s
+  double impulse;  // N s
+};
+
+/// Round-off of the quantities that the checks compare: of speeds, and of positions and lengths,
+/// which the rows' biases divide by the step. The errors of a cable's segments add up along it.
+Tolerances tolerances(const PartSystem& s, const SolveScratch& scratch) {
+  double speed = 0.0, impulse = 0.0, stiffest = 0.0;
+  for (std::size_t b = 0; b < s.velocity.size(); ++b) {
+    const Eigen::Vector3d &v = s.velocity[b], &f = s.free_velocity[b];
+    speed = std::max({speed, std::abs(v.x()), std::abs(v.y()), std::abs(f.x()), std::abs(f.y())});
+  }
+  for (const Row& row : s.rows) {
+    impulse = std::max(impulse, std::abs(row.impulse));
+    stiffest = std::max(stiffest, row.diagonal);
+    if (row.on) speed = std::max(speed, std::abs(row.bias));
+  }
+  // What takes many solves is round-off more likely than not: it is given more room with each.
+  constexpr int patience = 4, most_doublings = 10;
+  const int doublings = std::clamp(scratch.solves - patience, 0, most_doublings);
+  const double tolerance =
+      std::ldexp(1e-12 * speed + 1e-15 * s.extent / scratch.step_length, doublings);
+  return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
+}
+
+void check_friction(const PartSystem& s, const Row& row, int number, double sliding,
+                    const Tolerances& tolerance, std::vector<Flip>& flips) {
+  const Friction& friction = at(s.frictions, row.friction);
+  if (!row.on || friction.frozen || friction.bound == infinity) return;
+  const double bound = friction.bound * at(s.rows, friction.normal).impulse;
+  if (row.slip == Slip::stick) {
+    if (std::abs(row.impulse) <= bound + tolerance.impulse) return;
+    flips.push_back({number, false, true, slip_of(row.impulse, bound)});
+  } else if (sliding * static_cast<int>(row.slip) < -tolerance.speed && bound > tolerance.impulse) {
+    flips.push_back({number, false, true, Slip::stick});
+  }
+}
+
+/// Which states the solution contradicts.
+void check(const PartSystem& s, SolveScratch& set) {
+  set.flips.clear();
+  const Tolerances tolerance = tolerances(s, set);
+  const bool slides = !set.capstan.runs.empty();
+  if (slides) check_runs(s, set, tolerance.speed, tolerance.impulse);
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    const int number = static_cast<int>(r);
+    if (is_friction(row)) {
+      const double sliding = row.speed + run_speed(s, set.capstan, row);
+      check_friction(s, row, number, sliding, tolerance, set.flips);
+    } else if (row.diagonal > 0.0 && (!slides || set.capstan.group_of_row[r] < 0)) {
+      if (row.on && row.impulse < -tolerance.impulse) {
+        set.flips.push_back({number, false, false, Slip::stick});
+      } else if (!row.on && row.speed < -tolerance.speed) {
+        set.flips.push_back({number, false, true, Slip::stick});
+      }
+    }
+  }
+}
+
+bool is_unilateral(const Row& row) {
+  return row.kind == RowKind::segment || row.kind == RowKind::normal;
+}
+
+/// Whether the solution's negative impulses are round-off: whether, with zero in their place, every
+/// row still holds to within the tolerance. (Of a cable that hardly bears tension the impulses are
+/// uncertain by the tolerance times the matrix' condition, which grows with the square of its
+/// segments.) Leaves zeros in their place if so.
+bool clear_rounding(PartSystem& s, const SolveScratch& set) {
+  if (!set.symmetric) return false;
+  for (const Flip& flip : set.flips) {
+    if (flip.is_run || flip.on) return false;
+  }
+  const double tolerance = tolerances(s, set).speed;
+  for (Row& row : s.rows) {
+    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
+  }
+  apply_impulses(s);
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    row.speed = row_speed(s, r) + row.compliance * row.impulse;
+    if (row.diagonal == 0.0 || (!row.on && !is_unilateral(row))) continue;
+    if (row.speed < -tolerance || (row.on && row.speed > tolerance)) return false;
+  }
+  return true;
+}
+
+void apply(PartSystem& s, SolveScratch& set, const Flip& flip) {
+  if (flip.is_run) {
+    Run& run = at(set.capstan.runs, flip.row);
+    run.slip = flip.slip;
+    run.flipped = set.solves;
+    return;
+  }
+  Row& row = at(s.rows, flip.row);
+  row.flipped = set.solves;
+  if (is_friction(row)) {
+    row.slip = flip.slip;
+  } else {
+    row.on = flip.on;
+  }
+}
+
+/// One flip, where flipping everything makes no progress. With friction every fixed rule of choice
+/// has its cycles, so the choice hops about: by a fixed multiplicative sequence, the same in every
+/// run.
+const Flip& choose_flip(const SolveScratch& set, int solve) {
+  const auto hop = static_cast<std::uint32_t>(solve) * 2654435761u;
+  return set.flips[(hop >> 8) % set.flips.size()];
+}
+
+/// Whether all that the solution asks for is that more rows bear a force.
+bool only_grows(const SolveScratch& set) {
+  return std::all_of(set.flips.begin(), set.flips.end(),
+                     [](const Flip& flip) { return !flip.is_run && flip.on; });
+}
+
+/// Makes the segments taut that lie up to `reach` before or after one that is to be made taut. A
+/// slack cable that is pulled tight grows taut by one segment a solve from where it is pulled; with
+/// a reach that doubles it takes the logarithm of that, and those that are too many slacken again.
+void spread_tautness(PartSystem& s, const SolveScratch& set, int reach) {
+  for (const Flip& flip : set.flips) {
+    const Row& pulled = at(s.rows, flip.row);
+    if (pulled.kind != RowKind::segment) continue;
+    const int last = std::min(flip.row + reach, static_cast<int>(s.rows.size()) - 1);
+    for (int r = std::max(flip.row - reach, 0); r <= last; ++r) {
+      Row& row = at(s.rows, r);
+      if (row.kind != RowKind::segment || row.index != pulled.index || row.on) continue;
+      row.on = row.diagonal > 0.0;
+      row.flipped = set.solves;
+    }
+  }
+}
+
+/// Friction of bare surfaces that has changed in this step is left out of it: sticking may
+/// contradict what cables and contacts ask of the same bodies, but frictionless they can always be
+/// met.
+void drop_friction(PartSystem& s) {
+  for (Friction& friction : s.frictions) {
+    const bool bare = at(s.rows, friction.row).kind == RowKind::tangent;
+    if (bare && friction.frozen) friction.dropped = true;
+  }
+}
+
+/// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
+/// makes energy nor moves material; only the bound on its force is exceeded, for one step.
+void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
+  for (Friction& friction : s.frictions) {
+    Row& row = at(s.rows, friction.row);
+    if (row.flipped == 0) continue;
+    row.slip = Slip::stick;
+    friction.frozen = true;
+  }
+  for (Run& run : capstan.runs) {
+    if (run.frictionless || run.flipped == 0) continue;
+    run.slip = Slip::stick;
+    run.frozen = true;
+  }
+}
+
+/// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
+/// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy
+/// comes in.
+void sweep(PartSystem& s, CapstanScratch& capstan) {
+  for (Row& row : s.rows) {
+    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
+  }
+  for (Run& run : capstan.runs) run.speed = 0.0;
+  apply_impulses(s);
+  constexpr int sweeps = 200;
+  for (int k = 0; k < sweeps; ++k) {
+    for (std::size_t r = 0; r < s.rows.size(); ++r) {
+      Row& row = s.rows[r];
+      if (row.diagonal == 0.0) continue;
+      double least = 0.0, most = infinity;
+      if (is_friction(row)) {
+        const Friction& friction = at(s.frictions, row.friction);
+        const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
+        most = friction.dropped ? 0.0 : most_friction(friction.bound, force);
+        least = -most;
+      }
+      const double before = row.impulse;
+      const double w = row_speed(s, r) + row.compliance * before;
+      row.impulse = std::clamp(before - w / (row.diagonal + row.compliance), least, most);
+      push(s, r, row.impulse - before);
+    }
+  }
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    row.speed = row_speed(s, r);
+    if (!is_friction(row)) row.on = row.impulse > 0.0;
+  }
+}
+
+/// Flips states until the solution contradicts none; whether it came to that.
+bool settle(PartSystem& s, SolveScratch& set) {
+  // All contradicted states flip while that makes progress, then one at a time.
+  constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
+  std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
+  int left = patience;
+  int growing = 0, reached = 0;  // solves in succession that ask for more force only, and before
+  bool spread = false;
+  for (int solves = 1; solves <= most_solves; ++solves) {
+    if (solves == before_freezing) {
+      freeze_friction(s, set.capstan);
+      set.froze = true;
+    }
+    if (solves == before_dropping) drop_friction(s);
+    bound_friction(s, set.capstan);
+    solve_for_states(s, set);
+    set.solves = solves;
+    check(s, set);
+    if (set.flips.empty() || clear_rounding(s, set)) return true;
+    growing = only_grows(set) ? growing + 1 : 0;
+    if (growing > patience && !spread) {
+      spread_tautness(s, set, 1 << std::min(growing - patience, 20));
+    } else if (growing == 0 && reached > patience) {
+      spread = true;
+    }
+    reached = growing;
+    const bool progress = set.flips.size() < fewest;
+    left = progress ? patience : left - 1;
+    fewest = std::min(fewest, set.flips.size());
+    if (left > 0) {
+      for (const Flip& flip : set.flips) apply(s, set, flip);
+    } else {
+      apply(s, set, choose_flip(set, solves));
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
+                  SolveScratch& set) {
+  set.solves = 0;
+  set.froze = false;
+  s.velocity = s.free_velocity;
+  set.capstan.runs.clear();
+  if (s.rows.empty()) return true;
+  order_rows(s, set.ordering);
+  find_runs(world, parts, part, s, set);
+  if (!settle(s, set)) sweep(s, set.capstan);
+  for (Row& row : s.rows) {
+    if (!is_friction(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
+  }
+  return !set.froze;
+}
+
+}  // namespace pinchlab

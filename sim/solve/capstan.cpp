@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/capstan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/parts.h"
+#include "sim/solve/solve_scratch.h"
+
+namespace pinchlab {
+
+namespace {
+
+int sign(Slip slip) {
+  return static_cast<int>(slip);
+}
+
+void add_to(std::vector<Term>& expression, int unknown, double coefficient) {
+  if (unknown < 0 || coefficient == 0.0) return;
+  for (Term& term : expression) {
+    if (term.index == unknown) {
+      term.coefficient += coefficient;
+      return;
+    }
+  }
+  expression.push_back({unknown, coefficient});
+}
+
+/// Tension after a sliding passage from that before it, or (upstream) the other way:
+///     arc: T_after = factor^s T_before;   pinch: T_after = T_before + s friction N - tau,
+/// s = +1 where the material slides forward, tau the middle body's share.
+void pass(const SolveScratch& set, const Passage& passage, int s, bool upstream,
+          std::vector<Term>& expression) {
+  if (passage.factor != 1.0) {
+    const double factor = (s > 0) != upstream ? passage.factor : 1.0 / passage.factor;
+    for (Term& term : expression) term.coefficient *= factor;
+  }
+  const double way = upstream ? -1.0 : 1.0;
+  if (passage.normal >= 0) {
+    add_to(expression, set.unknown_of_row[index(passage.normal)], way * s * passage.friction);
+  }
+  if (passage.middle >= 0) {
+    for (int k = set.impulse_begin[index(passage.middle)];
+         k < set.impulse_end[index(passage.middle)]; ++k) {
+      const Term& term = set.impulse_terms[index(k)];
+      add_to(expression, term.index, -way * term.coefficient);
+    }
+  }
+}
+
+void pass_run(const SolveScratch& set, const Run& run, bool upstream,
+              std::vector<Term>& expression) {
+  const int count = run.passages_end - run.passages_begin;
+  for (int k = 0; k < count; ++k) {
+    const int i = upstream ? run.passages_end - 1 - k : run.passages_begin + k;
+    pass(set, at(set.capstan.passages, i), sign(run.slip), upstream, expression);
+  }
+}
+
+void store(SolveScratch& set, int row, const std::vector<Term>& expression) {
+  set.impulse_begin[index(row)] = static_cast<int>(set.impulse_terms.size());
+  set.impulse_terms.insert(set.impulse_terms.end(), expression.begin(), expression.end());
+  set.impulse_end[index(row)] = static_cast<int>(set.impulse_terms.size());
+}
+
+/// The tension after the run if it slid in direction `way` everywhere, for the impulses just
+/// solved.
+double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way) {
+  const auto impulse = [&system](int row) { return row >= 0 ? at(system.rows, row).impulse : 0.0; };
+  double t = impulse(run.row_in);
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const Passage& p = at(s.passages, k);
+    t = tension_after(p, way, t, impulse(p.normal), impulse(p.middle));
+  }
+  return t;
+}
+
+Run make_run(const World& world, int cable, int first, int last) {
+  const Link& link = at(at(world.cables, cable).links, first);
+  const double mu = at(world.bodies, link.body).cable_friction;
+  Run run;
+  run.cable = cable;
+  run.first_link = first;
+  run.last_link = last;
+  run.frictionless = mu == 0.0;
+  run.slip = run.frictionless ? Slip::forward : mu == infinity ? Slip::stick : link.slip;
+  return run;
+}
+
+}  // namespace
+
+bool slides_somewhere(const World& world, const CableState& cable) {
+  return std::any_of(cable.links.begin(), cable.links.end(), [&world](const Link& link) {
+    return link.orientation != 0 && at(world.bodies, link.body).cable_friction < infinity;
+  });
+}
+
+void find_runs(const World& world, const Parts& parts, const Part& part, PartSystem& system,
+               SolveScratch& scratch) {
+  CapstanScratch& s = scratch.capstan;
+  const bool link_by_link = world.configuration.pinch_rows == PinchRows::three &&
+                            world.configuration.solver == Solver::direct;
+  s.runs.clear();
+  s.passages.clear();
+  s.segments.clear();
+  s.run_before.clear();
+  s.cable_begin.assign(1, 0);
+  if (!part.may_slide) return;
+  const std::span<const int> cables = cables_of(parts, part);
+  for (std::size_t place = 0; place < cables.size(); ++place) {
+    const int c = cables[place];
+    const CableState& cable = at(world.cables, c);
+    if (!slides_somewhere(world, cable)) continue;
+    const int* row_of_segment = system.row_of_segment.data() + system.segment_begin[place];
+    const auto row_of = [row_of_segment](int segment) { return row_of_segment[segment]; };
+    const int count = static_cast<int>(cable.links.size());
+    // Start a closed cable outside of any pinch, an open one at the first segment that bears
+    // tension.
+    int start = cable.closed ? 0 : 1;
+    while (cable.closed && (cable.links[index(start)].pinch_middle ||
+                            cable.links[index(previous_link(cable, start))].pinch_middle)) {
+      ++start;
+    }
+    if (row_of(start) < 0) ++start;
+    int run_before = -1;
+    const std::size_t first_of_cable = s.segments.size();
+    for (int segment = start, seen = 0; seen < count; ++seen) {
+      s.segments.push_back(row_of(segment));
+      s.run_before.push_back(run_before);
+      const int first = segment;
+      int last = first;
+      if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
+      while (!link_by_link && cable.links[index(next_link(cable, last))].pinch_middle) {
+        last = next_link(cable, next_link(cable, last));
+        seen += 2;
+      }
+      segment = next_link(cable, last);
+      if (row_of(segment) < 0) break;  // wound up here: the end is fast
+      Run run = make_run(world, c, first, last);
+      run.passages_begin = static_cast<int>(s.passages.size());
+      if (at(world.bodies, at(cable.links, first).body).cable_friction < infinity) {
+        append_passages(world, system, scratch, c, first, last, row_of_segment,
+                        static_cast<int>(s.runs.size()), s.passages);
+      }
+      run.passages_end = static_cast<int>(s.passages.size());
+      run.row_in = row_of(first);
+      run.row_out = row_of(segment);
+      run_before = static_cast<int>(s.runs.size());
+      s.runs.push_back(run);
+    }
+    if (cable.closed) s.run_before[first_of_cable] = run_before;
+    s.cable_begin.push_back(static_cast<int>(s.segments.size()));
+  }
+}
+
+namespace {
+
+void part_slack_segments(const PartSystem& system, SolveScratch& scratch, int begin, int count,
+                         int start) {
+  CapstanScratch& s = scratch.capstan;
+  bool slack_before = false;
+  int oldest = -1;
+  for (int k = 0; k < count; ++k) {
+    const int position = begin + (start + k) % count;
+    const int number = s.run_before[index(position)];
+    if (k > 0) {
+      Run& run = s.runs[index(number)];
+      if (run.slip == Slip::stick) {
+        slack_before = false;
+        oldest = -1;
+      } else if (!run.frictionless && (oldest < 0 || run.flipped < s.runs[index(oldest)].flipped)) {
+        oldest = number;
+      }
+    }
+    if (at(system.rows, s.segments[index(position)]).on) continue;
+    if (slack_before && oldest >= 0) {
+      s.runs[index(oldest)].slip = Slip::stick;
+      s.runs[index(oldest)].flipped = scratch.solves + 1;
+    }
+    slack_before = true;
+    oldest = -1;
+  }
+}
+
+}  // namespace
+
+void make_groups(const PartSystem& system, SolveScratch& scratch) {
+  CapstanScratch& s = scratch.capstan;
+  s.groups.clear();
+  s.members.clear();
+  s.member_runs.clear();
+  s.group_of_row.assign(system.rows.size(), -1);
+  for (std::size_t c = 0; c + 1 < s.cable_begin.size(); ++c) {
+    const int begin = s.cable_begin[c], count = s.cable_begin[c + 1] - begin;
+    // Start where something sticks; a closed cable that slides everywhere is cut at its first run.
+    int start = 0;
+    for (int k = 0; k < count; ++k) {
+      const int run = s.run_before[index(begin + k)];
+      if (run < 0 || s.runs[index(run)].slip == Slip::stick) {
+        start = k;
+        break;
+      }
+    }
+    part_slack_segments(system, scratch, begin, count, start);
+    for (int k = 0; k < count; ++k) {
+      const int position = begin + (start + k) % count;
+      const int row = s.segments[index(position)], run = s.run_before[index(position)];
+      const bool slack = !at(system.rows, row).on;
+      const bool sticks = k == 0 || s.runs[index(run)].slip == Slip::stick;
+      // A second slack segment ends the group: what lies between two slack ones bears no tension.
+      if (sticks || (slack && s.groups.back().slack >= 0)) {
+        s.groups.push_back({});
+        s.groups.back().begin = static_cast<int>(s.members.size());
+      }
+      Group& group = s.groups.back();
+      const int member = static_cast<int>(s.members.size());
+      if (slack) group.slack = member;
+      s.members.push_back(row);
+      s.member_runs.push_back(member == group.begin ? -1 : run);
+      s.group_of_row[index(row)] = static_cast<int>(s.groups.size()) - 1;
+      group.end = member + 1;
+    }
+  }
+}
+
+void express_impulses(SolveScratch& set) {
+  CapstanScratch& s = set.capstan;
+  for (const Group& group : s.groups) {
+    // From the slack member, where tension is zero, or from the first, whose tension is the
+    // unknown.
+    const int base = group.slack >= 0 ? group.slack : group.begin;
+    std::vector<Term>& t = s.expression;
+    t.clear();
+    if (group.slack < 0) add_to(t, set.unknown_of_row[index(s.members[index(base)])], 1.0);
+    store(set, s.members[index(base)], t);
+    for (int m = base + 1; m < group.end; ++m) {
+      pass_run(set, s.runs[index(s.member_runs[index(m)])], false, t);
+      store(set, s.members[index(m)], t);
+    }
+    t.clear();
+    for (int m = base; m > group.begin; --m) {
+      pass_run(set, s.runs[index(s.member_runs[index(m)])], true, t);
+      store(set, s.members[index(m - 1)], t);
+    }
+  }
+}
+
+// With w the rows' speeds without sliding and sigma the sliding speeds, a taut segment needs
+// w = sigma_head - sigma_tail and a middle body that sticks needs w = -sigma of its run. Summing
+// the rows from one sticking place to the next (with the middle rows at both ends) cancels every
+// sigma.
+void add_group_equations(PartSystem& system, SolveScratch& set) {
+  CapstanScratch& s = set.capstan;
+  s.slack_terms.clear();
+  for (Group& group : s.groups) {
+    s.sums.clear();
+    s.sums_begin.assign(1, 0);
+    s.borders.clear();
+    int slack_sum = -1;
+    for (int m = group.begin; m < group.end; ++m) {
+      if (s.member_runs[index(m)] >= 0) {
+        const Run& run = s.runs[index(s.member_runs[index(m)])];
+        for (int k = run.passages_begin; k < run.passages_end; ++k) {
+          const int middle = s.passages[index(k)].middle;
+          if (middle < 0 || set.unknown_of_row[index(middle)] < 0) continue;
+          at(system.frictions, at(system.rows, middle).friction).in_group_equation = true;
+          s.sums.push_back({middle, 1.0});
+          s.borders.push_back(set.unknown_of_row[index(middle)]);
+          s.sums_begin.push_back(static_cast<int>(s.sums.size()));
+          s.sums.push_back({middle, -1.0});
+        }
+      }
+      if (m == group.slack) slack_sum = static_cast<int>(s.borders.size());
+      s.sums.push_back({s.members[index(m)], 1.0});
+    }
+    s.sums_begin.push_back(static_cast<int>(s.sums.size()));
+
+    const int base = slack_sum >= 0 ? slack_sum : 0;
+    const int base_unknown = set.unknown_of_row[index(s.members[index(group.begin)])];
+    for (int j = 0; j + 1 < static_cast<int>(s.sums_begin.size()); ++j) {
+      const int unknown = j == base ? base_unknown : s.borders[index(j < base ? j : j - 1)];
+      const double way = j > base ? -1.0 : 1.0;
+      const bool slack = j == slack_sum;
+      if (slack) group.slack_begin = static_cast<int>(s.slack_terms.size());
+      for (int k = s.sums_begin[index(j)]; k < s.sums_begin[index(j + 1)]; ++k) {
+        const Term& term = s.sums[index(k)];
+        if (slack) {
+          s.slack_terms.push_back(term);
+        } else if (unknown >= 0) {
+          set.equation_terms.push_back({unknown, term.index, way * term.coefficient});
+        }
+      }
+      if (slack) group.slack_end = static_cast<int>(s.slack_terms.size());
+    }
+  }
+}
+
+void slip_speeds(const PartSystem& system, CapstanScratch& s) {
+  const std::vector<Row>& rows = system.rows;
+  for (Run& run : s.runs) run.speed = 0.0;
+  for (const Group& group : s.groups) {
+    double spare = 0.0, short_of = 0.0, total = 0.0;
+    bool tension = false;
+    for (int m = group.begin; m < group.end; ++m) {
+      const Row& row = rows[index(s.members[index(m)])];
+      total += row.speed;
+      (row.speed > 0.0 ? spare : short_of) += std::abs(row.speed);
+      tension = tension || row.impulse > 0.0;
+    }
+    // A group without tension moves material only to segments that would be taut, from those that
+    // have some to spare, in proportion.
+    const bool share = group.slack >= 0 && !tension;
+    if (share && short_of == 0.0) continue;
+    double sum = 0.0;
+    for (int m = group.begin; m < group.end; ++m) {
+      if (s.member_runs[index(m)] >= 0) s.runs[index(s.member_runs[index(m)])].speed = sum;
+      const double w = rows[index(s.members[index(m)])].speed;
+      double left_over = 0.0;
+      if (share) {
+        left_over = spare > 0.0 ? std::max(w, 0.0) * total / spare : 0.0;
+      } else if (m == group.slack) {
+        left_over = total;
+      }
+      sum += w - left_over;
+    }
+  }
+}
+
+void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolerance,
+                double impulse_tolerance) {
+  const std::vector<Row>& rows = system.rows;
+  CapstanScratch& s = set.capstan;
+  slip_speeds(system, s);
+  for (const Group& group : s.groups) {
+    if (group.slack >= 0) {
+      double w = 0.0;
+      for (int k = group.slack_begin; k < group.slack_end; ++k) {
+        w += s.slack_terms[index(k)].coefficient * rows[index(s.slack_terms[index(k)].index)].speed;
+      }
+      const int row = s.members[index(group.slack)];
+      if (w < -speed_tolerance && rows[index(row)].diagonal > 0.0) {
+        set.flips.push_back({row, false, true, Slip::stick});
+      }
+    }
+    // The member that would be pushed hardest goes slack.
+    int worst = -1;
+    double least = -impulse_tolerance;
+    for (int m = group.begin; m < group.end; ++m) {
+      const double impulse = rows[index(s.members[index(m)])].impulse;
+      if (impulse < least) {
+        least = impulse;
+        worst = s.members[index(m)];
+      }
+    }
+    if (worst >= 0) set.flips.push_back({worst, false, false, Slip::stick});
+  }
+  for (std::size_t i = 0; i < s.runs.size(); ++i) {
+    const Run& run = s.runs[i];
+    if (run.frictionless || run.frozen || run.passages_begin == run.passages_end) continue;
+    const int number = static_cast<int>(i);
+    const double out = rows[index(run.row_out)].impulse;
+    if (run.slip != Slip::stick) {
+      const bool bears =
+          out > impulse_tolerance || rows[index(run.row_in)].impulse > impulse_tolerance;
+      const bool against = sign(run.slip) * run.speed < -speed_tolerance;
+      if (bears && against) set.flips.push_back({number, true, true, Slip::stick});
+      continue;
+    }
+    if (out > sliding_limit(system, s, run, 1) + impulse_tolerance) {
+      set.flips.push_back({number, true, true, Slip::forward});
+    } else if (out < sliding_limit(system, s, run, -1) - impulse_tolerance) {
+      set.flips.push_back({number, true, true, Slip::backward});
+    }
+  }
+}
+
+}  // namespace pinchlab

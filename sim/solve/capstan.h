@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Sliding with friction over bodies: the capstan law, with the friction of pinches on the way.
+// Nothing here runs for cables all of whose bodies have infinite friction.
+
+#include <vector>
+
+#include "sim/contact.h"
+#include "sim/solve/friction.h"
+#include "sim/solve/terms.h"
+
+namespace pinchlab {
+
+struct Part;
+struct Parts;
+struct SolveScratch;
+struct World;
+struct CableState;
+
+/// All links of a cable on one body in succession: one link, or the parts into which pinches divide
+/// it. Material slides over the body at one speed everywhere in the run. (The direct solver with
+/// three rows a pinch has a run for each link; the segments between them make the speeds equal.)
+struct Run {
+  int cable = 0, first_link = 0, last_link = 0;
+  int row_in = -1, row_out = -1;  // segment rows before and after
+  bool frictionless = false;      // always slides; the direction does not matter
+  Slip slip = Slip::stick;
+  double speed = 0.0;   // m/s, of the material over the body, by slip_speeds
+  int flipped = 0;      // solve of this step at which `slip` last changed
+  bool frozen = false;  // sticks for this step, whatever its bounds
+  int passages_begin = 0, passages_end = 0;
+};
+
+/// Segments joined by sliding runs, in the cable's order: their tensions depend on one unknown.
+struct Group {
+  int begin = 0, end = 0;              // of members
+  int slack = -1;                      // the slack member, or -1
+  int slack_begin = 0, slack_end = 0;  // of slack_terms: what of the group must not be taut
+};
+
+struct CapstanScratch {
+  std::vector<Run> runs;
+  std::vector<Passage> passages;
+  std::vector<int> segments, run_before;  // rows of the sliding cables' segments, and the run
+                                          // before each; -1 at an open cable's start
+  std::vector<int> cable_begin;           // into these two, one a sliding cable; and the end
+  std::vector<int> members, member_runs;  // rows of the groups' segments, and the run before each;
+                                          // -1 for the first of a group
+  std::vector<Group> groups;
+  std::vector<int> group_of_row;  // -1: not of a sliding cable
+  std::vector<Term> expression, sums, slack_terms;
+  std::vector<int> sums_begin, borders;
+};
+
+/// Whether the cable touches a body that it may slide over.
+bool slides_somewhere(const World& world, const CableState& cable);
+
+/// Sliding speed over the wrapped body at a middle link's pinch: that of its run.
+inline double run_speed(const PartSystem& system, const CapstanScratch& capstan, const Row& row) {
+  const int run = system.frictions[static_cast<std::size_t>(row.friction)].run;
+  return run >= 0 ? capstan.runs[static_cast<std::size_t>(run)].speed : 0.0;
+}
+
+/// Lists the runs of a part's cables that touch a body of finite friction; empty if none do.
+void find_runs(const World& world, const Parts& parts, const Part& part, PartSystem& system,
+               SolveScratch& scratch);
+
+/// Joins segments into groups for the present states of runs and segments.
+///
+/// Two slack segments of one group would determine the tension between them twice, from either
+/// side. One run between them must stick then; the one that has kept its state longest is made to.
+void make_groups(const PartSystem& system, SolveScratch& scratch);
+
+/// Impulses of the groups' members in terms of the unknowns, appended to the lists of `scratch`.
+void express_impulses(SolveScratch& scratch);
+
+/// Equations of the groups' unknowns, and of middle bodies that stick on their way: sums of rows in
+/// which the sliding speeds cancel.
+void add_group_equations(PartSystem& system, SolveScratch& scratch);
+
+/// Sliding speeds of all runs for the rows' present speeds.
+void slip_speeds(const PartSystem& system, CapstanScratch& capstan);
+
+/// Appends a flip for every run or group whose state the present solution contradicts.
+void check_runs(const PartSystem& system, SolveScratch& scratch, double speed_tolerance,
+                double impulse_tolerance);
+
+}  // namespace pinchlab

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/solve/solve_scratch.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Beyond this exponent no double tells the ratio from infinity in a product with a tension.
+constexpr double largest_exponent = 600.0;
+
+/// With three rows the middle body of a pinch holds the cable like an arc of this much on it (rad).
+constexpr double middle_arc = 1.0;
+
+double capstan_factor(double mu, double arc) {
+  return std::exp(std::min(mu * arc, largest_exponent));
+}
+
+/// A contact's coefficient for one of the cables that lie in it.
+double share(double mu, const Contact& contact) {
+  return mu / std::max(1, contact.pinch_points);
+}
+
+/// The transitional pinch of a segment, as seen by a body of friction mu at one of its ends.
+void append_pressed_end(const World& world, const SolveScratch& scratch, const Segment& segment,
+                        double mu, std::vector<Passage>& passages) {
+  if (segment.contact < 0 || mu == 0.0) return;
+  Passage passage;
+  passage.normal = at(scratch.normal_row_of_contact, segment.contact);
+  passage.friction = share(mu, at(world.contacts, segment.contact));
+  passages.push_back(passage);
+}
+
+}  // namespace
+
+double contact_coefficient(double mu_a, double mu_b) {
+  return std::sqrt(mu_a * mu_b);
+}
+
+Friction contact_friction(int row, int normal, double coefficient) {
+  Friction friction;
+  friction.row = row;
+  friction.normal = normal;
+  friction.coefficient = coefficient;
+  return friction;
+}
+
+Friction middle_friction(const World& world, const PartSystem& system, const SolveScratch& scratch,
+                         int number) {
+  const Row& row = at(system.rows, number);
+  const CableState& cable = at(world.cables, row.index);
+  const Link& middle = at(cable.links, row.item);
+  const Link& wrapped = at(cable.links, previous_link(cable, row.item));
+  const Contact* contact = middle.contact >= 0 ? &at(world.contacts, middle.contact) : nullptr;
+  const int normal = contact ? at(scratch.normal_row_of_contact, middle.contact) : -1;
+  const bool clamped = contact && (normal < 0 || at(system.rows, normal).diagonal == 0.0);
+  const double mu = at(world.bodies, middle.body).cable_friction;
+  Friction friction;
+  friction.row = number;
+  const bool held = clamped || world.configuration.method == Method::pinch_no_contact;
+  if (mu == infinity && held) {
+    friction.coefficient = infinity;
+    return friction;
+  }
+  if (clamped || normal < 0) return friction;
+  friction.normal = normal;
+  friction.coefficient = share(mu, *contact);
+  friction.wrapped = share(at(world.bodies, wrapped.body).cable_friction, *contact);
+  return friction;
+}
+
+void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scratch) {
+  std::vector<int>& first_middle = scratch.middle_row_of_contact;
+  first_middle.resize(world.contacts.size());
+  const auto contact_of = [&world](const Row& row) {
+    return at(at(world.cables, row.index).links, row.item).contact;
+  };
+  const auto may_repeat = [&](const Friction& friction) {
+    const Row& row = at(s.rows, friction.row);
+    return row.kind == RowKind::pinch_middle && friction.coefficient == infinity &&
+           contact_of(row) >= 0;
+  };
+  for (const Friction& friction : s.frictions) {
+    if (may_repeat(friction)) at(first_middle, contact_of(at(s.rows, friction.row))) = -1;
+  }
+  for (Friction& friction : s.frictions) {
+    if (!may_repeat(friction)) continue;
+    int& first = at(first_middle, contact_of(at(s.rows, friction.row)));
+    if (first < 0) {
+      first = friction.row;
+      continue;
+    }
+    const RowBodies &row = at(s.bodies, friction.row), &other = at(s.bodies, first);
+    const bool same_side = row.a == other.a;
+    const Eigen::Vector3d& j = same_side ? other.ja : other.jb;
+    const Eigen::Vector3d& k = same_side ? other.jb : other.ja;
+    const double sign = row.ja.dot(j) > 0.0 ? 1.0 : -1.0;
+    const double difference =
+        (row.ja - sign * j).cwiseAbs().maxCoeff() + (row.jb - sign * k).cwiseAbs().maxCoeff();
+    // Cables of different widths have different levers; equal ones differ by round-off.
+    constexpr double rounding = 1e-12;
+    const double size = std::max(j.cwiseAbs().maxCoeff(), k.cwiseAbs().maxCoeff());
+    if (difference > rounding * size) continue;
+    friction.repeats = first;
+    at(s.rows, friction.row).on = false;
+    ++at(s.frictions, at(s.rows, first).friction).repeated;
+  }
+}
+
+void share_among_repeated(PartSystem& s) {
+  for (const Friction& friction : s.frictions) {
+    Row& row = at(s.rows, friction.row);
+    if (friction.repeated > 0) row.impulse /= 1 + friction.repeated;
+    if (friction.repeats < 0) continue;
+    const Row& first = at(s.rows, friction.repeats);  // comes before, and has its share by now
+    const RowBodies &bodies = at(s.bodies, friction.row), &others = at(s.bodies, friction.repeats);
+    const Eigen::Vector3d& j = bodies.a == others.a ? others.ja : others.jb;
+    row.impulse = bodies.ja.dot(j) > 0.0 ? first.impulse : -first.impulse;
+  }
+}
+
+void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch,
+                     int cable_number, int first, int last, const int* row_of_segment, int run,
+                     std::vector<Passage>& passages) {
+  const CableState& cable = at(world.cables, cable_number);
+  const double mu = at(world.bodies, at(cable.links, first).body).cable_friction;
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
+  if (!three) append_pressed_end(world, scratch, at(cable.segments, first), mu, passages);
+  for (int i = first;; i = next_link(cable, i)) {
+    const Link& part = at(cable.links, i);
+    Passage passage;
+    if (part.pinch_middle && first == last) {
+      passage.factor = capstan_factor(mu, middle_arc);
+    } else if (part.pinch_middle) {
+      passage.middle = row_of_segment[i];
+      if (three) {
+        passage.middle_out = row_of_segment[next_link(cable, i)];
+        passage.middle_factor =
+            capstan_factor(at(world.bodies, part.body).cable_friction, middle_arc);
+      } else {
+        at(system.frictions, at(system.rows, passage.middle).friction).run = run;
+        if (part.contact >= 0) {
+          passage.normal = at(scratch.normal_row_of_contact, part.contact);
+          passage.friction = share(mu, at(world.contacts, part.contact));
+        }
+      }
+    } else {
+      passage.factor = capstan_factor(mu, std::max(part.wrap, 0.0));
+    }
+    passages.push_back(passage);
+    if (i == last) break;
+  }
+  if (three) return;
+  const int after = next_link(cable, last);
+  append_pressed_end(world, scratch, at(cable.segments, after), mu, passages);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Friction: one law for bare contacts, for the middle bodies of pinches and for cable that slides
+// over bodies. All of what bounds a tangential force stands here; both solvers use it.
+//
+//   contact or middle body:   |p| <= mu N     N the force that presses, mu of the pair or body
+//   arc of angle theta:       1/k <= T_after / T_before <= k,    k = e^(mu theta)   (capstan)
+//   pinch on the way:         T_after - T_before within mu N of the wrapped body, less what the
+//                             middle body takes
+//
+// A contact's force is shared evenly by the cables (or turns of one) that lie in it.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim/solve/part_system.h"
+
+namespace pinchlab {
+
+struct SolveScratch;
+struct World;
+
+/// Something on a cable's way over a body that changes its tension: an arc, or a pinch.
+struct Passage {
+  double factor = 1.0;    // arc: exp(friction * wrap)
+  int normal = -1;        // pinch: row of the contact's force, or -1
+  double friction = 0.0;  // pinch: the wrapped body's friction is at most friction * that force
+  int middle = -1;        // non-transitional pinch: the middle body's row, or -1
+  int middle_out = -1;    // with three rows: the second one of the middle body
+  double middle_factor = 1.0;  // with three rows: the most that the middle body changes the tension
+};
+
+/// Tension after a passage over which the material slides forward (way = 1) or backward (-1), from
+/// that before it, the force that presses and the middle body's share; all N, or all N s.
+inline double tension_after(const Passage& p, int way, double before, double force, double middle) {
+  return (way > 0 ? before * p.factor : before / p.factor) + way * p.friction * force - middle;
+}
+
+/// Coulomb coefficient of two bare surfaces: the geometric mean of the two bodies' (or the body's
+/// and the wall's).
+double contact_coefficient(double mu_a, double mu_b);
+
+/// Friction of a bare contact of the given coefficient, pressed by row `normal`.
+Friction contact_friction(int row, int normal, double coefficient);
+
+/// Friction of the middle body of the pinch at link `middle` of cable `cable` (its row is `row`):
+/// by the contact that presses it. Without slip it holds whatever it must, where the bodies are
+/// axles that do not give way, or where (thesis) contacts have no rows.
+Friction middle_friction(const World& world, const PartSystem& system, const SolveScratch& scratch,
+                         int row);
+
+/// What a friction row may bear at most, times the force that presses it, on a cable that is slack
+/// on both sides of the pinch or not. A slack cable passes friction from body to body, as much as
+/// the smoother of the two allows.
+inline double bound_in_force(const Friction& friction, bool slack) {
+  return slack ? std::min(friction.coefficient, friction.wrapped) : friction.coefficient;
+}
+
+/// bound * force, where infinite friction under no force holds nothing.
+inline double most_friction(double bound, double force) {
+  return bound == 0.0 || force == 0.0 ? 0.0 : bound * force;
+}
+
+/// The state of a friction row that bears impulse p of at most `most`: friction opposes sliding.
+inline Slip slip_of(double p, double most) {
+  return std::abs(p) < most ? Slip::stick : p > 0.0 ? Slip::backward : Slip::forward;
+}
+
+/// Where several turns of cable without slip lie under one pinch, their middle rows say the same.
+/// The first stands for all, and its force is shared among them in the end, as by equally stiff
+/// cables; the system then has no repeated rows.
+void find_repeated_middles(const World& world, PartSystem& system, SolveScratch& scratch);
+
+/// Impulses of repeated rows: their shares of the first one's.
+void share_among_repeated(PartSystem& system);
+
+/// Appends the passages of a cable's links first..last, which lie on one body, and of the
+/// transitional pinches at either end. `row_of_segment` is the cable's own. With `three` rows a
+/// pinch, contacts have no share in friction (thesis), and the middle body holds the cable like an
+/// arc of 1 rad on it.
+void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch, int cable,
+                     int first, int last, const int* row_of_segment, int run,
+                     std::vector<Passage>& passages);
+
+}  // namespace pinchlab

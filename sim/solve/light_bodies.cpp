@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/light_bodies.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/parts.h"
+#include "sim/solve/part_system.h"
+#include "sim/solve/rows.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Below this part of a body's mass a span's share is not worth adding up.
+constexpr double negligible = 0.05;
+
+/// Whether the segment counts for `body` at its one end; `other` is at its other end.
+bool note_end(const World& world, const Parts& parts, const Segment& segment, int body, int other,
+              PartSystem& system) {
+  if (body < 0 || !can_move(at(world.bodies, body))) return false;
+  const double h = world.step_length;
+  const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
+  if (!(twice > negligible * at(world.bodies, body).mass * segment.length)) return false;
+  const double mass = twice / segment.length;
+  std::vector<SpanMass>& masses = system.span_masses;
+  if (masses.empty()) masses.resize(system.mobility.size());
+  SpanMass& span = at(masses, at(parts.local, body));
+  const Vec2 n = left(segment.direction);
+  span.mass += mass * n * n.transpose();
+  if (other >= 0) span.momentum += mass * n * n.dot(at(world.velocity, other));
+  return true;
+}
+
+/// Along unit vector v: the share of the body's mass in max(m, h^2 k), and with it the free speed.
+double steady(const BodyProperties& body, const SpanMass& span, const Vec2& v, Vec2& velocity) {
+  const double mass = v.dot(span.mass * v);
+  if (mass <= body.mass) return 1.0;
+  const double share = body.mass / mass, line = v.dot(span.momentum) / mass;
+  velocity += (1.0 - share) * (line - v.dot(velocity)) * v;
+  return share;
+}
+
+void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2& velocity) {
+  if (span.mass.trace() <= body.mass) return;
+  span.steadied = true;
+  if (body.kind == BodyKind::rail) {
+    const double share = steady(body, span, body.rail_axis.normalized(), velocity);
+    mobility.xx *= share;
+    mobility.xy *= share;
+    mobility.yy *= share;
+    return;
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
+  principal.computeDirect(span.mass);
+  Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
+  for (int i = 0; i < 2; ++i) {
+    const Vec2 v = principal.eigenvectors().col(i);
+    inverse += mobility.xx * steady(body, span, v, velocity) * v * v.transpose();
+  }
+  mobility.xx = inverse(0, 0);
+  mobility.xy = inverse(0, 1);
+  mobility.yy = inverse(1, 1);
+}
+
+/// Mobilities as they are without spans.
+void restore(const World& world, std::span<const int> bodies, double kick, PartSystem& system) {
+  for (std::size_t i = 0; i < bodies.size() && !system.span_masses.empty(); ++i) {
+    SpanMass& span = system.span_masses[i];
+    if (span.steadied) {
+      system.mobility[i] = mobility_of(at(world.bodies, bodies[i]), kick);
+      system.mobility_changed = true;
+    }
+    span = {};
+  }
+}
+
+}  // namespace
+
+void steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
+                         PartSystem& system) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  restore(world, bodies, kick, system);
+  if (!part.can_move) return;
+  const double least = negligible * part.lightest / (2.0 * world.step_length * world.step_length);
+  bool any = false;
+  for (const int c : cables_of(parts, part)) {
+    const CableState& cable = at(world.cables, c);
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      const Segment& segment = cable.segments[s];
+      if (!(segment.tension > least * segment.length)) continue;
+      if (segment.length <= 2.0 * cable.half_width) continue;
+      const int head = cable.links[s].body;
+      const int tail = at(cable.links, previous_link(cable, static_cast<int>(s))).body;
+      any = note_end(world, parts, segment, head, tail, system) || any;
+      any = note_end(world, parts, segment, tail, head, system) || any;
+    }
+  }
+  if (!any) return;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Vec2 velocity = system.free_velocity[i].head<2>();
+    steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i], velocity);
+    system.free_velocity[i].head<2>() = velocity;
+    system.mobility_changed = system.mobility_changed || system.span_masses[i].steadied;
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace pinchlab {
+
+struct Part;
+struct Parts;
+struct PartSystem;
+struct World;
+
+/// A taut span of tension T and length L is a spring across itself: it pulls a body that leaves its
+/// line back by k = T/L times the way x. The step takes that force at its start, which is stable
+/// while h^2 k < 4 m (leapfrog: omega h < 2). For bodies too light for that, in the directions
+/// concerned, this puts the force at the step's end instead (implicit Euler), against the line's
+/// own speed u, the mean of the spans' other ends weighted by their stiffnesses:
+///
+///     m (v' - v) = h (f - k (x + h (v' - u)))  =>  (m + h^2 k) v' = m v + h^2 k u + h (f - k x)
+///
+/// So the body gets the mass m + h^2 k towards impulses, and its speed before them is drawn towards
+/// u. The rows supply f - k x. What vibrates faster than steps can follow is damped instead of
+/// thrown off. To leave all else as it is, max(m, h^2 k) stands for m + h^2 k, with k twice the sum
+/// of T/L, since the other ends may move against the body. Spans shorter than the cable's width are
+/// left out: there the bodies' contact sets the distance.
+///
+/// Changes mobilities and free velocities of the part's bodies; a comparison an end of a span where
+/// no body is too light.
+void steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
+                         PartSystem& system);
+
+}  // namespace pinchlab

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/ordering.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/at.h"
+#include "sim/solve/solve_scratch.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// The bodies of a row that it couples with other rows, or -1.
+std::array<int, 2> coupled(const PartSystem& s, std::size_t r) {
+  const RowBodies& row = s.bodies[r];
+  return {at(s.mobile, row.a) ? row.a : -1, at(s.mobile, row.b) ? row.b : -1};
+}
+
+void list_rows_of_bodies(const PartSystem& s, OrderScratch& scratch) {
+  auto& lists = scratch.rows_of_body;
+  lists.begin.assign(s.mobility.size() + 1, 0);
+  const auto each = [&s](auto&& visit) {
+    for (std::size_t r = 0; r < s.rows.size(); ++r) {
+      for (const int body : coupled(s, r)) {
+        if (body >= 0) visit(body, static_cast<int>(r));
+      }
+    }
+  };
+  each([&lists](int body, int) { ++at(lists.begin, body + 1); });
+  for (std::size_t b = 0; b < s.mobility.size(); ++b) lists.begin[b + 1] += lists.begin[b];
+  lists.items.resize(index(lists.begin.back()));
+  scratch.fill = lists.begin;
+  each([&](int body, int row) { at(lists.items, at(scratch.fill, body)++) = row; });
+}
+
+/// Breadth-first order of the rows coupled with `start`, appended to `order`; neighbours by degree.
+void breadth_first(const PartSystem& s, OrderScratch& scratch, int start, int stamp,
+                   std::vector<int>& order) {
+  const Lists<int>& lists = scratch.rows_of_body;
+  const auto degree = [&](int row) {
+    int sum = 0;
+    for (const int body : coupled(s, index(row))) {
+      if (body >= 0) sum += at(lists.begin, body + 1) - at(lists.begin, body);
+    }
+    return sum;
+  };
+  std::size_t head = order.size();
+  order.push_back(start);
+  at(scratch.row_stamp, start) = stamp;
+  for (; head < order.size(); ++head) {
+    const std::size_t pushed = order.size();
+    for (const int body : coupled(s, index(order[head]))) {
+      if (body < 0 || at(scratch.body_stamp, body) == stamp) continue;
+      at(scratch.body_stamp, body) = stamp;
+      for (int k = at(lists.begin, body); k < at(lists.begin, body + 1); ++k) {
+        const int other = at(lists.items, k);
+        if (at(scratch.row_stamp, other) == stamp) continue;
+        at(scratch.row_stamp, other) = stamp;
+        order.push_back(other);
+      }
+    }
+    std::sort(order.begin() + static_cast<std::ptrdiff_t>(pushed), order.end(), [&](int p, int q) {
+      const int dp = degree(p), dq = degree(q);
+      return dp != dq ? dp < dq : p < q;
+    });
+  }
+}
+
+/// Each connected group of rows is walked once from any row, to find a far end, and once from
+/// there.
+void find_order(PartSystem& s, OrderScratch& scratch) {
+  const std::size_t rows = s.rows.size();
+  list_rows_of_bodies(s, scratch);
+  scratch.row_stamp.assign(rows, 0);
+  scratch.body_stamp.assign(s.mobility.size(), 0);
+  s.order.clear();
+  int stamp = 1;
+  for (std::size_t r = 0; r < rows; ++r) {
+    if (scratch.row_stamp[r] != 0) continue;
+    const std::size_t begin = s.order.size();
+    breadth_first(s, scratch, static_cast<int>(r), stamp++, s.order);
+    const int far_end = s.order.back();
+    s.order.resize(begin);
+    breadth_first(s, scratch, far_end, stamp++, s.order);
+  }
+  std::reverse(s.order.begin(), s.order.end());
+}
+
+/// Whether these are the bodies that the rows couple.
+bool order_stands(const PartSystem& s) {
+  if (s.structure.size() != 2 * s.rows.size()) return false;
+  if (s.rows_stand) return true;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const auto [a, b] = coupled(s, r);
+    if (s.structure[2 * r] != a || s.structure[2 * r + 1] != b) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void order_rows(PartSystem& s, OrderScratch& scratch) {
+  if (order_stands(s)) return;
+  s.structure.clear();
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const auto [a, b] = coupled(s, r);
+    s.structure.push_back(a);
+    s.structure.push_back(b);
+  }
+  find_order(s, scratch);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The system of one part: its bodies, rows, their order and their factors. It belongs to the part,
+// so that what stands of it stands whatever other parts do.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/contact.h"
+#include "sim/scene.h"
+#include "sim/solve/profile_ldl.h"
+
+namespace pinchlab {
+
+/// Inverse mass and inertia of a body in this step, drag included: dv = mobility * impulse.
+struct Mobility {
+  double xx = 0.0, xy = 0.0, yy = 0.0;  // 1/kg, symmetric: a rail body moves along its axis only
+  double angular = 0.0;                 // 1/(kg m^2)
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& j) const {
+    return {xx * j.x() + xy * j.y(), xy * j.x() + yy * j.y(), angular * j.z()};
+  }
+};
+
+enum class RowKind : std::int8_t {
+  segment,       // tension of a span or transitional pinch, >= 0
+  pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row,
+                 // or with PinchRows::three two of kind `segment`
+  normal,        // contact force, >= 0
+  tangent,       // Coulomb friction of bare surfaces, |.| <= mu * normal
+};
+
+/// The two bodies of a row, as places in the part's arrays, and what it sees of their velocities
+/// (x, y, angle). Nothing moves the place after the last body: it stands for the world and for
+/// bodies that do not change.
+struct RowBodies {
+  int a = 0, b = 0;
+  Eigen::Vector3d ja, jb;  // m/s of row a m/s, or rad/s, of body
+};
+
+/// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
+/// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
+struct Row {
+  RowKind kind = RowKind::segment;
+  bool on = false;          // active set: bears a force
+  Slip slip = Slip::stick;  // active set: friction rows
+  bool rebounds = false;    // normal: the bias is the speed of a rebound
+  int flipped = 0;          // solve of this step at which `on` or `slip` last changed
+  int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
+  int index = -1;           // contact; or cable
+  int item = -1;            // segment, or middle link
+  double bias = 0.0;        // m/s
+  double compliance = 0.0;  // 1/kg
+  double diagonal = 0.0;    // 1/kg, J * mobility * J^T
+  double impulse = 0.0;     // N s
+  double speed = 0.0;       // w + compliance p, m/s, after the solve
+};
+
+/// What bounds the impulse of a friction row, a contact's tangent or the middle body of a pinch:
+/// friction.h.
+struct Friction {
+  int row = -1;                    // that it bounds
+  int normal = -1;                 // row of the force that presses, or -1: see `coefficient`
+  double coefficient = 0.0;        // of the row's own body or pair; infinity: no slip, 0: no force
+  double wrapped = infinity;       // pinch_middle: coefficient of the wrapped body
+  double bound = 0.0;              // |impulse| <= bound * impulse of `normal`, in force
+  int run = -1;                    // pinch_middle: the wrapped body's run, where it may slide
+  int repeats = -1;                // pinch_middle: the row that this one repeats, or -1
+  int repeated = 0;                // pinch_middle: how many rows repeat this one
+  bool in_group_equation = false;  // pinch_middle: its equation is part of its group's
+  bool dropped = false;            // bears nothing in this step
+  bool frozen = false;             // keeps its state for this step, whatever its bound
+};
+
+/// What taut spans do to a body across themselves: h^2 times their stiffness, and that times their
+/// other ends' velocities. By steady_light_bodies.
+struct SpanMass {
+  Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();  // kg
+  Vec2 momentum = Vec2::Zero();                    // kg m/s
+  bool steadied = false;                           // the body's mobility is not its own
+};
+
+/// What rows were made for: while it is the same, so are their bodies.
+struct RowsMade {
+  int changes = -1;   // of the part's cables
+  double kick = 0.0;  // s
+  bool operator==(const RowsMade&) const = default;
+};
+
+struct PartSystem {
+  // Bodies of the part in its order, and the world after them; by load_bodies.
+  std::vector<Mobility> mobility;              // changed by steady_light_bodies
+  std::vector<char> mobile;                    // impulses can move or turn it
+  std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
+  std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
+  std::vector<SpanMass> span_masses;           // empty until one body is too light
+  double mobility_kick = 0.0;                  // s, what the mobilities are for
+  bool mobility_changed = true;                // since the step before
+  double extent = 0.0;                         // m, coordinates and cable lengths at most
+
+  // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
+  std::vector<RowBodies> bodies;
+  std::vector<Row> rows;
+  std::vector<Friction> frictions;
+  std::vector<int> row_of_segment;  // cable after cable; -1: none
+  std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
+  int first_contact_row = 0;
+  RowsMade made;            // what they are for
+  bool rows_stand = false;  // bodies and diagonals of all rows are those of the step before
+
+  // Order of the rows and what it is for, two bodies a row; by order_rows.
+  std::vector<int> structure, order;
+
+  // Factors of the rows whose unknowns they are for; by solve_for_states.
+  ProfileLdl ldl;
+  std::vector<int> factored;  // rows; empty: no factors
+  std::vector<double> scale;  // diagonals
+
+  int ground() const { return static_cast<int>(mobility.size()) - 1; }
+};
+
+/// Leaves nothing that the system was made for; its storage stays.
+inline void forget(PartSystem& s) {
+  s.mobility.clear();
+  s.span_masses.clear();
+  s.mobility_kick = 0.0;
+  s.made = {};
+  s.structure.clear();
+  s.factored.clear();
+}
+
+/// J v + bias at the present velocities (m/s).
+inline double row_speed(const PartSystem& s, std::size_t r) {
+  const RowBodies& row = s.bodies[r];
+  const auto along = [](const Eigen::Vector3d& j, const Eigen::Vector3d& v) {
+    return j.x() * v.x() + j.y() * v.y() + j.z() * v.z();
+  };
+  return s.rows[r].bias + along(row.ja, s.velocity[static_cast<std::size_t>(row.a)]) +
+         along(row.jb, s.velocity[static_cast<std::size_t>(row.b)]);
+}
+
+/// Changes the velocities of the row's bodies by an impulse on it (N s).
+inline void push(PartSystem& s, std::size_t r, double impulse) {
+  if (impulse == 0.0) return;
+  const RowBodies& row = s.bodies[r];
+  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
+  s.velocity[a] += impulse * (s.mobility[a] * row.ja);
+  s.velocity[b] += impulse * (s.mobility[b] * row.jb);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/parts.h"
+#include "sim/solve/friction.h"
+#include "sim/solve/solve_scratch.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// J M^-1 J^T (1/kg).
+double diagonal_of(const PartSystem& s, const RowBodies& row) {
+  return row.ja.dot(at(s.mobility, row.a) * row.ja) + row.jb.dot(at(s.mobility, row.b) * row.jb);
+}
+
+/// A body's place in its part; static bodies and the world (-1) share the one after the last.
+int place_of(const Parts& parts, const PartSystem& system, int body) {
+  const int local = body >= 0 ? at(parts.local, body) : -1;
+  return local >= 0 ? local : system.ground();
+}
+
+/// Lever of a force along e on the link's circle: torque on the body = lever * force, since
+/// cross(c - p left(e), e) = cross(c, e) + p with the circle's centre at c from the body's.
+double lever(const World& world, const Link& link, const Vec2& e) {
+  if (link.body < 0 || link.offset.isZero(0.0)) return link.signed_radius();
+  return link.signed_radius() + cross(link_centre(world, link) - at(world.position, link.body), e);
+}
+
+/// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
+/// tension (p >= 0) shortens the segment.
+void set_segment_bodies(const World& world, const Link& from, const Link& to,
+                        const Segment& segment, RowBodies& row) {
+  const Vec2& e = segment.direction;
+  row.ja = {e.x(), e.y(), lever(world, from, e)};
+  row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
+}
+
+/// All of a segment's row but its bodies, as it is before a solve.
+void set_segment_values(const World& world, const Segment& segment, double stiffness, double kick,
+                        Row& row) {
+  row.kind = RowKind::segment;
+  row.on = !segment.slack;
+  row.slip = Slip::stick;
+  row.flipped = 0;
+  row.friction = -1;
+  // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
+  // what is left of a segment is then at least nothing.
+  const double rest = world.configuration.method == Method::cable
+                          ? std::max(segment.rest_length, 0.0)
+                          : segment.rest_length;
+  row.bias = -(segment.length - rest) / world.step_length;
+  // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.
+  row.compliance = 0.0;
+  if (stiffness < infinity && !segment.pinched) {
+    row.compliance = std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
+  }
+}
+
+/// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
+/// attachment points along the centre line, backwards (thesis 4.2.1, Figure 4.3). It then pushes
+/// the bodies apart, but leaves their rolling alone: the origin of the method's jitter.
+void turn_to_centre_line(const World& world, const Link& from, const Link& to,
+                         const Segment& segment, RowBodies& bodies, Row& row) {
+  const Vec2 d = link_centre(world, to) - link_centre(world, from);
+  const double distance = d.norm();
+  if (!(distance > 0.0)) return;
+  const Vec2 u = d / distance;
+  bodies.ja = {-u.x(), -u.y(), 0.0};
+  bodies.jb = {u.x(), u.y(), 0.0};
+  const double overlap = from.radius + to.radius - distance;
+  row.bias = -(overlap - std::max(segment.rest_length, 0.0)) / world.step_length;
+}
+
+/// Whether a segment's row can only have changed where the segment has moved: not so for a circle
+/// off its body's centre, whose lever turns with the body.
+bool is_central(const Link& link) {
+  return link.body < 0 || link.offset.isZero(0.0);
+}
+
+/// Of two bodies, or of a body and a wall, the greater: who asks for a rebound gets it.
+double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
+  const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution
+                                      : at(scene.walls, contact.wall).restitution;
+  return std::max(at(world.bodies, contact.a).restitution, other);
+}
+
+void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
+                    RowBodies& bodies, Row& row) {
+  const Vec2& n = contact.normal;
+  row.kind = RowKind::normal;
+  row.on = contact.touching;
+  bodies.ja = {-n.x(), -n.y(), 0.0};
+  bodies.jb = {n.x(), n.y(), 0.0};
+  const double clearance = contact.gap - contact.target;
+  row.bias = clearance / world.step_length;
+  const double restitution = restitution_of(scene, world, contact);
+  if (restitution == 0.0) return;
+  Vec2 v = -at(world.velocity, contact.a);
+  if (contact.b >= 0) v += at(world.velocity, contact.b);
+  const double speed = n.dot(v);
+  // Slower than what gravity gives in four steps, a body rests rather than bounces.
+  const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
+  if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
+    row.bias = restitution * speed;
+    row.rebounds = true;
+  }
+}
+
+/// Both forces of bare friction act at one point, a share of the gap off the surfaces, so that they
+/// have no moment.
+void set_tangent_bodies(const World& world, const Contact& contact, RowBodies& bodies) {
+  const Vec2 t = left(contact.normal);
+  const double radius_a = at(world.bodies, contact.a).radius;
+  const double radius_b = contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0;
+  const double radii = radius_a + radius_b;
+  const double reach = (radii + contact.gap) / radii;
+  bodies.ja = {-t.x(), -t.y(), -radius_a * reach};
+  bodies.jb = {t.x(), t.y(), -radius_b * reach};
+}
+
+/// A new last row between two places.
+int append_row(PartSystem& s, int a, int b) {
+  s.rows.emplace_back();
+  RowBodies& bodies = s.bodies.emplace_back();
+  bodies.a = a;
+  bodies.b = b;
+  return static_cast<int>(s.rows.size()) - 1;
+}
+
+void add_friction(PartSystem& s, const Friction& friction) {
+  at(s.rows, friction.row).friction = static_cast<int>(s.frictions.size());
+  s.frictions.push_back(friction);
+}
+
+}  // namespace
+
+Mobility mobility_of(const BodyProperties& body, double kick) {
+  Mobility m;
+  // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what an
+  // impulse adds is divided by 1 + c k / 2.
+  const double linear = 1.0 / (body.mass * (1.0 + 0.5 * kick * body.linear_drag));
+  if (body.kind == BodyKind::free) m.xx = m.yy = linear;
+  if (body.kind == BodyKind::rail) {
+    const Vec2 n = body.rail_axis.normalized();
+    m.xx = linear * n.x() * n.x();
+    m.xy = linear * n.x() * n.y();
+    m.yy = linear * n.y() * n.y();
+  }
+  if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    m.angular = 1.0 / (disc_inertia(body) * (1.0 + 0.5 * kick * body.angular_drag));
+  }
+  return m;
+}
+
+void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                       double kick, PartSystem& s) {
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
+  const bool plain = world.configuration.method == Method::cable;
+  RowsMade made{0, kick};
+  for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
+  const bool again = made == s.made;
+  s.made = made;
+  s.rows_stand = again && !s.mobility_changed && part.contacts_begin == part.contacts_end;
+  if (again) {
+    s.rows.resize(index(s.first_contact_row));
+    s.bodies.resize(index(s.first_contact_row));
+  } else {
+    s.rows.clear();
+    s.bodies.clear();
+    s.row_of_segment.clear();
+  }
+  s.frictions.clear();
+  s.segment_begin.clear();
+  std::size_t begin = 0;  // of the cable, in row_of_segment
+  for (const int c : cables_of(parts, part)) {
+    const CableState& cable = at(world.cables, c);
+    s.segment_begin.push_back(static_cast<int>(begin));
+    if (!again) s.row_of_segment.resize(begin + cable.segments.size(), -1);
+    const double stiffness = at(scene.cables, c).axial_stiffness;
+    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
+      const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
+      // After a middle link comes the opposite of the row before it: one signed row serves both.
+      if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
+      const Segment& segment = at(cable.segments, i);
+      int& number = s.row_of_segment[begin + index(i)];
+      if (!again) {
+        number = append_row(s, place_of(parts, s, from.body), place_of(parts, s, to.body));
+        s.rows.back().index = c;
+        s.rows.back().item = i;
+      }
+      Row& row = at(s.rows, number);
+      RowBodies& bodies = at(s.bodies, number);
+      set_segment_values(world, segment, stiffness, kick, row);
+      const bool on_centre_line = plain && segment.pinched;
+      const bool stands = again && !segment.moved && is_central(from) && is_central(to);
+      if (!stands || on_centre_line) {
+        s.rows_stand = false;
+        set_segment_bodies(world, from, to, segment, bodies);
+        if (on_centre_line) turn_to_centre_line(world, from, to, segment, bodies, row);
+      }
+      if (!stands || on_centre_line || s.mobility_changed) row.diagonal = diagonal_of(s, bodies);
+      if (to.pinch_middle && !three) {
+        row.kind = RowKind::pinch_middle;
+        row.slip = to.slip;
+      }
+    }
+    begin += cable.segments.size();
+  }
+  s.first_contact_row = static_cast<int>(s.rows.size());
+}
+
+void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                       PartSystem& s, SolveScratch& scratch) {
+  scratch.normal_row_of_contact.resize(world.contacts.size());
+  for (const int number : contacts_of(parts, part)) {
+    const Contact& contact = at(world.contacts, number);
+    int& normal = at(scratch.normal_row_of_contact, number);
+    normal = -1;
+    const BodyProperties& body = at(world.bodies, contact.a);
+    const BodyProperties* other = contact.b >= 0 ? &at(world.bodies, contact.b) : nullptr;
+    if (!can_move(body) && (!other || !can_move(*other))) continue;
+    const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
+    normal = append_row(s, a, b);
+    s.rows.back().index = number;
+    set_normal_row(scene, world, contact, s.bodies.back(), s.rows.back());
+    s.rows.back().diagonal = diagonal_of(s, s.bodies.back());
+
+    if (contact.pinch_linked) continue;
+    const double mu = contact_coefficient(
+        body.contact_friction,
+        other ? other->contact_friction : at(scene.walls, contact.wall).contact_friction);
+    if (mu == 0.0) continue;
+    const int tangent = append_row(s, a, b);
+    Row& row = s.rows.back();
+    row.kind = RowKind::tangent;
+    row.index = number;
+    row.slip = contact.slip;
+    set_tangent_bodies(world, contact, s.bodies.back());
+    row.diagonal = diagonal_of(s, s.bodies.back());
+    add_friction(s, contact_friction(tangent, normal, mu));
+  }
+  bool middles = false;
+  for (int r = 0; r < s.first_contact_row; ++r) {
+    Row& row = at(s.rows, r);
+    if (row.kind != RowKind::pinch_middle) continue;
+    const Friction friction = middle_friction(world, s, scratch, r);
+    add_friction(s, friction);
+    if (friction.normal < 0 && friction.coefficient == infinity) {
+      row.on = true;
+      row.slip = Slip::stick;
+    }
+    middles = true;
+  }
+  if (middles && world.configuration.solver == Solver::direct) {
+    find_repeated_middles(world, s, scratch);
+  }
+}
+
+}  // namespace pinchlab

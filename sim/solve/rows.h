@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Constraint rows: one scalar condition on the velocities of at most two bodies each.
+
+#include "sim/solve/part_system.h"
+
+namespace pinchlab {
+
+struct Parts;
+struct Part;
+struct SolveScratch;
+struct World;
+
+/// Of a body by itself, for a velocity kick of `kick` seconds.
+Mobility mobility_of(const BodyProperties& body, double kick);
+
+/// Rows of a part's cables at the present positions, from the first row on (thesis: SegmentsInit).
+/// Where the rows of the step before were for the same links and the same kick, only those of
+/// segments that have moved are made anew.
+void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                       double kick, PartSystem& system);
+
+/// Adds the rows of a part's contacts (thesis: ContactsInit), and bounds all friction. Bodies that
+/// cannot give way to one another get none.
+void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                       PartSystem& system, SolveScratch& scratch);
+
+}  // namespace pinchlab

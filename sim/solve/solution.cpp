@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/solution.h"
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/parts.h"
+#include "sim/solve/capstan.h"
+#include "sim/solve/friction.h"
+
+namespace pinchlab {
+
+namespace {
+
+void store_row(const Row& row, double kick, World& world) {
+  if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
+    CableState& cable = at(world.cables, row.index);
+    Segment& segment = at(cable.segments, row.item);
+    segment.tension = row.impulse / kick;
+    if (row.kind == RowKind::segment) {
+      segment.slack = !row.on;
+    } else {
+      at(cable.links, row.item).slip = row.slip;
+    }
+    return;
+  }
+  Contact& contact = at(world.contacts, row.index);
+  if (row.kind == RowKind::normal) {
+    contact.touching = row.on;
+    contact.normal_force = row.impulse / kick;
+  } else {
+    contact.slip = row.slip;
+    contact.tangent_force = row.impulse / kick;
+  }
+}
+
+/// A run's state on all of its links; a run that bears nothing and does not move sticks.
+void store_run(const PartSystem& s, const Run& run, World& world) {
+  const bool bears = at(s.rows, run.row_in).impulse > 0.0 || at(s.rows, run.row_out).impulse > 0.0;
+  const Slip slip = !bears && run.speed == 0.0 ? Slip::stick : run.slip;
+  CableState& cable = at(world.cables, run.cable);
+  for (int i = run.first_link;; i = next_link(cable, i)) {
+    Link& link = at(cable.links, i);
+    if (!link.pinch_middle || run.first_link == run.last_link) {
+      link.slip = slip;
+      link.slip_speed = run.speed;
+    }
+    if (i == run.last_link) break;
+  }
+}
+
+}  // namespace
+
+void store_solution(const Parts& parts, const Part& part, PartSystem& s,
+                    const CapstanScratch& capstan, double kick, World& world) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
+    at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
+  }
+  share_among_repeated(s);
+  for (const Row& row : s.rows) store_row(row, kick, world);
+  for (const Run& run : capstan.runs) store_run(s, run, world);
+  for (const Friction& friction : s.frictions) {
+    const Row& row = at(s.rows, friction.row);
+    if (row.kind != RowKind::pinch_middle) continue;
+    const bool sticks = row.on && row.slip == Slip::stick;
+    at(at(world.cables, row.index).links, row.item).slip_speed =
+        sticks ? 0.0 : row.speed + run_speed(s, capstan, row);
+  }
+}
+
+}  // namespace pinchlab

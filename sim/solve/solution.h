@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What a part's solve has found, written into the World.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct CapstanScratch;
+struct Part;
+struct Parts;
+struct PartSystem;
+
+/// Writes the velocities of the part's bodies, and for the next step and for readers the states and
+/// forces (N, impulses over the kick of `kick` seconds) of its segments, links and contacts.
+void store_solution(const Parts& parts, const Part& part, PartSystem& system,
+                    const CapstanScratch& capstan, double kick, World& world);
+
+}  // namespace pinchlab

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Storage of the direct solve, for the part being solved. Nothing of it outlives the solve.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/solve/capstan.h"
+#include "sim/solve/profile_lu.h"
+#include "sim/solve/terms.h"
+
+namespace pinchlab {
+
+/// What an unknown does to a body (a column of the system), or what its equation sees of one (a
+/// row).
+struct BodyTerm {
+  int unknown;
+  int body;
+  Eigen::Vector3d vector;
+};
+
+/// One end of an unknown's row, in the chain of those on one body.
+struct RowEnd {
+  Eigen::Vector3d j;  // (x, y, angle)
+  int previous;       // in the chain, or -1
+  int least;          // unknown of the chain
+};
+
+/// A change of state that the last solution asks for.
+struct Flip {
+  int row;  // or run, where is_run
+  bool is_run;
+  bool on;
+  Slip slip;
+};
+
+/// Storage of order_rows.
+struct OrderScratch {
+  Lists<int> rows_of_body;  // that mobile bodies couple
+  std::vector<int> fill;
+  std::vector<int> row_stamp, body_stamp;
+};
+
+struct SolveScratch {
+  int solves = 0;                          // of this part in this step so far
+  bool froze = false;                      // the states did not settle by themselves
+  double step_length = 0.0;                // s
+  CapstanScratch capstan;                  // empty without finite friction on a cable
+  std::vector<int> middle_row_of_contact;  // the first of its middle rows; -1: none
+  std::vector<int> normal_row_of_contact;  // of the part's contacts; -1: none
+  std::vector<int> unknown_of_row;         // of rows that have one of their own, or -1
+  std::vector<int> row_of_unknown;
+  bool symmetric = true;                        // every unknown is one row's impulse
+  std::vector<int> impulse_begin, impulse_end;  // of each row's impulse, in impulse_terms
+  std::vector<Term> impulse_terms;              // of unknowns
+  std::vector<EquationTerm> equation_terms;     // of rows
+  std::vector<BodyTerm> columns;                // unordered; columns_of_body lists them by body
+  std::vector<BodyTerm> equations;
+  Lists<BodyTerm> columns_of_body;
+  std::vector<int> fill;
+  std::vector<int> least_column, least_equation;  // least unknown that moves, or sees, each body
+  std::vector<int> first;                         // profile
+  std::vector<double> right_side, solution, residual;
+  std::vector<RowEnd> ends;   // two an unknown: what it does to its row's bodies
+  std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
+  ProfileLu lu;
+  std::vector<Flip> flips;
+  OrderScratch ordering;
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/solve/capstan.h"
+#include "sim/solve/solve_scratch.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// A row has an unknown of its own unless it bears nothing, slips, or follows from its group's.
+bool has_unknown(const Row& row, std::size_t r, const CapstanScratch& capstan) {
+  if (!row.on) return false;
+  if (row.kind == RowKind::segment && !capstan.runs.empty() && capstan.group_of_row[r] >= 0) {
+    const Group& group = at(capstan.groups, capstan.group_of_row[r]);
+    return group.slack < 0 && at(capstan.members, group.begin) == static_cast<int>(r);
+  }
+  return row.slip == Slip::stick && row.diagonal > 0.0;
+}
+
+/// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
+void number_unknowns(const PartSystem& s, SolveScratch& set) {
+  set.unknown_of_row.assign(s.rows.size(), -1);
+  set.row_of_unknown.clear();
+  set.symmetric = set.capstan.runs.empty();
+  for (const int r : s.order) {
+    const Row& row = at(s.rows, r);
+    if (row.on && row.slip != Slip::stick) set.symmetric = false;
+    if (!has_unknown(row, index(r), set.capstan)) continue;
+    at(set.unknown_of_row, r) = static_cast<int>(set.row_of_unknown.size());
+    set.row_of_unknown.push_back(r);
+  }
+}
+
+/// p = F z and the equations G, row by row; groups of sliding cables add theirs.
+void express(PartSystem& s, SolveScratch& set) {
+  const bool slides = !set.capstan.runs.empty();
+  set.impulse_begin.assign(s.rows.size(), 0);
+  set.impulse_end.assign(s.rows.size(), 0);
+  set.impulse_terms.clear();
+  set.equation_terms.clear();
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    const int unknown = set.unknown_of_row[r];
+    const bool grouped = slides && set.capstan.group_of_row[r] >= 0;
+    set.impulse_begin[r] = static_cast<int>(set.impulse_terms.size());
+    if (unknown >= 0 && !grouped) {
+      set.impulse_terms.push_back({unknown, 1.0});
+      const bool later = slides && row.kind == RowKind::pinch_middle;
+      if (!later) set.equation_terms.push_back({unknown, static_cast<int>(r), 1.0});
+    } else if (row.on && row.slip != Slip::stick && row.friction >= 0) {
+      // Sliding friction opposes the sliding: p = -slip * bound * normal.
+      const Friction& friction = at(s.frictions, row.friction);
+      const int normal = friction.normal >= 0 ? at(set.unknown_of_row, friction.normal) : -1;
+      if (normal >= 0)
+        set.impulse_terms.push_back({normal, -static_cast<int>(row.slip) * friction.bound});
+    }
+    set.impulse_end[r] = static_cast<int>(set.impulse_terms.size());
+  }
+  if (!slides) return;
+  for (Friction& friction : s.frictions) friction.in_group_equation = false;
+  express_impulses(set);
+  add_group_equations(s, set);
+  for (int r = 0; r < s.first_contact_row; ++r) {
+    if (at(s.rows, r).kind == RowKind::pinch_middle && at(set.unknown_of_row, r) >= 0 &&
+        !at(s.frictions, at(s.rows, r).friction).in_group_equation) {
+      set.equation_terms.push_back({at(set.unknown_of_row, r), r, 1.0});
+    }
+  }
+}
+
+/// Adds vector * coefficient to the list's entry for (unknown, body), which if it exists is among
+/// the entries from `begin` on.
+void accumulate(std::vector<BodyTerm>& list, std::size_t begin, int unknown, int body,
+                const Eigen::Vector3d& vector, double coefficient) {
+  for (std::size_t k = begin; k < list.size(); ++k) {
+    if (list[k].unknown == unknown && list[k].body == body) {
+      list[k].vector += coefficient * vector;
+      return;
+    }
+  }
+  list.push_back({unknown, body, coefficient * vector});
+}
+
+/// Effects of unknowns on bodies, listed by body, and what each equation sees of the bodies.
+void gather_body_terms(const PartSystem& s, SolveScratch& set) {
+  const std::size_t bodies = s.mobility.size();
+  set.columns.clear();
+  set.equations.clear();
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const RowBodies& row = s.bodies[r];
+    for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
+      const Term& term = at(set.impulse_terms, k);
+      for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
+        if (at(s.mobile, body)) set.columns.push_back({term.index, body, term.coefficient * j});
+      }
+    }
+  }
+  std::size_t begin = 0;
+  int unknown = -1;
+  for (const EquationTerm& term : set.equation_terms) {
+    const RowBodies& row = at(s.bodies, term.row);
+    if (term.unknown != unknown) {
+      unknown = term.unknown;
+      begin = set.equations.size();
+    }
+    for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
+      if (at(s.mobile, body)) {
+        accumulate(set.equations, begin, unknown, body, j, term.coefficient);
+      }
+    }
+  }
+
+  Lists<BodyTerm>& lists = set.columns_of_body;
+  lists.begin.assign(bodies + 1, 0);
+  for (const BodyTerm& term : set.columns) ++at(lists.begin, term.body + 1);
+  for (std::size_t b = 0; b < bodies; ++b) lists.begin[b + 1] += lists.begin[b];
+  lists.items.resize(set.columns.size());
+  set.fill = lists.begin;
+  for (const BodyTerm& term : set.columns) {
+    at(lists.items, at(set.fill, term.body)++) = term;
+  }
+}
+
+/// The profile: unknown u reaches back to the least one that shares a body with it.
+void find_profile(const PartSystem& s, SolveScratch& set) {
+  const std::size_t bodies = s.mobility.size();
+  const int count = static_cast<int>(set.row_of_unknown.size());
+  set.least_column.assign(bodies, count);
+  set.least_equation.assign(bodies, count);
+  for (const BodyTerm& t : set.columns) {
+    at(set.least_column, t.body) = std::min(at(set.least_column, t.body), t.unknown);
+  }
+  for (const BodyTerm& t : set.equations) {
+    at(set.least_equation, t.body) = std::min(at(set.least_equation, t.body), t.unknown);
+  }
+  set.first.resize(index(count));
+  for (int u = 0; u < count; ++u) set.first[index(u)] = u;
+  for (const BodyTerm& t : set.columns) {
+    set.first[index(t.unknown)] =
+        std::min(set.first[index(t.unknown)], at(set.least_equation, t.body));
+  }
+  for (const BodyTerm& t : set.equations) {
+    set.first[index(t.unknown)] =
+        std::min(set.first[index(t.unknown)], at(set.least_column, t.body));
+  }
+}
+
+void assemble_coupled(PartSystem& s, SolveScratch& set) {
+  find_profile(s, set);
+  for (const EquationTerm& term : set.equation_terms) {
+    for (int k = set.impulse_begin[index(term.row)]; k < set.impulse_end[index(term.row)]; ++k) {
+      const int other = set.impulse_terms[index(k)].index;  // through compliance, without a body
+      const auto [low, high] = std::minmax(other, term.unknown);
+      set.first[index(high)] = std::min(set.first[index(high)], low);
+    }
+  }
+  set.lu.reset(set.first);
+  for (const BodyTerm& t : set.equations) {
+    const Eigen::Vector3d seen = at(s.mobility, t.body) * t.vector;
+    const auto& lists = set.columns_of_body;
+    const std::size_t b = index(t.body);
+    for (int k = lists.begin[b]; k < lists.begin[b + 1]; ++k) {
+      const BodyTerm& column = lists.items[index(k)];
+      set.lu.add(t.unknown, column.unknown, seen.dot(column.vector));
+    }
+  }
+  s.scale.assign(set.row_of_unknown.size(), 0.0);
+  for (const EquationTerm& term : set.equation_terms) {
+    const Row& row = s.rows[index(term.row)];
+    for (int k = set.impulse_begin[index(term.row)]; k < set.impulse_end[index(term.row)]; ++k) {
+      const Term& impulse = set.impulse_terms[index(k)];
+      const double both = term.coefficient * impulse.coefficient;
+      if (row.compliance > 0.0) set.lu.add(term.unknown, impulse.index, both * row.compliance);
+      if (impulse.index == term.unknown) {
+        at(s.scale, term.unknown) += std::abs(both) * (row.diagonal + row.compliance);
+      }
+    }
+  }
+  for (double& scale : s.scale) {
+    if (scale == 0.0) scale = 1.0;
+  }
+}
+
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
+/// Appends an end of unknown u to the chain of its body.
+void append_end(RowEnd* ends, int* last_end, int end, int body, const Eigen::Vector3d& j) {
+  if (body < 0) return;
+  int& last = last_end[body];
+  ends[end].j = j;
+  ends[end].previous = last;
+  ends[end].least = last >= 0 ? ends[last].least : end / 2;
+  last = end;
+}
+
+/// The matrix J M^-1 J^T + compliance where each unknown is one row's impulse. Every body keeps the
+/// chain of the unknowns that move it, so that a row finds those that it is coupled with.
+void assemble_symmetric(PartSystem& s, SolveScratch& set) {
+  const int count = static_cast<int>(set.row_of_unknown.size());
+  set.last_end.assign(s.mobility.size(), -1);
+  set.ends.resize(2 * index(count));
+  s.scale.resize(index(count));
+  s.ldl.clear();
+  RowEnd* ends = set.ends.data();
+  int* last_end = set.last_end.data();
+  for (int u = 0; u < count; ++u) {
+    const int r = set.row_of_unknown[index(u)];
+    const Row& row = at(s.rows, r);
+    const RowBodies& bodies = at(s.bodies, r);
+    const int a = at(s.mobile, bodies.a) ? bodies.a : -1;
+    const int b = at(s.mobile, bodies.b) ? bodies.b : -1;
+    const int last_a = a >= 0 ? last_end[a] : -1, last_b = b >= 0 ? last_end[b] : -1;
+    int first = u;
+    if (last_a >= 0) first = std::min(first, ends[last_a].least);
+    if (last_b >= 0) first = std::min(first, ends[last_b].least);
+    double* entries = s.ldl.append(first) - first;
+    if (a >= 0) {
+      const Eigen::Vector3d response = at(s.mobility, a) * bodies.ja;
+      for (int e = last_a; e >= 0; e = ends[e].previous) entries[e / 2] += dot(response, ends[e].j);
+      if (a == b) entries[u] += 2.0 * dot(response, bodies.jb);
+    }
+    if (b >= 0) {
+      const Eigen::Vector3d response = at(s.mobility, b) * bodies.jb;
+      for (int e = last_b; e >= 0; e = ends[e].previous) entries[e / 2] += dot(response, ends[e].j);
+    }
+    s.scale[index(u)] = row.diagonal + row.compliance;
+    entries[u] += s.scale[index(u)];
+    append_end(ends, last_end, 2 * u, a, bodies.ja);
+    append_end(ends, last_end, 2 * u + 1, b, bodies.jb);
+  }
+}
+
+/// Assembles and factors; returns how many rows repeat others.
+int factor(PartSystem& s, SolveScratch& set, double ridge) {
+  s.factored.clear();
+  if (set.symmetric) {
+    assemble_symmetric(s, set);
+    return s.ldl.factor(s.scale, ridge);
+  }
+  assemble_coupled(s, set);
+  return set.lu.factor(s.scale, ridge);
+}
+
+/// Whether the last step's factors serve: the same rows bear a force, and their coefficients are
+/// the same to the last bit.
+bool factors_stand(const PartSystem& s, const SolveScratch& set) {
+  if (!set.symmetric || !s.rows_stand || s.factored.empty()) return false;
+  if (set.row_of_unknown != s.factored) return false;
+  for (std::size_t u = 0; u < s.factored.size(); ++u) {
+    const Row& row = at(s.rows, s.factored[u]);
+    if (row.diagonal + row.compliance != s.scale[u]) return false;
+  }
+  return true;
+}
+
+/// Impulses of the rows for the unknowns' values, and the velocities.
+void set_impulses(PartSystem& s, const SolveScratch& set) {
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    double p = 0.0;
+    if (set.symmetric) {
+      const int unknown = set.unknown_of_row[r];
+      if (unknown >= 0) p = at(set.solution, unknown);
+    } else {
+      for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
+        const Term& term = at(set.impulse_terms, k);
+        p += term.coefficient * at(set.solution, term.index);
+      }
+    }
+    s.rows[r].impulse = p;
+  }
+  apply_impulses(s);
+}
+
+/// The rows' speeds, and what each equation misses at them; returns the largest.
+double find_residuals(PartSystem& s, SolveScratch& set) {
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    row.speed = row_speed(s, r) + row.compliance * row.impulse;
+  }
+  set.residual.assign(set.row_of_unknown.size(), 0.0);
+  if (set.symmetric) {
+    for (std::size_t u = 0; u < set.residual.size(); ++u) {
+      set.residual[u] = at(s.rows, set.row_of_unknown[u]).speed;
+    }
+  } else {
+    for (const EquationTerm& term : set.equation_terms) {
+      at(set.residual, term.unknown) += term.coefficient * at(s.rows, term.row).speed;
+    }
+  }
+  double largest = 0.0;
+  for (const double r : set.residual) largest = std::max(largest, std::abs(r));
+  return largest;
+}
+
+double fastest(const PartSystem& s) {
+  double speed = 0.0;
+  for (const Eigen::Vector3d& v : s.velocity) {
+    speed = std::max({speed, std::abs(v.x()), std::abs(v.y())});
+  }
+  return speed;
+}
+
+/// One step of iterative refinement, and what it leaves. The residual is measured at the
+/// velocities, where heavy and light bodies do not mix, so that it restores what elimination loses
+/// at large mass ratios.
+double refine(PartSystem& s, SolveScratch& set) {
+  if (set.symmetric) {
+    s.ldl.solve(set.residual);
+  } else {
+    set.lu.solve(set.residual);
+  }
+  for (std::size_t u = 0; u < set.solution.size(); ++u) set.solution[u] -= set.residual[u];
+  set_impulses(s, set);
+  return find_residuals(s, set);
+}
+
+/// Starts from no impulses at all; returns the largest residual.
+double start(PartSystem& s, SolveScratch& set) {
+  set.solution.assign(set.row_of_unknown.size(), 0.0);
+  s.velocity = s.free_velocity;
+  if (set.symmetric) {
+    set.residual.resize(set.row_of_unknown.size());
+    double largest = 0.0;
+    for (std::size_t u = 0; u < set.residual.size(); ++u) {
+      set.residual[u] = row_speed(s, index(set.row_of_unknown[u]));
+      largest = std::max(largest, std::abs(set.residual[u]));
+    }
+    return largest;
+  }
+  for (Row& row : s.rows) row.impulse = 0.0;
+  return find_residuals(s, set);
+}
+
+/// Of all solutions of a system with repeated rows, (nearly) the one of least norm: that of the
+/// system with a small ridge on its diagonal, whose right side is first made consistent by a basic
+/// solution.
+void spread_over_repeated_rows(PartSystem& s, SolveScratch& set, double rounding) {
+  constexpr double ridge = 1e-8;
+  set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
+  const auto subtract_contradictions = [&set] {
+    double largest = 0.0;
+    for (std::size_t u = 0; u < set.residual.size(); ++u) {
+      set.residual[u] -= set.right_side[u];
+      largest = std::max(largest, std::abs(set.residual[u]));
+    }
+    return largest;
+  };
+  factor(s, set, ridge);
+  start(s, set);
+  for (int k = 0; k < 3; ++k) {
+    subtract_contradictions();
+    refine(s, set);
+  }
+  // Beside masses that differ by more than the ridge it has not found all of the solution: the rest
+  // is added without it.
+  if (subtract_contradictions() <= rounding) return;
+  factor(s, set, 0.0);
+  refine(s, set);
+  for (int k = 0; k < 2 && subtract_contradictions() > rounding; ++k) refine(s, set);
+}
+
+}  // namespace
+
+void apply_impulses(PartSystem& s) {
+  s.velocity = s.free_velocity;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) push(s, r, s.rows[r].impulse);
+}
+
+void solve_for_states(PartSystem& s, SolveScratch& set) {
+  if (!set.capstan.runs.empty()) make_groups(s, set);
+  number_unknowns(s, set);
+  if (!set.symmetric) {
+    express(s, set);
+    gather_body_terms(s, set);
+  }
+  int repeated = 0;
+  if (!factors_stand(s, set)) {
+    repeated = factor(s, set, 0.0);
+    if (set.symmetric && repeated == 0) s.factored = set.row_of_unknown;
+  }
+  const double before = start(s, set);
+  double residual = refine(s, set);
+  const double rounding = 1e-13 * before + 4e-16 * fastest(s);
+  for (int k = 0; k < 2 && repeated == 0 && residual > rounding; ++k) residual = refine(s, set);
+  if (repeated > 0) spread_over_repeated_rows(s, set, rounding);
+}
+
+}  // namespace pinchlab

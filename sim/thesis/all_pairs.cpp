@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/thesis/all_pairs.h"
+
+#include "sim/cable/cable.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+bool overlap(const Box& a, const Box& b) {
+  return b.low.x() <= a.high.x() && a.low.x() <= b.high.x() && b.low.y() <= a.high.y() &&
+         a.low.y() <= b.high.y();
+}
+
+}  // namespace
+
+void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work) {
+  BroadPhase& broad = work.broad_phase;
+  broad.body_pairs.clear();
+  broad.wall_pairs.clear();
+  update_boxes(scene, world, 0.0, broad.boxes);
+  const int count = static_cast<int>(world.bodies.size());
+  const int walls = static_cast<int>(scene.walls.size());
+  for (int a = 0; a < count; ++a) {
+    const auto i = static_cast<std::size_t>(a);
+    const bool fixed = world.bodies[i].kind == BodyKind::fixed;
+    const Box box = broad.boxes[i];
+    for (int w = 0; w < walls; ++w) broad.wall_pairs.push_back({a, w});
+    for (int b = a + 1; b < count; ++b) {
+      const auto j = static_cast<std::size_t>(b);
+      if (!overlap(box, broad.boxes[j])) continue;
+      if (fixed && world.bodies[j].kind == BodyKind::fixed) continue;
+      broad.body_pairs.push_back({a, b});
+    }
+  }
+}
+
+void find_all_span_pairs(const World& world, Workspace& work) {
+  BroadPhase& broad = work.broad_phase;
+  broad.span_pairs.clear();
+  const int count = static_cast<int>(world.bodies.size());
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      const Box box = span_box(cable.segments[s]);
+      for (int b = 0; b < count; ++b) {
+        const auto i = static_cast<std::size_t>(b);
+        if (!overlap(box, broad.boxes[i])) continue;
+        broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), b});
+      }
+    }
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What the stages of a step keep beside the World: lists that stand while nothing of theirs has
+// moved, and storage, so that a warm step allocates nothing. All of it follows from the World: a
+// new Workspace before each step gives the same bits, only later.
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/detect/broad_phase.h"
+#include "sim/parts.h"
+#include "sim/solve/part_system.h"
+#include "sim/solve/solve_scratch.h"
+#include "sim/thesis/sweep_scratch.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// A body that has just left a cable.
+struct Release {
+  int cable, body;
+};
+
+/// Storage of find_contacts and configure_pinches.
+struct ContactScratch {
+  std::vector<Contact> old_contacts;  // of the step before
+  Lists<int> contacts_of_body;        // bodies without walls; by configure_pinches
+  std::vector<int> fill;              // cursor of contacts_of_body while it is made
+  bool contacts_kept = false;         // all contacts are those of the step before; by find_contacts
+  bool pinches_kept = false;          // and all pinches; by configure_pinches
+  int configured_changes = -1;        // changes of all cables when pinches were configured
+};
+
+struct Workspace {
+  std::uint64_t stamp = 0;  // World::stamp of the state that all of this is for
+
+  Parts parts;                      // by find_parts
+  Parts parts_before;               // lists of the last division, while the next is made
+  std::vector<PartSystem> systems;  // of Part::system; by make_system and the solve
+  SolveScratch solve;               // of the part being solved
+
+  BroadPhase broad_phase;         // by find_body_pairs and find_span_pairs
+  std::vector<Release> released;  // since update_segments; by remove_links
+  bool spans_moved = true;        // any of them, by update_segments
+  ContactScratch contacts;
+  SweepScratch sweeps;  // of the iterative solver
+
+  std::vector<Vec2> velocity_before;  // m/s, at the start of the step; with diagnostics
+  std::vector<double> angular_velocity_before;
+};
+
+/// Makes the workspace fit the world, if it was last used for another state: what stands of it is
+/// forgotten, and the parts are found anew.
+void fit(const World& world, Workspace& work);
+
+/// Notes that the workspace is for the world as it is now, and for no other state.
+void mark(World& world, Workspace& work);
+
+}  // namespace pinchlab

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The World is all of the state: workspaces come and go, copies are put back, and no bit changes.
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/random_scene.h"
+#include "tests/sim/same_state.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+constexpr int scenes = 40, steps = 480;
+
+Configuration configuration_of(int seed) {
+  constexpr const char* names[] = {"pinch", "pinch", "pinch_no_contact", "cable", "thesis"};
+  return *configuration_from_string(names[seed % 5]);
+}
+
+TEST(State, AClearedWorkspaceChangesNoBit) {
+  for (int seed = 0; seed < scenes; ++seed) {
+    const Scene scene = random_scene(seed);
+    World kept = make_world(scene, configuration_of(seed)), cleared = kept;
+    Workspace work;
+    for (int i = 0; i < steps; ++i) {
+      Workspace fresh;
+      ASSERT_EQ(step(scene, kept, work), StepStatus::ok) << kept.failure;
+      ASSERT_EQ(step(scene, cleared, fresh), StepStatus::ok) << cleared.failure;
+      ASSERT_TRUE(same_state(kept, cleared)) << "seed " << seed << ", step " << i;
+    }
+  }
+}
+
+// A stage that tries a step, of another length even, and goes back to where it was.
+TEST(State, AStepThatIsTakenBackLeavesNothing) {
+  for (int seed = 0; seed < scenes; ++seed) {
+    const Scene scene = random_scene(seed);
+    World straight = make_world(scene, configuration_of(seed)), tried = straight;
+    Workspace straight_work, work;
+    for (int i = 0; i < steps; ++i) {
+      const World saved = tried;
+      tried.step_length *= i % 2 == 0 ? 1.0 : 0.3;
+      for (int k = 0; k <= i % 3; ++k) ASSERT_EQ(step(scene, tried, work), StepStatus::ok);
+      velocities_now(scene, tried, work);
+      tried = saved;
+      ASSERT_EQ(step(scene, tried, work), StepStatus::ok);
+      ASSERT_EQ(step(scene, straight, straight_work), StepStatus::ok);
+      ASSERT_TRUE(same_state(straight, tried)) << "seed " << seed << ", step " << i;
+    }
+  }
+}
+
+TEST(State, OneWorkspaceServesAnyWorld) {
+  const Scene one = random_scene(1), other = random_scene(2);
+  World a = make_world(one, Method::pinch), b = make_world(other, Method::pinch);
+  World a_alone = a, b_alone = b;
+  Workspace shared, a_work, b_work;
+  for (int i = 0; i < 100; ++i) {
+    step(one, a, shared);
+    step(other, b, shared);
+    step(one, a_alone, a_work);
+    step(other, b_alone, b_work);
+    ASSERT_TRUE(same_state(a, a_alone) && same_state(b, b_alone)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
