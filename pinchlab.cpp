@@ -19,6 +19,7 @@
 #include "analysis/report.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
+#include "demos/baseline.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
 #include "demos/still.h"
@@ -246,6 +247,22 @@ void add_simulate(CLI::App& app) {
   });
 }
 
+void add_baseline(CLI::App& app) {
+  auto scene = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand(
+      "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
+  add_scene(*command, *scene);
+  command->footer(
+      "Plain cable joints (cable) are recommended where they break nothing and move as smoothly as "
+      "pinch\njoints without contact (pinch_no_contact), under which bodies come equally close.\n\n"
+      "Examples:\n"
+      "  pinchlab baseline demos/02-stack.json");
+  command->callback([scene] {
+    const SceneFile file = read_scene_file(*scene);
+    fmt::print("{}", text(file, advise_baseline(file)));
+  });
+}
+
 // "ours=theirs" pairs of --map-column, each for a column of ours.
 std::map<std::string, std::string> column_map(const std::vector<std::string>& pairs) {
   std::map<std::string, std::string> columns;
@@ -435,6 +452,7 @@ int run(int argc, char** argv) {
   add_render(app);
   add_still(app);
   add_simulate(app);
+  add_baseline(app);
   experiments::add_bench_commands(app);
   experiments::add_advise_command(app);
   add_analyse(app);

@@ -13,6 +13,8 @@
 namespace pinchlab {
 namespace {
 
+constexpr double most_stretch = 1e-3;  // of a cable's length: rope from nothing
+
 /// A method's motion, frame by frame.
 struct Motion {
   std::vector<std::vector<Vec2>> position;
@@ -21,14 +23,21 @@ struct Motion {
 };
 
 Motion play(const SceneFile& file, MethodFigures& figures) {
-  Player player(file, file.scene, figures.method);
+  Configuration configuration = figures.method;
+  configuration.diagnostics = true;
+  Player player(file, file.scene, configuration);
   Motion motion;
+  double stretch = 0.0, stretched_at = 0.0;  // m, s
   try {
     for (int frame = 0; frame < file.scene.frame_count; ++frame) {
       player.advance_to(frame);
       const World& world = player.world();
       motion.position.push_back(world.position);
       motion.angle.push_back(world.angle);
+      if (frame > 0 && !(world.diagnostics.largest_stretch <= stretch)) {
+        stretch = world.diagnostics.largest_stretch;
+        stretched_at = player.time();
+      }
       motion.at_wall.emplace_back(world.position.size(), 0);
       for (const Contact& contact : world.contacts) {
         if (contact.wall < 0 || !contact.touching) continue;
@@ -38,7 +47,12 @@ Motion play(const SceneFile& file, MethodFigures& figures) {
   } catch (const std::runtime_error& error) {
     figures.problems.emplace_back(error.what());
   }
-  for (const std::string& line : player.broken_promises()) figures.problems.push_back(line);
+  double shortest = infinity;  // m
+  for (const CableState& cable : player.world().cables) shortest = std::min(shortest, cable.length);
+  if (!(stretch <= most_stretch * shortest)) {
+    figures.problems.push_back(fmt::format(
+        "a span is {:.3g} m longer than its material at {:.2f} s", stretch, stretched_at));
+  }
   return motion;
 }
 
@@ -115,7 +129,9 @@ std::string text(const SceneFile& file, const BaselineAdvice& advice) {
                        figures->largest_turn * 180.0 / std::numbers::pi);
   }
   for (const MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
-    for (const std::string& problem : figures->problems) out += problem + "\n";
+    for (const std::string& problem : figures->problems) {
+      out += fmt::format("{}: {}\n", to_string(figures->method), problem);
+    }
   }
   const nlohmann::ordered_json baseline = {{"method", to_string(advice.recommended)},
                                            {"reason", advice.reason}};

@@ -134,6 +134,13 @@ class Composer {
     }
   }
 
+  /// The background, of which holes are made; opaque even where the page is not.
+  Colour paper() const {
+    Colour colour = theme_.background;
+    colour.alpha = 255;
+    return colour;
+  }
+
   Paint paint_of(std::size_t i) const {
     const Body& body = scene_.bodies[i];
     Paint paint = body.kind == BodyKind::fixed ? theme_.fixed
@@ -172,7 +179,7 @@ class Composer {
     }
     picture_.add(disc(centre, 0.17 * r, edge));
     if (held) {
-      picture_.add(disc(centre, 0.11 * r, theme_.background));
+      picture_.add(disc(centre, 0.11 * r, paper()));
       picture_.add(disc(centre, 0.055 * r, theme_.ink));
     }
   }
@@ -186,7 +193,7 @@ class Composer {
       } else {
         const double r = anchor_radius(cable.half_width);
         picture_.add(disc(link->offset, r, theme_.ink));
-        picture_.add(disc(link->offset, 0.4 * r, theme_.background));
+        picture_.add(disc(link->offset, 0.4 * r, paper()));
       }
     }
   }

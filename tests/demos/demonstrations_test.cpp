@@ -88,14 +88,14 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x85ae97eff85ecd05, 0xd3e85fd1977bba25},
-    {"02-stack", 0x6279f4e6a9675cd0, 0x7820a2ac0bb68cc1},
-    {"03-drop", 0x9e143139d9c1c962, 0xdce3b9c0911a188e},
-    {"04-two-blocking", 0x5767735f77dd3670, 0x5c556f48d9477a21},
-    {"05-notch", 0x705325b82a599c57, 0x85adcdfd00025d37},
-    {"06-windlass", 0x8015cba13a7140f4, 0xa7df6b8c613f189e},
-    {"07-driven-roller", 0x3cf905786cf63aef, 0x5523930d78f26db7},
-    {"08-driven-roller-weights", 0xaec508a92da1490d, 0xeadde69f6f8b7ccc},
+    {"01-roll-over", 0x34a1eaa709289349, 0x1e7aa22b9b3c930e},
+    {"02-stack", 0xdc4dca8c384ccb15, 0x6108cc8c405ab6f2},
+    {"03-drop", 0x2f19eab5e670cea2, 0x506cc218cee0dcd8},
+    {"04-two-blocking", 0x07a155f3a79649e7, 0xf10cfa63aec2d77c},
+    {"05-notch", 0x16a2cbcafd81820b, 0x70422b9ab3dfaeb4},
+    {"06-windlass", 0x75c990b37d4c0f3c, 0x9e4cc8b161dc2ea5},
+    {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
+    {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},
 };
 
 class Demonstration : public ::testing::TestWithParam<Golden> {

@@ -81,6 +81,26 @@ TEST(Still, NeutralSheetsNameNoMethod) {
   EXPECT_NE(svg({}), svg({"--neutral"}));
 }
 
+TEST(Baseline, PlainJointsWhereTheyWork) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(folder, {"baseline", "01-small.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("\nRecommended: cable. "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("The scene has it already."), std::string::npos) << run.out;
+}
+
+TEST(Baseline, NoneThatJittersIsRecommended) {
+  const fs::path folder = scratch_folder();
+  json scene = json::parse(text_of(PINCHLAB_SOURCE_DIR "/demos/02-stack.json"));
+  scene["baseline"]["method"] = "cable";
+  std::ofstream(folder / "02-stack.json") << scene;
+  const RunResult run = run_program(folder, {"baseline", "02-stack.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("\nRecommended: pinch_no_contact. "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("\"baseline\": {\"method\":\"pinch_no_contact\""), std::string::npos)
+      << run.out;
+}
+
 TEST(Theme, TheDeliveredOnesAreReadAndTheDefaultIsTheDefault) {
   const std::string folder = PINCHLAB_SOURCE_DIR "/demos/themes/";
   EXPECT_EQ(read_theme_file(folder + "default.json").theme, Theme{});
