@@ -2,6 +2,8 @@
 #pragma once
 // Links and segments: geometry and transport, insertion, removal and merging.
 
+#include <span>
+
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -79,8 +81,15 @@ void remove_link(const World& world, CableState& cable, int link);
 void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
                  int orientation);
 
-/// Splits link i, `arc` rad after its tail, by a middle link on `body`: i, middle, i + 2
-/// (thesis 4.2.2).
-void insert_pinch(const World& world, CableState& cable, std::size_t link, double arc, int body);
+/// A body that presses link `link`, `arc` rad after its tail.
+struct NewPinch {
+  int link;
+  double arc;
+  int body;
+};
+
+/// Splits links by middle links on the bodies that press them: i, middle, i + 2 (thesis 4.2.2). The
+/// pinches are sorted by link and arc.
+void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches);
 
 }  // namespace pinchlab
