@@ -103,6 +103,7 @@ bool order_stands(const PartSystem& s) {
 void order_rows(PartSystem& s, OrderScratch& scratch) {
   if (order_stands(s)) return;
   s.structure.clear();
+  s.assembled.clear();
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const auto [a, b] = coupled(s, r);
     s.structure.push_back(a);
