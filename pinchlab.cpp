@@ -317,7 +317,7 @@ void add_analyse(CLI::App& app) {
 void add_power(CLI::App& app) {
   auto question = std::make_shared<analysis::PowerQuestion>();
   CLI::App* command =
-      app.add_subcommand("power", "How many participants a study needs (exact binomial)");
+      app.add_subcommand("power", "How many participants a study needs for the test that is read");
   command->footer(
       "  pinchlab power --share 0.75                         one answer a participant\n"
       "  pinchlab power --share 0.6 --trials 8 --icc 0.1     eight answers a participant that "

@@ -19,11 +19,47 @@ void check_options(const AnalysisOptions& options) {
   }
 }
 
+constexpr const char* repeated =
+    "each participant answered more than once, and the answers of one participant are not "
+    "independent";
+
+Reading reading_of_participants(const Pooled& pooled) {
+  return {.p = pooled.sign_flip.p,
+          .test = "sign-flip test over participants",
+          .low = pooled.bootstrap.low,
+          .high = pooled.bootstrap.high,
+          .interval = "cluster bootstrap"};
+}
+
+Reading reading_of_answers(const Row& row, const char* test) {
+  return {.p = row.p_exact,
+          .test = test,
+          .low = row.wilson.low,
+          .high = row.wilson.high,
+          .interval = "Wilson"};
+}
+
+Reading no_reading(const std::string& reason) {
+  const Estimate none = Estimate::none(reason);
+  return {.p = none, .test = "no test", .low = none, .high = none, .interval = "no interval"};
+}
+
 DemonstrationResult analyse_demonstration(const AnswersTable& table, std::uint16_t index,
-                                          double alpha) {
+                                          const AnalysisOptions& options) {
   DemonstrationResult result;
-  result.row = make_row(table.demonstrations[index], table.counts[index], alpha);
-  result.scale = scale_value(result.row.share, result.row.wilson.low, result.row.wilson.high);
+  Row& row = result.row;
+  row = make_row(table.demonstrations[index], table.counts[index], options.alpha);
+  if (table.answers_per_demonstration == 1) {
+    row.read = reading_of_answers(row, "exact binomial test");
+  } else {
+    row.why_not_independent = repeated;
+    const Pooled pooled =
+        pooled_tests(table, {row.name, {index}}, options.alpha, options.bootstrap, options.seed);
+    row.read = pooled.participants > 1
+                   ? reading_of_participants(pooled)
+                   : no_reading("one participant; nothing is known of how participants differ");
+  }
+  result.scale = scale_value(row.share, row.read.low, row.read.high);
   for (const Group& group : table.groups) {
     const auto& members = group.demonstrations;
     if (group.name != all_group &&
@@ -48,18 +84,32 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
   result.row = make_row(group.name, sum, options.alpha);
   result.pooled = pooled_tests(table, group, options.alpha, options.bootstrap, options.seed);
   result.heterogeneity = heterogeneity(counts);
+  if (table.answers_per_demonstration > 1) {
+    result.heterogeneity.chi_square = result.heterogeneity.df = result.heterogeneity.p =
+        Estimate::none(fmt::format("{}; read Cochran's Q", repeated));
+  }
   result.cochran_q = cochran_q(table, group);
   result.mixed_model = fit_mixed_model(mixed_data(table, group), options.alpha);
-  // On the scale, a group's interval is the one that allows for repeated answers, where there is
-  // one.
-  const ClusterBootstrap& bootstrap = result.pooled.bootstrap;
-  result.scale = bootstrap.low
-                     ? scale_value(result.row.share, bootstrap.low, bootstrap.high)
-                     : scale_value(result.row.share, result.row.wilson.low, result.row.wilson.high);
+  const bool one_answer_each =
+      group.demonstrations.size() == 1 && !(table.answers_per_demonstration > 1);
+  Row& row = result.row;
+  row.read = result.pooled.participants > 1 && !one_answer_each
+                 ? reading_of_participants(result.pooled)
+                 : reading_of_answers(row, one_answer_each ? "exact binomial test"
+                                                           : "exact binomial test that takes all "
+                                                             "answers as independent");
+  result.scale = scale_value(row.share, row.read.low, row.read.high);
   return result;
 }
 
 }  // namespace
+
+Difference difference_read(const GroupResult& group) {
+  const CochranQ& cochran = group.cochran_q;
+  if (cochran.p) return {"Cochran's Q", cochran.q, cochran.df, cochran.p};
+  const Heterogeneity& pearson = group.heterogeneity;
+  return {"X²", pearson.chi_square, pearson.df, pearson.p};
+}
 
 Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) {
   check_options(options);
@@ -67,7 +117,7 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   report.options = options;
   for (size_t i = 0; i < table.demonstrations.size(); ++i) {
     report.demonstrations.push_back(
-        analyse_demonstration(table, static_cast<std::uint16_t>(i), options.alpha));
+        analyse_demonstration(table, static_cast<std::uint16_t>(i), options));
   }
   for (const Group& group : table.groups)
     report.groups.push_back(analyse_group(table, group, options));

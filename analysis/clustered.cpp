@@ -272,39 +272,38 @@ CochranQ cochran_q(const AnswersTable& table, const Group& group) {
   };
   if (table.answers.empty()) return all(no_participants);
   if (group.demonstrations.size() < 2) return all("one demonstration cannot differ from itself");
-  if (table.answers_per_demonstration > 1) {
-    return all("each pair was answered more than once; Cochran's Q takes one answer a cell");
-  }
   const std::vector<bool> member = members_of(table, group);
   const size_t k = group.demonstrations.size();
+  const size_t complete = k * static_cast<size_t>(table.answers_per_demonstration);
   std::vector<double> column(table.demonstrations.size(), 0.0);
+  std::vector<double> score(table.demonstrations.size());
   double total = 0.0;
-  double row_squares = 0.0;
+  double spread = 0.0;  // sum over participants of K sum of squares - square of sum
   each_participant(table, [&](size_t begin, size_t end) {
     size_t answers = 0;
-    double pinch = 0.0;
+    std::fill(score.begin(), score.end(), 0.0);
     for (size_t i = begin; i < end; ++i) {
       if (!member[table.answers[i].demonstration]) continue;
       ++answers;
-      pinch += table.answers[i].chose_pinch ? 1.0 : 0.0;
+      score[table.answers[i].demonstration] += table.answers[i].chose_pinch ? 1.0 : 0.0;
     }
-    if (answers < k) return;
+    if (answers < complete) return;
     ++result.participants;
-    for (size_t i = begin; i < end; ++i) {
-      if (member[table.answers[i].demonstration] && table.answers[i].chose_pinch) {
-        ++column[table.answers[i].demonstration];
-      }
+    double sum = 0.0, squares = 0.0;
+    for (std::uint16_t j : group.demonstrations) {
+      column[j] += score[j];
+      sum += score[j];
+      squares += score[j] * score[j];
     }
-    total += pinch;
-    row_squares += pinch * pinch;
+    total += sum;
+    spread += static_cast<double>(k) * squares - sum * sum;
   });
-  const auto width = static_cast<double>(k);
-  const double below = width * total - row_squares;
-  if (below == 0.0)
+  if (spread == 0.0)
     return all("no participant answered differently from one demonstration to another");
+  const auto width = static_cast<double>(k);
   double column_squares = 0.0;
   for (double sum : column) column_squares += sum * sum;
-  const double q = (width - 1.0) * (width * column_squares - total * total) / below;
+  const double q = (width - 1.0) * (width * column_squares - total * total) / spread;
   result.q = q;
   result.df = width - 1.0;
   result.p = chi_square_p(q, width - 1.0);

@@ -59,8 +59,9 @@ struct ClusterBootstrap {
 ClusterBootstrap cluster_bootstrap(std::span<const Cluster> clusters, double alpha, int resamples,
                                    gsl_rng* rng);
 
-/// Cochran's Q: do the demonstrations differ, within participants? Needs one answer of every
-/// participant to every demonstration; participants with gaps are left out of it.
+/// Cochran's Q: do the demonstrations differ, within participants? A participant's score of a
+/// demonstration is the number of answers for pinch, 0 or 1 in Cochran's own case; under the
+/// hypothesis the scores of a participant can be exchanged. Participants with gaps are left out.
 struct CochranQ {
   Estimate q;
   Estimate df;

@@ -72,14 +72,19 @@ class Writer {
       block.caption = begin == 0 ? caption : caption + " (continued)";
       block.header = {""};
       Cells first{{pinch()}}, second{{cable()}}, expected{{"Expected distribution"}};
-      Cells p{{"Distribution probability (p-value)"}};
+      // Where answers are not independent the chi-square test has no p-value to give.
+      const bool naive = rows[begin]->why_not_independent.empty();
+      Cells p{{naive ? "Distribution probability (p-value)"
+                     : fmt::format("p-value ({})", rows[begin]->read.test)}};
       for (size_t i = begin; i < end; ++i) {
         const Row& row = *rows[i];
         block.header.push_back(row.name);
         first.push_back({fmt::format("{}", row.counts.pinch)});
         second.push_back({fmt::format("{}", row.counts.cable)});
         expected.push_back({fmt::format("{}", static_cast<double>(row.counts.total()) / 2.0)});
-        p.push_back({p_rounded(row.p_chi_square, decimals), row.p_chi_square < alpha()});
+        const Estimate value = naive ? Estimate(row.p_chi_square) : row.read.p;
+        p.push_back(
+            {value ? p_rounded(value.value, decimals) : dash, value && value.value < alpha()});
       }
       block.rows = {first, second, expected, p};
       add(std::move(block));
@@ -100,10 +105,14 @@ class Writer {
                     "Wilson %",
                     "Clopper–Pearson %",
                     "Cohen's h",
-                    "p (Holm)",
-                    "p (BH)",
+                    "p (exact, Holm)",
+                    "p (exact, BH)",
                     "Bayes factor",
                     "JOD"};
+    std::vector<double> exact;
+    for (const Row* row : rows) exact.push_back(row->p_exact);
+    const std::vector<double> by_holm = holm(exact);
+    const std::vector<double> by_bh = benjamini_hochberg(exact);
     for (size_t i = 0; i < rows.size(); ++i) {
       const Row& row = *rows[i];
       block.rows.push_back({{row.name},
@@ -116,12 +125,43 @@ class Writer {
                             {percent_interval(row.wilson.low, row.wilson.high)},
                             {percent_interval(row.clopper_pearson.low, row.clopper_pearson.high)},
                             {number(row.cohens_h, 3)},
-                            p_cell(row.p_holm),
-                            p_cell(row.p_bh),
+                            p_cell(by_holm[i]),
+                            p_cell(by_bh[i]),
                             {bayes_factor(row.log_bayes_factor)},
                             {number(scales[i]->jod, 2)}});
     }
     add(std::move(block));
+  }
+
+  // What can be said of demonstrations that participants answered more than once.
+  void participant_table(const std::vector<const Row*>& rows,
+                         const std::vector<const ScaleValue*>& scales) {
+    const Reading& first = rows.front()->read;
+    TableBlock block;
+    block.caption = fmt::format(
+        "Every demonstration, participants as units: {} and {} interval ({}); p-values below {} "
+        "are bold",
+        first.test, level(), first.interval, alpha());
+    block.header = {"",           pinch(),     cable(),    "share %", "p",
+                    "interval %", "Cohen's h", "p (Holm)", "p (BH)",  "JOD"};
+    for (size_t i = 0; i < rows.size(); ++i) {
+      const Row& row = *rows[i];
+      block.rows.push_back({{row.name},
+                            {fmt::format("{}", row.counts.pinch)},
+                            {fmt::format("{}", row.counts.cable)},
+                            {number(100.0 * row.share, 1)},
+                            p_cell(row.read.p),
+                            {percent_interval(row.read.low, row.read.high)},
+                            {number(row.cohens_h, 3)},
+                            p_cell(row.read.p_holm),
+                            p_cell(row.read.p_bh),
+                            {number(scales[i]->jod, 2)}});
+    }
+    add(std::move(block));
+    add(Paragraph{fmt::format(
+        "Tests and intervals that count answers as independent (chi-square, exact binomial, "
+        "Wilson, Clopper–Pearson, Bayes factor) are not given for single demonstrations: {}.",
+        rows.front()->why_not_independent)});
   }
 
   void demonstrations() {
@@ -132,8 +172,13 @@ class Writer {
       rows.push_back(&result.row);
       scales.push_back(&result.scale);
     }
-    thesis_table("2AFC results, chi-square analysis", rows, 3);
+    const bool independent = rows.front()->why_not_independent.empty();
+    thesis_table(independent ? "2AFC results, chi-square analysis" : "2AFC results", rows, 3);
     add(FigureBlock{"shares"});
+    if (!independent) {
+      participant_table(rows, scales);
+      return;
+    }
     detail_table(fmt::format("Every demonstration, with {} intervals; p-values below {} are bold",
                              level(), alpha()),
                  rows, scales);
@@ -260,30 +305,36 @@ class Writer {
                             p_cell(result.cochran_q.p)});
     }
     add(std::move(block));
-    const Heterogeneity& all = report_.all().heterogeneity;
+    const Difference all = difference_read(report_.all());
     if (all.p && all.p.value < alpha()) {
       add(
           Paragraph{"The demonstrations differ, so what holds for “all” need not hold for any "
                     "single one; read the "
                     "groups and the demonstrations first."});
     }
+    why_missing("X² over all demonstrations", report_.all().heterogeneity.chi_square);
     why_missing("Cochran's Q over all demonstrations", report_.all().cochran_q.q);
   }
 
   void effects() {
     add(Heading{"Side, order, time and attention"});
     const SideBias& side = report_.side_bias;
-    if (side.p_exact) {
-      add(Paragraph{
-          fmt::format("The left clip was chosen {} times and the right one {} times (exact p = {}; "
-                      "by sign flips over "
-                      "participants p = {}). The clip of {} was chosen in {} of {} answers when it "
-                      "was on the left and in {} of {} when it was on the right.",
-                      side.chosen.pinch, side.chosen.cable, p_text(side.p_exact),
-                      p_text(side.p_sign_flip), pinch(), side.shown_left.pinch,
-                      side.shown_left.total(), side.shown_right.pinch, side.shown_right.total())});
+    if (side.chosen.total() > 0) {
+      add(Paragraph{fmt::format(
+          "The left clip was chosen {} times and the right one {} times. The clip of {} was chosen "
+          "in {} of {} answers when it was on the left and in {} of {} when it was on the right.",
+          side.chosen.pinch, side.chosen.cable, pinch(), side.shown_left.pinch,
+          side.shown_left.total(), side.shown_right.pinch, side.shown_right.total())});
     }
-    why_missing("A side bias", side.p_exact);
+    if (side.p) {
+      add(Paragraph{fmt::format(
+          "With demonstrations as strata and {} on either side equally often, the left clip "
+          "would be chosen in {} % of the answers (Mantel–Haenszel X² = {}, p = {}; by sign flips "
+          "over participants p = {}).",
+          pinch(), number(50.0 + 100.0 * side.bias.value, 1), number(side.chi_square, 3),
+          p_text(side.p), p_text(side.p_sign_flip))});
+    }
+    why_missing("A side bias", side.p);
     const OrderEffect& order = report_.order_effect;
     if (order.p_trend) {
       add(Paragraph{fmt::format(
@@ -292,7 +343,7 @@ class Writer {
           pinch(), number(order.chi_square, 3), p_text(order.p_trend), p_text(order.p_sign_flip))});
     }
     why_missing("An order effect", order.p_trend);
-    if (side.p_exact || !order.by_position.empty()) add(FigureBlock{"effects"});
+    if (side.chosen.total() > 0 || !order.by_position.empty()) add(FigureBlock{"effects"});
     reaction_table();
     const AttentionChecks& attention = report_.attention;
     if (attention.passed + attention.failed > 0) {

@@ -52,33 +52,92 @@ ReactionTimes spread(std::string name, std::vector<double>& seconds) {
 
 }  // namespace
 
-SideBias side_bias(const AnswersTable& table, std::uint64_t seed) {
-  SideBias result;
+namespace {
+
+// One demonstration's answers whose side is known, by where the pinch clip was.
+struct SideStratum {
+  std::int64_t left = 0, left_pinch = 0;  // answers with pinch on the left; of them, for pinch
+  std::int64_t total = 0, pinch = 0;      // on either side
+};
+
+std::vector<SideStratum> side_strata(const AnswersTable& table, SideBias& result) {
+  std::vector<SideStratum> strata(table.demonstrations.size());
+  for (const Answer& answer : table.answers) {
+    if (answer.pinch_side == Side::unknown) {
+      ++result.unknown;
+      continue;
+    }
+    const bool pinch_left = answer.pinch_side == Side::left;
+    ++(answer.chose_pinch == pinch_left ? result.chosen.pinch : result.chosen.cable);
+    Counts& shown = pinch_left ? result.shown_left : result.shown_right;
+    ++(answer.chose_pinch ? shown.pinch : shown.cable);
+    SideStratum& stratum = strata[answer.demonstration];
+    ++stratum.total;
+    stratum.pinch += answer.chose_pinch ? 1 : 0;
+    stratum.left += pinch_left ? 1 : 0;
+    stratum.left_pinch += pinch_left && answer.chose_pinch ? 1 : 0;
+  }
+  return strata;
+}
+
+// Mantel and Haenszel (1959): surplus of pinch choices on the left over what the margins of each
+// stratum let expect, squared, over its hypergeometric variance.
+void mantel_haenszel(const std::vector<SideStratum>& strata, SideBias& result) {
+  double surplus = 0.0, variance = 0.0, weights = 0.0;
+  for (const SideStratum& stratum : strata) {
+    const auto n = static_cast<double>(stratum.total);
+    const auto left = static_cast<double>(stratum.left);
+    const auto pinch = static_cast<double>(stratum.pinch);
+    if (stratum.total < 2) continue;
+    surplus += static_cast<double>(stratum.left_pinch) - left * pinch / n;
+    variance += left * (n - left) * pinch * (n - pinch) / (n * n * (n - 1.0));
+    weights += left * (n - left) / n;
+  }
+  if (weights == 0.0 || variance == 0.0) {
+    result.bias = result.chi_square = result.p = Estimate::none(
+        weights == 0.0 ? "in no demonstration was pinch shown on both sides"
+                       : "within each demonstration with both sides every answer is the same");
+    return;
+  }
+  result.bias = 0.5 * surplus / weights;
+  result.chi_square = surplus * surplus / variance;
+  result.p = chi_square_p(result.chi_square.value, 1.0);
+}
+
+// One score a participant: sum of +-(n y - k) over the answers, + where pinch was on the left, with
+// n answers in the demonstration and k of them for pinch. Sides drawn the other way round were as
+// likely, so that without a bias its sign is a fair coin's.
+std::vector<std::int64_t> side_scores(const AnswersTable& table,
+                                      const std::vector<SideStratum>& strata) {
   std::vector<std::int64_t> scores;
   each_participant(table, [&](const Answer* first, const Answer* last) {
     std::int64_t score = 0;
     for (const Answer* answer = first; answer != last; ++answer) {
-      if (answer->pinch_side == Side::unknown) {
-        ++result.unknown;
-        continue;
-      }
-      const bool pinch_left = answer->pinch_side == Side::left;
-      const bool chose_left = answer->chose_pinch == pinch_left;
-      ++(chose_left ? result.chosen.pinch : result.chosen.cable);
-      score += chose_left ? 1 : -1;
-      Counts& shown = pinch_left ? result.shown_left : result.shown_right;
-      ++(answer->chose_pinch ? shown.pinch : shown.cable);
+      if (answer->pinch_side == Side::unknown) continue;
+      const SideStratum& stratum = strata[answer->demonstration];
+      const std::int64_t centred = (answer->chose_pinch ? stratum.total : 0) - stratum.pinch;
+      score += answer->pinch_side == Side::left ? centred : -centred;
     }
     scores.push_back(score);
   });
+  return scores;
+}
+
+}  // namespace
+
+SideBias side_bias(const AnswersTable& table, std::uint64_t seed) {
+  SideBias result;
+  const std::vector<SideStratum> strata = side_strata(table, result);
   if (result.chosen.total() == 0) {
     std::string reason = why_no_answers(table);
     if (reason.empty()) reason = "no sides in the input";
-    result.p_exact = result.p_sign_flip = Estimate::none(reason);
+    result.bias = result.chi_square = result.p = result.p_sign_flip = Estimate::none(reason);
     return result;
   }
-  result.p_exact = exact_binomial_p(result.chosen);
-  result.p_sign_flip = sign_flip_test(std::move(scores), RandomUse::side_flip, seed).p;
+  mantel_haenszel(strata, result);
+  result.p_sign_flip =
+      result.p ? sign_flip_test(side_scores(table, strata), RandomUse::side_flip, seed).p
+               : result.p;
   return result;
 }
 

@@ -12,10 +12,14 @@
 
 namespace pinchlab::analysis {
 
-/// Was one side of the screen preferred, whatever it showed?
+/// Was one side of the screen preferred, whatever it showed? Pinch must then be chosen more often
+/// where it is on that side. Demonstrations are strata, so that neither a preference for pinch nor
+/// sides that are not balanced pass for a side bias.
 struct SideBias {
-  Counts chosen;     ///< pinch: left chosen, cable: right chosen
-  Estimate p_exact;  ///< two-sided exact binomial against one half, answers taken as independent
+  Counts chosen;  ///< pinch: left chosen, cable: right chosen
+  Estimate bias;  ///< share of left choices above one half, were pinch on either side equally often
+  Estimate chi_square;   ///< Mantel and Haenszel, no continuity correction
+  Estimate p;            ///< of chi_square, df 1, answers taken as independent
   Estimate p_sign_flip;  ///< the same with participants as units
   Counts shown_left;     ///< answers with the pinch clip on the left
   Counts shown_right;

@@ -58,8 +58,10 @@ Figure shares_figure(const Report& report) {
     const std::string group = result.groups.empty() ? "" : result.groups.front();
     const auto index =
         static_cast<size_t>(std::find(names.begin(), names.end(), group) - names.begin());
-    blocks[index] += interval_line(result.row.share, result.row.wilson.low, result.row.wilson.high,
-                                   static_cast<double>(i + 1));
+    const Reading& read = result.row.read;
+    blocks[index] +=
+        interval_line(result.row.share, read.low ? read.low.value : result.row.share,
+                      read.high ? read.high.value : result.row.share, static_cast<double>(i + 1));
     counts += fmt::format("set label '{}/{}' at graph 1.02, first {} left textcolor rgb '{}'\n",
                           result.row.counts.pinch, result.row.counts.total(), i + 1, grey);
   }
@@ -75,10 +77,9 @@ Figure shares_figure(const Report& report) {
   const std::string& pinch = report.options.pinch_label;
   const std::string level = fmt::format("{:g} %", 100.0 * (1.0 - report.options.alpha));
   return {"shares",
-          fmt::format("Share of answers for {} in each demonstration with {} Wilson intervals; the "
-                      "dashed line is "
-                      "chance. Right: answers for {} of all.",
-                      pinch, level, pinch),
+          fmt::format("Share of answers for {} in each demonstration with {} intervals ({}); the "
+                      "dashed line is chance. Right: answers for {} of all.",
+                      pinch, level, report.demonstrations.front().row.read.interval, pinch),
           gnuplot_script("shares", 760, height_of_rows(rows),
                          data + row_axes(labels, "answers for " + pinch) + counts +
                              "set rmargin 9\nset key above\n" + plot + "\n")};

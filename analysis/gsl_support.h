@@ -24,7 +24,14 @@ class GslErrorsOff {
 };
 
 /// What a stream of random numbers is for; streams of one seed are independent of each other.
-enum class RandomUse : std::uint64_t { bootstrap = 1, sign_flip, order_flip, side_flip, study };
+enum class RandomUse : std::uint64_t {
+  bootstrap = 1,
+  sign_flip,
+  order_flip,
+  side_flip,
+  study,
+  power
+};
 
 struct FreeRng {
   void operator()(gsl_rng* rng) const { gsl_rng_free(rng); }
@@ -34,9 +41,5 @@ using Rng = std::unique_ptr<gsl_rng, FreeRng>;
 /// The generator (GSL's mt19937) of one use, seed and index: the same three always give the same
 /// numbers.
 Rng make_rng(RandomUse use, std::uint64_t seed, std::uint64_t index = 0);
-
-/// The x with P(X <= x) = probability for X ~ Beta(a, b): GSL's inverse, polished until it is exact
-/// to round-off (GSL stops early for some arguments). probability in (0, 1), a and b positive.
-double beta_quantile(double probability, double a, double b);
 
 }  // namespace pinchlab::analysis

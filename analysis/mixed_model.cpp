@@ -178,6 +178,7 @@ class Laplace {
 struct Fit {
   MixedParameters parameters;
   double deviance = 0.0;
+  bool converged = false;
 };
 
 // Minimises the deviance over both standard deviations and, unless it is given, the intercept. The
@@ -189,7 +190,7 @@ class Minimiser {
   Fit minimise(const MixedParameters& start, std::optional<double> fixed_intercept,
                std::initializer_list<double> step_sizes) {
     fixed_ = fixed_intercept;
-    Fit best{start, 0.0};
+    Fit best{start};
     for (double size : step_sizes) best = run(best.parameters, size);
     best.parameters.sd_participant = std::abs(best.parameters.sd_participant);
     best.parameters.sd_demonstration = std::abs(best.parameters.sd_demonstration);
@@ -220,12 +221,13 @@ class Minimiser {
     const Gsl<gsl_multimin_fminimizer> minimiser(
         gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, n));
     gsl_multimin_fminimizer_set(minimiser.get(), &function, x.get(), first_steps.get());
-    for (int iteration = 0; iteration < 1000; ++iteration) {
+    bool converged = false;
+    for (int iteration = 0; iteration < 1000 && !converged; ++iteration) {
       if (gsl_multimin_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
-      if (gsl_multimin_fminimizer_size(minimiser.get()) < 1e-5) break;
+      converged = gsl_multimin_fminimizer_size(minimiser.get()) < 1e-5;
     }
     return {unpack(gsl_multimin_fminimizer_x(minimiser.get())),
-            gsl_multimin_fminimizer_minimum(minimiser.get())};
+            gsl_multimin_fminimizer_minimum(minimiser.get()), converged};
   }
 
   Laplace laplace_;
@@ -358,37 +360,62 @@ double laplace_deviance(const MixedData& data, const MixedParameters& parameters
   return Laplace(data).deviance(parameters);
 }
 
-MixedModel fit_mixed_model(const MixedData& data, double alpha) {
+namespace {
+
+MixedModel not_estimable(const std::string& reason) {
   MixedModel model;
-  const std::string reason = why_not_estimable(data);
-  if (!reason.empty()) {
-    model.intercept = model.intercept_low = model.intercept_high = model.p = Estimate::none(reason);
-    model.sd_participant = model.sd_demonstration = model.mean_share = Estimate::none(reason);
-    model.deviance = Estimate::none(reason);
-    return model;
+  const Estimate none = Estimate::none(reason);
+  model.intercept = model.intercept_low = model.intercept_high = model.p = none;
+  model.sd_participant = model.sd_demonstration = model.mean_share = model.deviance = none;
+  return model;
+}
+
+// Why a fit is no estimate ("" if it is one). Where participants or demonstrations are (nearly) all
+// of one mind the likelihood rises towards infinity, and the search ends somewhere on the way;
+// Laplace's approximation, which takes each mode for a normal distribution, has failed by then.
+std::string why_diverged(const Fit& best, const Fit& null) {
+  constexpr double farthest = 5.0;  // log-odds: 148 to 1, as good as always for any study
+  const MixedParameters& p = best.parameters;
+  if (!best.converged || !null.converged) return "the search for the best fit did not converge";
+  if (p.sd_participant > farthest || p.sd_demonstration > farthest ||
+      std::abs(p.intercept) > farthest) {
+    return "the fit diverges (beyond 5 log-odds), since participants or demonstrations are nearly "
+           "all of one mind";
   }
+  return "";
+}
+
+}  // namespace
+
+MixedModel fit_mixed_model(const MixedData& data, double alpha) {
+  const std::string reason = why_not_estimable(data);
+  if (!reason.empty()) return not_estimable(reason);
   const GslErrorsOff guard;
   Minimiser minimiser(data);
   // A second start from the first result frees a simplex that has collapsed too early.
   const Fit best = minimiser.minimise({0.0, 0.5, 0.5}, std::nullopt, {0.5, 0.1});
   const Fit null = minimiser.minimise(best.parameters, 0.0, {0.5, 0.1});
+  const std::string diverged = why_diverged(best, null);
+  if (!diverged.empty()) return not_estimable(diverged);
+  Profile profile(minimiser, best, gsl_cdf_chisq_Qinv(alpha, 1.0));
+  const std::optional<double> low = profile.bound(-1.0);
+  const std::optional<double> high = profile.bound(1.0);
+  if (!low || !high) {
+    return not_estimable(
+        "the likelihood does not bound the intercept (almost complete separation)");
+  }
+  MixedModel model;
   const auto at_boundary = [](double sd) { return sd < 1e-3 ? 0.0 : sd; };
   const double sd_p = at_boundary(best.parameters.sd_participant);
   const double sd_d = at_boundary(best.parameters.sd_demonstration);
   model.intercept = best.parameters.intercept;
+  model.intercept_low = *low;
+  model.intercept_high = *high;
   model.sd_participant = sd_p;
   model.sd_demonstration = sd_d;
   model.deviance = best.deviance;
   model.p = chi_square_p(std::max(0.0, null.deviance - best.deviance), 1.0);
   model.mean_share = population_share(best.parameters.intercept, std::hypot(sd_p, sd_d));
-  Profile profile(minimiser, best, gsl_cdf_chisq_Qinv(alpha, 1.0));
-  const auto bound = [&](double direction) {
-    const auto found = profile.bound(direction);
-    return found ? Estimate(*found)
-                 : Estimate::none("the likelihood does not bound the intercept on this side");
-  };
-  model.intercept_low = bound(-1.0);
-  model.intercept_high = bound(1.0);
   return model;
 }
 

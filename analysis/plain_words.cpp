@@ -26,31 +26,19 @@ std::string list_of(const std::vector<std::string>& items) {
   return text;
 }
 
-std::string p_in_words(double p) {
+std::string p_in_words(const Estimate& estimate) {
+  if (!estimate) return "no p-value: " + estimate.why_not;
+  const double p = estimate.value;
   return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
-}
-
-struct PooledP {
-  double p;
-  std::string how;
-};
-
-// The p-value that a reader should go by: participants as units where they are known.
-PooledP fair_p(const GroupResult& group) {
-  if (group.pooled.sign_flip.p && group.pooled.participants > 1) {
-    return {group.pooled.sign_flip.p.value, "sign-flip test over participants"};
-  }
-  if (group.demonstrations.size() == 1) return {group.row.p_exact, "exact binomial test"};
-  return {group.row.p_chi_square, "chi-square test that takes all answers as independent"};
 }
 
 std::string verdict(const Report& report) {
   const GroupResult& all = report.all();
-  const PooledP fair = fair_p(all);
+  const Reading& read = all.row.read;
   const std::string& pinch = report.options.pinch_label;
   const std::string& cable = report.options.cable_label;
   const std::string found =
-      fair.p >= report.options.alpha
+      !(read.p && read.p.value < report.options.alpha)
           ? fmt::format("No clear preference between {} and {}", pinch, cable)
           : fmt::format("{} was preferred to {}", all.row.share > 0.5 ? pinch : cable,
                         all.row.share > 0.5 ? cable : pinch);
@@ -61,26 +49,29 @@ std::string verdict(const Report& report) {
   return fmt::format(
       "{}: {} {}{} ({}; {}, {}).", found,
       one ? out_of(all.row.counts) + " preferred" : out_of(all.row.counts) + " answers chose",
-      pinch, where, percent(all.row.share), p_in_words(fair.p), fair.how);
+      pinch, where, percent(all.row.share), p_in_words(read.p), read.test);
 }
 
 std::string demonstrations_in_words(const Report& report) {
+  const Reading& first = report.demonstrations.front().row.read;
+  if (!first.p) {
+    return fmt::format(" The demonstrations cannot be tested one by one: {}.", first.p.why_not);
+  }
   std::vector<std::string> for_pinch, for_cable, unclear, robust;
   for (const DemonstrationResult& result : report.demonstrations) {
     const Row& row = result.row;
     const std::string item = fmt::format("{} ({})", row.name, out_of(row.counts));
-    if (row.p_chi_square >= report.options.alpha) {
+    if (row.read.p.value >= report.options.alpha) {
       unclear.push_back(item);
     } else {
       (row.share > 0.5 ? for_pinch : for_cable).push_back(item);
-      if (row.p_holm < report.options.alpha) robust.push_back(row.name);
+      if (row.read.p_holm.value < report.options.alpha) robust.push_back(row.name);
     }
   }
   const std::string& pinch = report.options.pinch_label;
-  std::string text =
-      fmt::format(" Taken one by one (chi-square test, p < {}), {} was preferred in {} of ",
-                  report.options.alpha, pinch,
-                  for_pinch.empty() ? "none" : fmt::format("{}", for_pinch.size()));
+  std::string text = fmt::format(" Taken one by one ({}, p < {}), {} was preferred in {} of ",
+                                 first.test, report.options.alpha, pinch,
+                                 for_pinch.empty() ? "none" : fmt::format("{}", for_pinch.size()));
   text += for_pinch.empty() ? fmt::format("the {} demonstrations.", report.demonstrations.size())
                             : fmt::format("{} demonstrations: {}.", report.demonstrations.size(),
                                           list_of(for_pinch));
@@ -102,7 +93,7 @@ std::string groups_in_words(const Report& report) {
   for (size_t i = 0; i + 1 < report.groups.size(); ++i) {
     const GroupResult& group = report.groups[i];
     items.push_back(fmt::format("{} {} answers ({}, {})", out_of(group.row.counts), group.row.name,
-                                percent(group.row.share), p_in_words(fair_p(group).p)));
+                                percent(group.row.share), p_in_words(group.row.read.p)));
   }
   return items.empty() ? ""
                        : fmt::format(" By group, {} was chosen in {}.", report.options.pinch_label,
@@ -117,12 +108,12 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
     text += demonstrations_in_words(report);
     text += groups_in_words(report);
   }
-  const Heterogeneity& heterogeneity = report.all().heterogeneity;
-  if (heterogeneity.p && heterogeneity.p.value < report.options.alpha) {
+  const Difference difference = difference_read(report.all());
+  if (difference.p && difference.p.value < report.options.alpha) {
     text += fmt::format(
-        " The demonstrations differ from one another (X² = {:.2f}, df {}, {}), so the figure over "
+        " The demonstrations differ from one another ({} = {:.2f}, df {}, {}), so the figure over "
         "all of them is an average of unlike cases.",
-        heterogeneity.chi_square.value, heterogeneity.df.value, p_in_words(heterogeneity.p.value));
+        difference.name, difference.statistic.value, difference.df.value, p_in_words(difference.p));
   }
   if (!table.exclusions.empty()) {
     text += fmt::format(" {} participant{} left out (listed below with the reasons).",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// How many participants does a study need? Exact binomial, no normal approximation.
+// How many participants does a study need for the test that its report is read by: the exact
+// binomial test where each participant answers once, sign flips over participants otherwise.
 
 #include <cstdint>
 #include <string>
@@ -25,12 +26,18 @@ struct PowerQuestion {
   double icc = 0.0;     ///< intraclass correlation of one participant's answers, 0 .. 1
 };
 
+/// Power of the sign-flip test over `participants` who each give question.trials answers (that
+/// agree as question.icc says: beta-binomial), from `studies` simulated studies.
+double sign_flip_power(std::int64_t participants, const PowerQuestion& question, int studies,
+                       std::uint64_t seed);
+
 struct PowerAnswer {
   ExactTest first;  ///< the smallest number of independent answers that reaches the power
   ExactTest safe;   ///< the smallest from which no larger number falls below it again
   double design_effect = 1.0;     ///< 1 + (trials - 1) icc (Kish)
-  std::int64_t participants = 0;  ///< for `safe`, with the design effect
-  std::int64_t participants_first = 0;
+  std::int64_t participants = 0;  ///< that the test needs: `safe`, or simulated if trials > 1
+  double power = 0.0;             ///< of the test with that many
+  int studies = 0;                ///< simulated for each number of participants; 0: none needed
 };
 
 /// Throws InputError for a question out of range or one that needs more than 1000000 answers.

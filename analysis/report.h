@@ -41,6 +41,14 @@ struct GroupResult {
   ScaleValue scale;
 };
 
+/// The test to read of whether the demonstrations of a group differ: Cochran's Q where there is
+/// one, otherwise Pearson's X^2, which takes all answers as independent.
+struct Difference {
+  std::string name;
+  Estimate statistic, df, p;
+};
+Difference difference_read(const GroupResult& group);
+
 struct Report {
   AnalysisOptions options;
   std::vector<DemonstrationResult> demonstrations;

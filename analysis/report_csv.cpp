@@ -16,17 +16,24 @@ std::string field(const Estimate& estimate) {
 }
 
 constexpr const char* row_header =
-    "name,pinch,cable,share,chi_square,p_chi_square,p_exact,wilson_low,wilson_high,clopper_pearson_"
-    "low,"
-    "clopper_pearson_high,cohens_h,p_holm,p_bh,log_bayes_factor";
+    "name,pinch,cable,share,p_read,test_read,p_read_holm,p_read_bh,low_read,high_read,interval_"
+    "read,"
+    "cohens_h,chi_square,p_chi_square,p_exact,wilson_low,wilson_high,clopper_pearson_low,"
+    "clopper_pearson_high,p_holm,p_bh,log_bayes_factor";
 constexpr const char* scale_header = "bradley_terry_log_odds,thurstone_d,jod,jod_low,jod_high";
 
 std::string row_fields(const Row& row) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_cell(row.name),
-                     row.counts.pinch, row.counts.cable, row.share, row.chi_square,
-                     row.p_chi_square, row.p_exact, row.wilson.low, row.wilson.high,
-                     row.clopper_pearson.low, row.clopper_pearson.high, row.cohens_h, row.p_holm,
-                     row.p_bh, row.log_bayes_factor);
+  const Reading& read = row.read;
+  std::string fields = fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{}", csv_cell(row.name), row.counts.pinch, row.counts.cable,
+      row.share, field(read.p), csv_cell(read.test), field(read.p_holm), field(read.p_bh),
+      field(read.low), field(read.high), csv_cell(read.interval), row.cohens_h);
+  for (double naive : {row.chi_square, row.p_chi_square, row.p_exact, row.wilson.low,
+                       row.wilson.high, row.clopper_pearson.low, row.clopper_pearson.high,
+                       row.p_holm, row.p_bh, row.log_bayes_factor}) {
+    fields += row.why_not_independent.empty() ? fmt::format(",{}", naive) : ",";
+  }
+  return fields;
 }
 
 std::string scale_fields(const ScaleValue& scale) {

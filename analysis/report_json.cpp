@@ -20,26 +20,41 @@ void put(ordered_json& object, const std::string& key, const Estimate& estimate)
   }
 }
 
+// A number that holds only if the row's answers are independent of each other.
+void put_naive(ordered_json& object, const Row& row, const std::string& key, double value) {
+  put(object, key,
+      row.why_not_independent.empty() ? Estimate(value) : Estimate::none(row.why_not_independent));
+}
+
 void put_row(ordered_json& object, const Row& row) {
   object["name"] = row.name;
   object["pinch"] = row.counts.pinch;
   object["cable"] = row.counts.cable;
   object["share"] = row.share;
-  object["chi_square"] = row.chi_square;
-  object["p_chi_square"] = row.p_chi_square;
-  object["p_exact"] = row.p_exact;
-  object["wilson_low"] = row.wilson.low;
-  object["wilson_high"] = row.wilson.high;
-  object["clopper_pearson_low"] = row.clopper_pearson.low;
-  object["clopper_pearson_high"] = row.clopper_pearson.high;
+  put(object, "p_read", row.read.p);
+  object["test_read"] = row.read.test;
+  put(object, "p_read_holm", row.read.p_holm);
+  put(object, "p_read_bh", row.read.p_bh);
+  put(object, "low_read", row.read.low);
+  put(object, "high_read", row.read.high);
+  object["interval_read"] = row.read.interval;
+  put_naive(object, row, "chi_square", row.chi_square);
+  put_naive(object, row, "p_chi_square", row.p_chi_square);
+  put_naive(object, row, "p_exact", row.p_exact);
+  put_naive(object, row, "wilson_low", row.wilson.low);
+  put_naive(object, row, "wilson_high", row.wilson.high);
+  put_naive(object, row, "clopper_pearson_low", row.clopper_pearson.low);
+  put_naive(object, row, "clopper_pearson_high", row.clopper_pearson.high);
   object["cohens_h"] = row.cohens_h;
-  object["p_holm"] = row.p_holm;
-  object["p_bh"] = row.p_bh;
+  put_naive(object, row, "p_holm", row.p_holm);
+  put_naive(object, row, "p_bh", row.p_bh);
+  put_naive(object, row, "log_bayes_factor", row.log_bayes_factor);
   const double bayes_factor = std::exp(row.log_bayes_factor);
-  put(object, "bayes_factor",
-      std::isfinite(bayes_factor) ? Estimate(bayes_factor)
-                                  : Estimate::none("too large for a number; see log_bayes_factor"));
-  object["log_bayes_factor"] = row.log_bayes_factor;
+  if (std::isfinite(bayes_factor)) {
+    put_naive(object, row, "bayes_factor", bayes_factor);
+  } else {
+    put(object, "bayes_factor", Estimate::none("too large for a number; see log_bayes_factor"));
+  }
   object["bayes_factor_prior"] = "share ~ Beta(1, 1) against share = 1/2";
 }
 
@@ -105,7 +120,9 @@ ordered_json side_json(const SideBias& side) {
   ordered_json object;
   object["left"] = side.chosen.pinch;
   object["right"] = side.chosen.cable;
-  put(object, "p_exact", side.p_exact);
+  put(object, "bias", side.bias);
+  put(object, "mantel_haenszel_chi_square", side.chi_square);
+  put(object, "p_mantel_haenszel", side.p);
   put(object, "p_sign_flip", side.p_sign_flip);
   object["pinch_when_shown_left"] = side.shown_left.pinch;
   object["cable_when_pinch_left"] = side.shown_left.cable;

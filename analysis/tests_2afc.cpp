@@ -9,6 +9,7 @@
 #include <cassert>
 #include <numeric>
 
+#include "analysis/binomial.h"
 #include "analysis/gsl_support.h"
 
 namespace pinchlab::analysis {
@@ -24,10 +25,8 @@ double chi_square_p(double chi_square, double df) {
 }
 
 double exact_binomial_p(const Counts& counts) {
-  const GslErrorsOff guard;
-  const auto n = static_cast<unsigned>(counts.total());
-  const auto larger = static_cast<unsigned>(std::max(counts.pinch, counts.cable));
-  return larger * 2 == n ? 1.0 : std::min(1.0, 2.0 * gsl_cdf_binomial_Q(larger - 1, 0.5, n));
+  const std::int64_t larger = std::max(counts.pinch, counts.cable);
+  return std::min(1.0, 2.0 * binomial_upper_tail(larger, 0.5, counts.total()));
 }
 
 Interval wilson_interval(const Counts& counts, double alpha) {
@@ -137,13 +136,19 @@ Row make_row(const std::string& name, const Counts& counts, double alpha) {
 }
 
 void adjust_family(std::span<Row*> rows) {
-  std::vector<double> p;
-  for (const Row* row : rows) p.push_back(row->p_chi_square);
-  const std::vector<double> by_holm = holm(p);
-  const std::vector<double> by_bh = benjamini_hochberg(p);
+  std::vector<double> p, read;
+  for (const Row* row : rows) {
+    p.push_back(row->p_chi_square);
+    read.push_back(row->read.p ? row->read.p.value : 1.0);
+  }
+  const std::vector<double> by_holm = holm(p), read_by_holm = holm(read);
+  const std::vector<double> by_bh = benjamini_hochberg(p), read_by_bh = benjamini_hochberg(read);
   for (size_t i = 0; i < rows.size(); ++i) {
     rows[i]->p_holm = by_holm[i];
     rows[i]->p_bh = by_bh[i];
+    Reading& reading = rows[i]->read;
+    reading.p_holm = reading.p ? Estimate(read_by_holm[i]) : reading.p;
+    reading.p_bh = reading.p ? Estimate(read_by_bh[i]) : reading.p;
   }
 }
 

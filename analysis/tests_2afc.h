@@ -45,7 +45,8 @@ std::vector<double> holm(std::span<const double> p);
 /// Benjamini and Hochberg's step-up adjustment (false discovery rate).
 std::vector<double> benjamini_hochberg(std::span<const double> p);
 
-/// Does the share differ between demonstrations? Pearson's X^2 of the K x 2 table.
+/// Does the share differ between demonstrations? Pearson's X^2 of the K x 2 table, which takes all
+/// answers as independent.
 struct Heterogeneity {
   Estimate chi_square;
   Estimate df;
@@ -53,11 +54,25 @@ struct Heterogeneity {
 };
 Heterogeneity heterogeneity(std::span<const Counts> counts);
 
+/// The test and the interval of a share that a reader should go by, and which they are. Where
+/// participants answered more than once the participant is the unit.
+struct Reading {
+  Estimate p;                 ///< two-sided, of one half
+  Estimate p_holm{}, p_bh{};  ///< over the rows tested together
+  std::string test;           ///< in words
+  Estimate low, high;         ///< of the share
+  std::string interval;       ///< in words
+};
+
 /// Everything that is said of one row of counts: a demonstration's, or a group's sum.
 struct Row {
   std::string name;
   Counts counts;
   double share = 0.0;
+  Reading read;
+  /// Not empty: why its answers are not independent, so that what follows but cohens_h must not be
+  /// read as a test or an interval.
+  std::string why_not_independent;
   double chi_square = 0.0;
   double p_chi_square = 1.0;
   double p_exact = 1.0;
@@ -69,10 +84,10 @@ struct Row {
   double p_bh = 1.0;
 };
 
-/// Computes all but the adjusted p-values. counts.total() must be positive.
+/// Computes all but what is read and the adjusted p-values. counts.total() must be positive.
 Row make_row(const std::string& name, const Counts& counts, double alpha);
 
-/// Adjusts the chi-square p-values of rows that are tested together.
+/// Adjusts the chi-square p-values and those that are read of rows that are tested together.
 void adjust_family(std::span<Row*> rows);
 
 }  // namespace pinchlab::analysis

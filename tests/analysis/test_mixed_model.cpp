@@ -124,6 +124,36 @@ TEST(MixedModel, SwappingTheMethodsFlipsTheIntercept) {
   EXPECT_NEAR(model.p.value, swapped.p.value, 1e-6);
 }
 
+// Each of these was reported as a number once: intercepts of 4 to 37 log-odds, p down to 1e-7.
+TEST(MixedModel, DivergentAndSeparatedFitsAreNotEstimable) {
+  const auto fit = [](int participants, int demonstrations, auto pinch) {
+    MixedData data;
+    data.demonstrations = static_cast<size_t>(demonstrations);
+    for (int i = 0; i < participants; ++i) {
+      Pattern pattern;
+      for (int j = 0; j < demonstrations; ++j) {
+        pattern.cells.push_back(
+            {static_cast<std::uint16_t>(j), 1, static_cast<std::uint16_t>(pinch(i, j) ? 1 : 0)});
+      }
+      data.patterns.push_back(pattern);
+    }
+    return fit_mixed_model(data, 0.05);
+  };
+  const auto refused = [](const MixedModel& model) {
+    for (const Estimate* value :
+         {&model.intercept, &model.intercept_low, &model.intercept_high, &model.p,
+          &model.sd_participant, &model.sd_demonstration, &model.mean_share, &model.deviance}) {
+      if (*value || value->why_not.empty()) return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(refused(fit(16, 8, [](int i, int) { return i < 10; })));  // unanimous participants
+  EXPECT_TRUE(refused(fit(16, 8, [](int, int j) { return j < 5; })));   // unanimous demonstrations
+  EXPECT_TRUE(refused(fit(8, 8, [](int i, int j) { return i + j < 9; })));
+  EXPECT_TRUE(refused(fit(16, 8, [](int i, int j) { return i != 3 || j != 2; })));
+  EXPECT_TRUE(refused(fit(2, 2, [](int i, int j) { return i > 0 || j > 0; })));
+}
+
 TEST(MixedModel, SaysWhyItCannotBeEstimated) {
   const auto reason = [](const std::string& rows) {
     const AnswersTable table = test::table_of("participant,demonstration,choice\n" + rows);

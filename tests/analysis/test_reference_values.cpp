@@ -64,6 +64,20 @@ INSTANTIATE_TEST_SUITE_P(
             {96, 32}, 32, 1.54173e-8, 1.28418e-8, .665786, .822291, .668444, .816987, 0.523599}),
     name_of);
 
+// GSL's tails are NaN here, and its quantile never ended.
+TEST(ReferenceValues, CountsInTheMillions) {
+  const Row row = make_row("x", {1000000, 999000}, 0.05);
+  expect_digits(row.p_exact, 0.479829805309);
+  EXPECT_NEAR(row.clopper_pearson.low, 0.499556749866767, 1e-14);
+  EXPECT_NEAR(row.clopper_pearson.high, 0.500943499533648, 1e-14);
+  expect_digits(exact_binomial_p({1000700, 999300}), 0.322544564997);
+  EXPECT_EQ(make_row("x", {1000000, 1000000}, 0.05).p_exact, 1.0);
+  const Row most = make_row("x", {999999999, 1}, 0.05);
+  EXPECT_GE(most.p_exact, 0.0);
+  EXPECT_LT(most.clopper_pearson.low, most.share);
+  EXPECT_GT(most.clopper_pearson.high, most.share);
+}
+
 TEST(Multiplicity, HolmAndBenjaminiHochbergOfTheThesis) {
   std::vector<double> p;
   p.reserve(test::thesis_cable.size());
