@@ -39,13 +39,10 @@ double head_material(const CableState& cable, std::size_t i, double angle) {
   return link.material + link.signed_radius() * (alpha_head(cable, i) - angle);
 }
 
-Vec2 link_centre(const World& world, const Link& link) {
-  if (link.body < 0) return link.offset;
-  const Vec2& centre = world.position[static_cast<std::size_t>(link.body)];
-  if (link.offset.isZero(0.0)) return centre;
-  const double angle = world.angle[static_cast<std::size_t>(link.body)];
+Vec2 offset_centre(const World& world, const Link& link) {
+  const double angle = at(world.angle, link.body);
   const double c = std::cos(angle), s = std::sin(angle);
-  return centre +
+  return at(world.position, link.body) +
          Vec2(c * link.offset.x() - s * link.offset.y(), s * link.offset.x() + c * link.offset.y());
 }
 

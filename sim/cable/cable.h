@@ -10,8 +10,15 @@ namespace pinchlab {
 
 struct Workspace;
 
+/// Centre of a link's circle where that is off its body's centre (m).
+Vec2 offset_centre(const World& world, const Link& link);
+
 /// Centre of the circle that the cable touches at a link (m).
-Vec2 link_centre(const World& world, const Link& link);
+inline Vec2 link_centre(const World& world, const Link& link) {
+  if (link.body < 0) return link.offset;
+  if (!link.offset.isZero(0.0)) return offset_centre(world, link);
+  return world.position[static_cast<std::size_t>(link.body)];
+}
 
 /// Angle (rad) of the body that carries the link; 0 for the world.
 inline double body_angle(const World& world, const Link& link) {

@@ -106,8 +106,9 @@ struct PartSystem {
   std::vector<int> row_of_segment;  // cable after cable; -1: none
   std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
   int first_contact_row = 0;
-  RowsMade made;            // what they are for
-  bool rows_stand = false;  // bodies and diagonals of all rows are those of the step before
+  RowsMade made;              // what they are for
+  bool same_rows = false;     // all rows are of what they were of in the step before
+  bool rows_stand = false;    // bodies and diagonals of all rows are those of the step before
   std::vector<char> changed;  // of each row: they are not
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.

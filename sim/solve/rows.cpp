@@ -171,7 +171,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
   s.made = made;
-  s.rows_stand = again && !s.mobility_changed && part.contacts_begin == part.contacts_end;
+  s.same_rows = again && part.contacts_begin == part.contacts_end;
+  s.rows_stand = s.same_rows && !s.mobility_changed;
   if (again) {
     s.rows.resize(index(s.first_contact_row));
     s.bodies.resize(index(s.first_contact_row));

@@ -438,15 +438,15 @@ void solve_symmetric(PartSystem& s, SolveScratch& set) {
   s.velocity = s.free_velocity;
   double missing = find_missing(s, set);
   const double first = missing;
+  double rounding = 0.0;
   for (int k = 0; k < 3; ++k) {
     s.ldl.solve(set.residual);
     for (std::size_t u = 0; u < count; ++u) {
       set.solution[u] -= set.residual[u];
       push(s, index(set.row_of_unknown[u]), -set.residual[u]);
     }
-    const double rounding = 1e-13 * first + 4e-16 * fastest(s);
-    const double before = missing;
-    if (k > 0 && before * before <= rounding * first) break;
+    if (k == 0) rounding = 1e-13 * first + 4e-16 * fastest(s);
+    if (k > 0 && missing * missing <= rounding * first) break;
     missing = find_missing(s, set);
     if (missing <= rounding) break;
   }
