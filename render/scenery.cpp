@@ -10,7 +10,7 @@
 
 #include "render/cable_path.h"
 #include "sim/step.h"
-#include "sim/tangent.h"
+#include "sim/cable/tangent.h"
 
 namespace pinchlab {
 
