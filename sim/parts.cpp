@@ -247,6 +247,7 @@ void find_parts(const World& world, Workspace& work) {
 }
 
 void note_rest(const Parts& parts, const Part& part, World& world) {
+  if (!world.configuration.sleep) return;
   const bool still = rests(parts, part, world);
   for (const int b : bodies_of(parts, part)) {
     int& steps = at(world.still_steps, b);

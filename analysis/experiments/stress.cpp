@@ -166,6 +166,17 @@ Csv bare_table(const StressResults& results) {
   return csv;
 }
 
+Csv growth_table(const StressResults& results) {
+  Csv csv({"what", "size", "median_s", "per_unit_s", "exponent"});
+  for (const GrowthResult& r : results.growth) {
+    for (std::size_t i = 0; i < r.sizes.size(); ++i) {
+      csv.row(
+          {r.what, std::int64_t{r.sizes[i]}, r.seconds[i], r.seconds[i] / r.sizes[i], r.exponent});
+    }
+  }
+  return csv;
+}
+
 }  // namespace
 
 const std::vector<StressCase>& stress_cases() {
@@ -207,20 +218,23 @@ void run_stress(const Options& options) {
       progress.done(expected_work(one, load));
     }
   }
-  results.bare = {
-      measure_bare("stress scene without pinches, load 20", stress_scene(20, free_spacing),
-                   Method::pinch, effort),
-      measure_bare("the same by plain cable joints", stress_scene(20, free_spacing), Method::cable,
-                   effort),
-      measure_bare("weights over 81 light pulleys", chain_scene(81), Method::pinch, effort)};
+  results.bare = {measure_bare("81 segments over fixed pulleys, where nothing moves",
+                               stress_scene(20, free_spacing), Method::pinch, effort),
+                  measure_bare("the same by plain cable joints", stress_scene(20, free_spacing),
+                               Method::cable, effort),
+                  measure_bare("weights over 81 light pulleys, where all moves", chain_scene(81),
+                               Method::pinch, effort)};
   for (const int load : loads) {
     const StressResult& ours = *find(results, "pinch", load);
     results.slack.push_back(measure_slack(load, ours.cost.solves));
     results.sleep.push_back(measure_sleep(load, ours.cost.step_s.median, effort));
   }
+  results.growth = measure_growth(Effort{0.3 * effort.seconds, effort.samples});
+  results.independence = measure_independence(Effort{0.3 * effort.seconds, effort.samples});
   output.csv("stress", step_table(results), options.command);
   output.csv("stress-stages", stage_table(results), options.command);
   output.csv("stress-bare-pass", bare_table(results), options.command);
+  output.csv("stress-growth", growth_table(results), options.command);
   draw_stress(results, output);
   output.page("stress", stress_page(results), options.command);
   fmt::print("{}: what a step costs as scenes grow\n", (options.out / "stress.md").string());

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiments/growth.h"
 #include "analysis/experiments/scenes.h"
 #include "analysis/experiments/step_cost.h"
 
@@ -56,6 +57,8 @@ struct StressResults {
   std::vector<BareResult> bare;     // the first is the one that was asked for
   std::vector<SlackResult> slack;
   std::vector<SleepResult> sleep;
+  std::vector<GrowthResult> growth;  // of other scenes
+  IndependenceResult independence;
 };
 
 /// Of that case and load, or null.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/at.h"
 #include "sim/cable/tangent.h"
 #include "sim/workspace.h"
 
@@ -13,7 +14,7 @@ namespace {
 /// Below this wrap (rad) a link is gone. Far above round-off, far below what a frame could show.
 constexpr double gone = -1e-9;
 
-std::ptrdiff_t at(std::size_t i) {
+std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
 }
 
@@ -38,13 +39,10 @@ double head_material(const CableState& cable, std::size_t i, double angle) {
   return link.material + link.signed_radius() * (alpha_head(cable, i) - angle);
 }
 
-Vec2 link_centre(const World& world, const Link& link) {
-  if (link.body < 0) return link.offset;
-  const Vec2& centre = world.position[static_cast<std::size_t>(link.body)];
-  if (link.offset.isZero(0.0)) return centre;
-  const double angle = world.angle[static_cast<std::size_t>(link.body)];
+Vec2 offset_centre(const World& world, const Link& link) {
+  const double angle = at(world.angle, link.body);
   const double c = std::cos(angle), s = std::sin(angle);
-  return centre +
+  return at(world.position, link.body) +
          Vec2(c * link.offset.x() - s * link.offset.y(), s * link.offset.x() + c * link.offset.y());
 }
 
@@ -200,10 +198,10 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   link.body = body;
   link.orientation = orientation;
   link.radius = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
-  cable.links.insert(cable.links.begin() + at(position), link);
+  cable.links.insert(cable.links.begin() + offset(position), link);
   Segment arriving = old;
   if (segment == 0) arriving.alpha = old.alpha + cable.turning;
-  cable.segments.insert(cable.segments.begin() + at(position), arriving);
+  cable.segments.insert(cable.segments.begin() + offset(position), arriving);
 
   const std::size_t leaving = segment == 0 ? 0 : position + 1;
   update_tangent(world, cable, position);
@@ -225,25 +223,40 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   update_wraps_and_rest_lengths(world, cable);
 }
 
-void insert_pinch(const World& world, CableState& cable, std::size_t i, double arc, int body) {
-  const Link whole = cable.links[i];
-  const double alpha = cable.segments[i].alpha + whole.orientation * arc;
-  const double angle = body_angle(world, whole);
-  const double pressed = whole.material + whole.signed_radius() * (alpha - angle);
-
-  Link middle;
-  middle.body = body;
-  middle.orientation = -whole.orientation;
-  middle.radius = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
-  middle.pinch_middle = true;
-  middle.material =
-      pressed - middle.signed_radius() * (alpha - world.angle[static_cast<std::size_t>(body)]);
-  Segment between;
-  between.alpha = alpha;
-  ++cable.changes;
-  cable.links.insert(cable.links.begin() + at(i + 1), {middle, whole});
-  cable.segments.insert(cable.segments.begin() + at(i + 1), {between, between});
-  for (std::size_t s : {i + 1, i + 2}) {
+void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches) {
+  std::vector<Link> links;
+  std::vector<Segment> segments;
+  links.reserve(cable.links.size() + 2 * pinches.size());
+  segments.reserve(links.capacity());
+  std::vector<std::size_t> added;  // segments
+  auto next = pinches.begin();
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    const Link& whole = cable.links[i];
+    links.push_back(whole);
+    segments.push_back(cable.segments[i]);
+    for (; next != pinches.end() && static_cast<std::size_t>(next->link) == i; ++next) {
+      Segment between;
+      between.alpha = cable.segments[i].alpha + whole.orientation * next->arc;
+      Link middle;
+      middle.body = next->body;
+      middle.orientation = -whole.orientation;
+      middle.radius = at(world.bodies, next->body).radius + cable.half_width;
+      middle.pinch_middle = true;
+      const double pressed =
+          whole.material + whole.signed_radius() * (between.alpha - body_angle(world, whole));
+      middle.material =
+          pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
+      for (const Link& link : {middle, whole}) {
+        added.push_back(links.size());
+        links.push_back(link);
+        segments.push_back(between);
+      }
+    }
+  }
+  cable.links.swap(links);
+  cable.segments.swap(segments);
+  cable.changes += static_cast<int>(pinches.size());
+  for (const std::size_t s : added) {
     update_tangent(world, cable, s);
     cable.segments[s].previous_tail = cable.segments[s].tail;
     cable.segments[s].previous_head = cable.segments[s].head;

@@ -2,14 +2,23 @@
 #pragma once
 // Links and segments: geometry and transport, insertion, removal and merging.
 
+#include <span>
+
 #include "sim/world.h"
 
 namespace pinchlab {
 
 struct Workspace;
 
+/// Centre of a link's circle where that is off its body's centre (m).
+Vec2 offset_centre(const World& world, const Link& link);
+
 /// Centre of the circle that the cable touches at a link (m).
-Vec2 link_centre(const World& world, const Link& link);
+inline Vec2 link_centre(const World& world, const Link& link) {
+  if (link.body < 0) return link.offset;
+  if (!link.offset.isZero(0.0)) return offset_centre(world, link);
+  return world.position[static_cast<std::size_t>(link.body)];
+}
 
 /// Angle (rad) of the body that carries the link; 0 for the world.
 inline double body_angle(const World& world, const Link& link) {
@@ -79,8 +88,15 @@ void remove_link(const World& world, CableState& cable, int link);
 void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
                  int orientation);
 
-/// Splits link i, `arc` rad after its tail, by a middle link on `body`: i, middle, i + 2
-/// (thesis 4.2.2).
-void insert_pinch(const World& world, CableState& cable, std::size_t link, double arc, int body);
+/// A body that presses link `link`, `arc` rad after its tail.
+struct NewPinch {
+  int link;
+  double arc;
+  int body;
+};
+
+/// Splits links by middle links on the bodies that press them: i, middle, i + 2 (thesis 4.2.2). The
+/// pinches are sorted by link and arc.
+void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches);
 
 }  // namespace pinchlab

@@ -173,6 +173,7 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
     }
     for (std::size_t s = first; s < cable.segments.size(); ++s, ++box) {
       const Segment& segment = cable.segments[s];
+      if (!segment.moved) continue;
       if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
           !holds(broad.span_boxes[box], segment.head, 0.0)) {
         return false;

@@ -55,12 +55,6 @@ Contact* find_contact(World& world, int body, int other, int hint) {
   return it != world.contacts.end() && it->a == a && it->b == b ? &*it : nullptr;
 }
 
-struct NewPinch {
-  int cable, link;
-  double arc;
-  int body;
-};
-
 /// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
 /// than the cable's width it would press the span against the link's body, so it must keep that
 /// distance already before it hits the span.
@@ -91,9 +85,8 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
 
 /// The turns of link i that `contact` presses, apart from the end at which the other body is the
 /// cable's next or previous one (there the pinch is transitional or made already).
-void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_t i, int other,
-                     const Vec2& u, std::vector<NewPinch>& found) {
-  CableState& cable = world.cables[static_cast<std::size_t>(cable_index)];
+void find_pinches_on(const World& world, const CableState& cable, Contact& contact, std::size_t i,
+                     int other, const Vec2& u, std::vector<NewPinch>& found) {
   const Link& link = cable.links[i];
   const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
@@ -123,7 +116,7 @@ void find_pinches_on(World& world, Contact& contact, int cable_index, std::size_
       contact.target = std::max(contact.target, width);
     contact.pinch_linked = true;
     if (arc >= 0.0 && arc <= link.wrap && presses(world, contact, width)) {
-      found.push_back({cable_index, static_cast<int>(i), arc, other});
+      found.push_back({static_cast<int>(i), arc, other});
     }
   }
 }
@@ -144,6 +137,27 @@ void remove_open_pinches(World& world, const Parts& parts) {
           (!presses(world, *contact, width) && contact->gap > width * (1.0 + 5e-4))) {
         remove_link(world, cable, i);
       }
+    }
+  }
+}
+
+/// Only links of bodies that have contacts matter.
+void list_contacts_of_bodies(const World& world, ContactScratch& scratch) {
+  Lists<int>& lists = scratch.contacts_of_body;
+  lists.begin.assign(world.bodies.size() + 1, 0);
+  for (const Contact& c : world.contacts) {
+    if (c.b < 0) continue;
+    ++at(lists.begin, c.a + 1);
+    ++at(lists.begin, c.b + 1);
+  }
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) lists.begin[b + 1] += lists.begin[b];
+  lists.items.resize(index(lists.begin.back()));
+  scratch.fill = lists.begin;
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const Contact& c = world.contacts[i];
+    if (c.b < 0) continue;
+    for (const int body : {c.a, c.b}) {
+      at(lists.items, at(scratch.fill, body)++) = static_cast<int>(i);
     }
   }
 }
@@ -248,55 +262,30 @@ void configure_pinches(World& world, Workspace& work) {
   if (scratch.pinches_kept) return;
   remove_open_pinches(world, work.parts);
 
-  // Only links of bodies that have contacts matter.
-  auto& contacts_of_body = scratch.contacts_of_body;
-  contacts_of_body.begin.assign(world.bodies.size() + 1, 0);
-  for (const Contact& c : world.contacts) {
-    if (c.b < 0) continue;
-    ++contacts_of_body.begin[static_cast<std::size_t>(c.a) + 1];
-    ++contacts_of_body.begin[static_cast<std::size_t>(c.b) + 1];
-  }
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    contacts_of_body.begin[b + 1] += contacts_of_body.begin[b];
-  }
-  contacts_of_body.items.resize(static_cast<std::size_t>(contacts_of_body.begin.back()));
-  auto& next = scratch.fill;
-  next = contacts_of_body.begin;
-  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
-    const Contact& c = world.contacts[i];
-    if (c.b < 0) continue;
-    for (const int body : {c.a, c.b}) {
-      auto& position = next[static_cast<std::size_t>(body)];
-      contacts_of_body.items[static_cast<std::size_t>(position++)] = static_cast<int>(i);
-    }
-  }
+  list_contacts_of_bodies(world, scratch);
+  const Lists<int>& lists = scratch.contacts_of_body;
   std::vector<NewPinch> found;  // allocates only when a pinch is made
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    for (std::size_t i = 0; i < world.cables[c].links.size(); ++i) {
-      const Link& link = world.cables[c].links[i];
+  for (CableState& cable : world.cables) {
+    found.clear();
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      const Link& link = cable.links[i];
       if (link.orientation == 0 || link.pinch_middle) continue;
-      const auto body = static_cast<std::size_t>(link.body);
-      const int after = next_link(world.cables[c], static_cast<int>(i));
-      const bool moved = world.cables[c].segments[i].moved ||
-                         world.cables[c].segments[static_cast<std::size_t>(after)].moved;
-      for (int k = contacts_of_body.begin[body]; k < contacts_of_body.begin[body + 1]; ++k) {
-        Contact& contact = world.contacts[static_cast<std::size_t>(
-            contacts_of_body.items[static_cast<std::size_t>(k)])];
+      const int after = next_link(cable, static_cast<int>(i));
+      const bool moved = cable.segments[i].moved || at(cable.segments, after).moved;
+      for (int k = at(lists.begin, link.body); k < at(lists.begin, link.body + 1); ++k) {
+        Contact& contact = at(world.contacts, at(lists.items, k));
         const bool still = is_still(work.parts, contact.a) && is_still(work.parts, contact.b);
         if (still && !moved) continue;
         const bool is_a = contact.a == link.body;
-        find_pinches_on(world, contact, static_cast<int>(c), i, is_a ? contact.b : contact.a,
+        find_pinches_on(world, cable, contact, i, is_a ? contact.b : contact.a,
                         is_a ? contact.normal : Vec2(-contact.normal), found);
       }
     }
-  }
-  // Last first, so that indices and arcs of those before stay true.
-  std::sort(found.begin(), found.end(), [](const NewPinch& p, const NewPinch& q) {
-    return std::tie(p.cable, p.link, p.arc, p.body) > std::tie(q.cable, q.link, q.arc, q.body);
-  });
-  for (const NewPinch& pinch : found) {
-    insert_pinch(world, world.cables[static_cast<std::size_t>(pinch.cable)],
-                 static_cast<std::size_t>(pinch.link), pinch.arc, pinch.body);
+    if (found.empty()) continue;
+    std::sort(found.begin(), found.end(), [](const NewPinch& p, const NewPinch& q) {
+      return std::tie(p.link, p.arc, p.body) < std::tie(q.link, q.arc, q.body);
+    });
+    insert_pinches(world, cable, found);
   }
   scratch.configured_changes = changes_of_cables(world);
 }

@@ -83,8 +83,9 @@ void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
   };
   const auto may_repeat = [&](const Friction& friction) {
     const Row& row = at(s.rows, friction.row);
-    return row.kind == RowKind::pinch_middle && friction.coefficient == infinity &&
-           contact_of(row) >= 0;
+    if (row.kind != RowKind::pinch_middle || friction.coefficient < infinity) return false;
+    const int contact = contact_of(row);
+    return contact >= 0 && at(world.contacts, contact).pinch_points > 1;
   };
   for (const Friction& friction : s.frictions) {
     if (may_repeat(friction)) at(first_middle, contact_of(at(s.rows, friction.row))) = -1;

@@ -90,7 +90,7 @@ void find_order(PartSystem& s, OrderScratch& scratch) {
 /// Whether these are the bodies that the rows couple.
 bool order_stands(const PartSystem& s) {
   if (s.structure.size() != 2 * s.rows.size()) return false;
-  if (s.rows_stand) return true;
+  if (s.same_rows) return true;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const auto [a, b] = coupled(s, r);
     if (s.structure[2 * r] != a || s.structure[2 * r + 1] != b) return false;
@@ -103,6 +103,7 @@ bool order_stands(const PartSystem& s) {
 void order_rows(PartSystem& s, OrderScratch& scratch) {
   if (order_stands(s)) return;
   s.structure.clear();
+  s.assembled.clear();
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const auto [a, b] = coupled(s, r);
     s.structure.push_back(a);

@@ -36,6 +36,7 @@ enum class RowKind : std::int8_t {
 struct RowBodies {
   int a = 0, b = 0;
   Eigen::Vector3d ja, jb;  // m/s of row a m/s, or rad/s, of body
+  Eigen::Vector3d ra, rb;  // mobility * J^T: m/s, or rad/s, of body a N s of impulse
 };
 
 /// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
@@ -105,16 +106,20 @@ struct PartSystem {
   std::vector<int> row_of_segment;  // cable after cable; -1: none
   std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
   int first_contact_row = 0;
-  RowsMade made;            // what they are for
-  bool rows_stand = false;  // bodies and diagonals of all rows are those of the step before
+  RowsMade made;              // what they are for
+  bool same_rows = false;     // all rows are of what they were of in the step before
+  bool rows_stand = false;    // bodies and diagonals of all rows are those of the step before
+  std::vector<char> changed;  // of each row: they are not
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.
   std::vector<int> structure, order;
 
-  // Factors of the rows whose unknowns they are for; by solve_for_states.
+  // The matrix of the rows that bore a force, where it was symmetric, and its factors; by
+  // solve_for_states.
   ProfileLdl ldl;
-  std::vector<int> factored;  // rows; empty: no factors
-  std::vector<double> scale;  // diagonals
+  std::vector<int> assembled;  // rows that the matrix is for, one an unknown; empty: no matrix
+  bool factored = false;       // the factors are the matrix's, and no row repeats others
+  std::vector<double> scale;   // diagonals
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
 };
@@ -126,7 +131,7 @@ inline void forget(PartSystem& s) {
   s.mobility_kick = 0.0;
   s.made = {};
   s.structure.clear();
-  s.factored.clear();
+  s.assembled.clear();
 }
 
 /// J v + bias at the present velocities (m/s).
@@ -144,8 +149,8 @@ inline void push(PartSystem& s, std::size_t r, double impulse) {
   if (impulse == 0.0) return;
   const RowBodies& row = s.bodies[r];
   const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-  s.velocity[a] += impulse * (s.mobility[a] * row.ja);
-  s.velocity[b] += impulse * (s.mobility[b] * row.jb);
+  s.velocity[a] += impulse * row.ra;
+  s.velocity[b] += impulse * row.rb;
 }
 
 }  // namespace pinchlab

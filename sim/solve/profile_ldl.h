@@ -39,8 +39,13 @@ class ProfileLdl {
 
   int size() const { return static_cast<int>(first_.size()); }
 
-  /// Factors in place. `scale[u]` > 0 is the size against which pivot u is judged; `ridge` times it
-  /// is added to the diagonal first. Returns how many rows were dependent.
+  /// First column of row u, and its entries as from `append`.
+  int first(int u) const { return first_[static_cast<std::size_t>(u)]; }
+  double* row(int u) { return entries_.data() + begin_[static_cast<std::size_t>(u)]; }
+
+  /// Factors the matrix with scale[u] (1 + ridge) added to its diagonal, and leaves it as it is.
+  /// scale[u] > 0 is also the size against which pivot u is judged. Returns how many rows were
+  /// dependent.
   int factor(const std::vector<double>& scale, double ridge);
 
   /// Solves in place.
@@ -50,7 +55,8 @@ class ProfileLdl {
   std::vector<int> first_;
   std::vector<int> begin_;          // of row u in entries_
   std::size_t used_ = 0;            // of entries_
-  std::vector<double> entries_;     // rows: L, unit diagonal not stored, then the pivot's place
+  std::vector<double> entries_;     // rows of the matrix
+  std::vector<double> factors_;     // rows of L, unit diagonal not stored, then the pivot's place
   std::vector<double> reciprocal_;  // of the pivots (0: dependent)
 };
 

@@ -16,9 +16,11 @@ namespace pinchlab {
 
 namespace {
 
-/// J M^-1 J^T (1/kg).
-double diagonal_of(const PartSystem& s, const RowBodies& row) {
-  return row.ja.dot(at(s.mobility, row.a) * row.ja) + row.jb.dot(at(s.mobility, row.b) * row.jb);
+/// What a unit impulse on the row does to its bodies, and to its own speed.
+void weigh(const PartSystem& s, RowBodies& bodies, Row& row) {
+  bodies.ra = at(s.mobility, bodies.a) * bodies.ja;
+  bodies.rb = at(s.mobility, bodies.b) * bodies.jb;
+  row.diagonal = bodies.ja.dot(bodies.ra) + bodies.jb.dot(bodies.rb);
 }
 
 /// A body's place in its part; static bodies and the world (-1) share the one after the last.
@@ -132,6 +134,7 @@ int append_row(PartSystem& s, int a, int b) {
   RowBodies& bodies = s.bodies.emplace_back();
   bodies.a = a;
   bodies.b = b;
+  s.changed.push_back(true);
   return static_cast<int>(s.rows.size()) - 1;
 }
 
@@ -168,13 +171,17 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
   s.made = made;
-  s.rows_stand = again && !s.mobility_changed && part.contacts_begin == part.contacts_end;
+  s.same_rows = again && part.contacts_begin == part.contacts_end;
+  s.rows_stand = s.same_rows && !s.mobility_changed;
   if (again) {
     s.rows.resize(index(s.first_contact_row));
     s.bodies.resize(index(s.first_contact_row));
+    s.changed.resize(index(s.first_contact_row));
   } else {
     s.rows.clear();
     s.bodies.clear();
+    s.changed.clear();
+    s.assembled.clear();
     s.row_of_segment.clear();
   }
   s.frictions.clear();
@@ -206,7 +213,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
         set_segment_bodies(world, from, to, segment, bodies);
         if (on_centre_line) turn_to_centre_line(world, from, to, segment, bodies, row);
       }
-      if (!stands || on_centre_line || s.mobility_changed) row.diagonal = diagonal_of(s, bodies);
+      const bool changed = !stands || on_centre_line || s.mobility_changed;
+      at(s.changed, number) = changed;
+      if (changed) weigh(s, bodies, row);
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         row.slip = to.slip;
@@ -231,7 +240,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     normal = append_row(s, a, b);
     s.rows.back().index = number;
     set_normal_row(scene, world, contact, s.bodies.back(), s.rows.back());
-    s.rows.back().diagonal = diagonal_of(s, s.bodies.back());
+    weigh(s, s.bodies.back(), s.rows.back());
 
     if (contact.pinch_linked) continue;
     const double mu = contact_coefficient(
@@ -244,7 +253,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     row.index = number;
     row.slip = contact.slip;
     set_tangent_bodies(world, contact, s.bodies.back());
-    row.diagonal = diagonal_of(s, s.bodies.back());
+    weigh(s, s.bodies.back(), row);
     add_friction(s, contact_friction(tangent, normal, mu));
   }
   bool middles = false;

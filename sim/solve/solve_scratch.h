@@ -21,9 +21,8 @@ struct BodyTerm {
 
 /// One end of an unknown's row, in the chain of those on one body.
 struct RowEnd {
-  Eigen::Vector3d j;  // (x, y, angle)
-  int previous;       // in the chain, or -1
-  int least;          // unknown of the chain
+  int previous;  // in the chain, or -1
+  int least;     // unknown of the chain
 };
 
 /// A change of state that the last solution asks for.

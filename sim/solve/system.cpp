@@ -24,16 +24,18 @@ bool has_unknown(const Row& row, std::size_t r, const CapstanScratch& capstan) {
 
 /// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
 void number_unknowns(const PartSystem& s, SolveScratch& set) {
-  set.unknown_of_row.assign(s.rows.size(), -1);
-  set.row_of_unknown.clear();
+  set.unknown_of_row.resize(s.rows.size());
+  set.row_of_unknown.resize(s.rows.size());
   set.symmetric = set.capstan.runs.empty();
+  int count = 0;
   for (const int r : s.order) {
     const Row& row = at(s.rows, r);
     if (row.on && row.slip != Slip::stick) set.symmetric = false;
-    if (!has_unknown(row, index(r), set.capstan)) continue;
-    at(set.unknown_of_row, r) = static_cast<int>(set.row_of_unknown.size());
-    set.row_of_unknown.push_back(r);
+    const bool unknown = has_unknown(row, index(r), set.capstan);
+    at(set.unknown_of_row, r) = unknown ? count : -1;
+    if (unknown) at(set.row_of_unknown, count++) = r;
   }
+  set.row_of_unknown.resize(index(count));
 }
 
 /// p = F z and the equations G, row by row; groups of sliding cables add theirs.
@@ -191,13 +193,18 @@ double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /// Appends an end of unknown u to the chain of its body.
-void append_end(RowEnd* ends, int* last_end, int end, int body, const Eigen::Vector3d& j) {
-  if (body < 0) return;
+void append_end(RowEnd* ends, int* last_end, int end, int body) {
   int& last = last_end[body];
-  ends[end].j = j;
   ends[end].previous = last;
   ends[end].least = last >= 0 ? ends[last].least : end / 2;
   last = end;
+}
+
+/// What unknown u's row feels of one that moves `body` by `response`, summed over its ends there.
+double felt(const RowBodies& row, int body, const Eigen::Vector3d& response, double sum) {
+  if (row.b == body) sum += dot(response, row.jb);
+  if (row.a == body) sum += dot(response, row.ja);
+  return sum;
 }
 
 /// The matrix J M^-1 J^T + compliance where each unknown is one row's impulse. Every body keeps the
@@ -206,58 +213,94 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
   const int count = static_cast<int>(set.row_of_unknown.size());
   set.last_end.assign(s.mobility.size(), -1);
   set.ends.resize(2 * index(count));
-  s.scale.resize(index(count));
   s.ldl.clear();
   RowEnd* ends = set.ends.data();
   int* last_end = set.last_end.data();
   for (int u = 0; u < count; ++u) {
-    const int r = set.row_of_unknown[index(u)];
-    const Row& row = at(s.rows, r);
-    const RowBodies& bodies = at(s.bodies, r);
-    const int a = at(s.mobile, bodies.a) ? bodies.a : -1;
-    const int b = at(s.mobile, bodies.b) ? bodies.b : -1;
+    const RowBodies& row = at(s.bodies, set.row_of_unknown[index(u)]);
+    const int a = at(s.mobile, row.a) ? row.a : -1, b = at(s.mobile, row.b) ? row.b : -1;
     const int last_a = a >= 0 ? last_end[a] : -1, last_b = b >= 0 ? last_end[b] : -1;
     int first = u;
     if (last_a >= 0) first = std::min(first, ends[last_a].least);
     if (last_b >= 0) first = std::min(first, ends[last_b].least);
     double* entries = s.ldl.append(first) - first;
-    if (a >= 0) {
-      const Eigen::Vector3d response = at(s.mobility, a) * bodies.ja;
-      for (int e = last_a; e >= 0; e = ends[e].previous) entries[e / 2] += dot(response, ends[e].j);
-      if (a == b) entries[u] += 2.0 * dot(response, bodies.jb);
+    const auto add = [&](int last, const Eigen::Vector3d& response) {
+      for (int e = last; e >= 0; e = ends[e].previous) {
+        const RowBodies& other = at(s.bodies, set.row_of_unknown[index(e / 2)]);
+        entries[e / 2] += dot(response, e % 2 == 0 ? other.ja : other.jb);
+      }
+    };
+    add(last_a, row.ra);
+    add(last_b, row.rb);
+    if (a >= 0 && a == b) entries[u] = 2.0 * dot(row.ra, row.jb);
+    if (a >= 0) append_end(ends, last_end, 2 * u, a);
+    if (b >= 0) append_end(ends, last_end, 2 * u + 1, b);
+  }
+  s.assembled = set.row_of_unknown;
+}
+
+/// Brings the matrix up to date where rows have changed since it was assembled for the same ones.
+void reassemble_changed(PartSystem& s) {
+  for (int u = 0; u < s.ldl.size(); ++u) {
+    const int r = s.assembled[index(u)], first = s.ldl.first(u);
+    const RowBodies& row = at(s.bodies, r);
+    double* entries = s.ldl.row(u) - first;
+    for (int v = first; v < u; ++v) {
+      const int other = s.assembled[index(v)];
+      if (!at(s.changed, r) && !at(s.changed, other)) continue;
+      const RowBodies& others = at(s.bodies, other);
+      double sum = 0.0;
+      if (at(s.mobile, row.a)) sum = felt(others, row.a, row.ra, sum);
+      if (at(s.mobile, row.b)) sum = felt(others, row.b, row.rb, sum);
+      entries[v] = sum;
     }
-    if (b >= 0) {
-      const Eigen::Vector3d response = at(s.mobility, b) * bodies.jb;
-      for (int e = last_b; e >= 0; e = ends[e].previous) entries[e / 2] += dot(response, ends[e].j);
+    if (at(s.changed, r)) {
+      entries[u] = row.a == row.b && at(s.mobile, row.a) ? 2.0 * dot(row.ra, row.jb) : 0.0;
     }
-    s.scale[index(u)] = row.diagonal + row.compliance;
-    entries[u] += s.scale[index(u)];
-    append_end(ends, last_end, 2 * u, a, bodies.ja);
-    append_end(ends, last_end, 2 * u + 1, b, bodies.jb);
   }
 }
 
-/// Assembles and factors; returns how many rows repeat others.
-int factor(PartSystem& s, SolveScratch& set, double ridge) {
-  s.factored.clear();
-  if (set.symmetric) {
-    assemble_symmetric(s, set);
-    return s.ldl.factor(s.scale, ridge);
+/// What a row alone adds to its diagonal, by which pivots are judged as well. Returns whether that
+/// has changed, be it by a bit.
+bool rescale(PartSystem& s, const SolveScratch& set) {
+  const std::size_t count = set.row_of_unknown.size();
+  bool same = s.scale.size() == count;
+  s.scale.resize(count);
+  for (std::size_t u = 0; u < count; ++u) {
+    const Row& row = at(s.rows, set.row_of_unknown[u]);
+    const double scale = row.diagonal + row.compliance;
+    same = same && scale == s.scale[u];
+    s.scale[u] = scale;
   }
+  return !same;
+}
+
+/// Assembles and factors what has changed; returns how many rows repeat others.
+int factor_symmetric(PartSystem& s, SolveScratch& set) {
+  const bool same_rows = !s.assembled.empty() && s.assembled == set.row_of_unknown;
+  const bool rescaled = rescale(s, set);
+  const bool stands = same_rows && !rescaled && s.rows_stand;
+  if (stands && s.factored) return 0;
+  const auto changed = std::count(s.changed.begin(), s.changed.end(), true);
+  if (!same_rows || 2 * index(static_cast<int>(changed)) > s.changed.size()) {
+    assemble_symmetric(s, set);
+  } else if (changed > 0) {
+    reassemble_changed(s);
+  }
+  const int repeated = s.ldl.factor(s.scale, 0.0);
+  s.factored = repeated == 0;
+  return repeated;
+}
+
+/// Factors the matrix, with a ridge of that share of its diagonal; returns how many rows repeat
+/// others.
+int factor(PartSystem& s, SolveScratch& set, double ridge) {
+  if (set.symmetric && ridge == 0.0) return factor_symmetric(s, set);
+  s.factored = false;
+  if (set.symmetric) return s.ldl.factor(s.scale, ridge);
+  s.assembled.clear();
   assemble_coupled(s, set);
   return set.lu.factor(s.scale, ridge);
-}
-
-/// Whether the last step's factors serve: the same rows bear a force, and their coefficients are
-/// the same to the last bit.
-bool factors_stand(const PartSystem& s, const SolveScratch& set) {
-  if (!set.symmetric || !s.rows_stand || s.factored.empty()) return false;
-  if (set.row_of_unknown != s.factored) return false;
-  for (std::size_t u = 0; u < s.factored.size(); ++u) {
-    const Row& row = at(s.rows, s.factored[u]);
-    if (row.diagonal + row.compliance != s.scale[u]) return false;
-  }
-  return true;
 }
 
 /// Impulses of the rows for the unknowns' values, and the velocities.
@@ -373,6 +416,50 @@ void apply_impulses(PartSystem& s) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) push(s, r, s.rows[r].impulse);
 }
 
+namespace {
+
+/// J v + bias + compliance p of the unknowns' rows; returns the largest.
+double find_missing(const PartSystem& s, SolveScratch& set) {
+  double largest = 0.0;
+  for (std::size_t u = 0; u < set.row_of_unknown.size(); ++u) {
+    const auto r = index(set.row_of_unknown[u]);
+    set.residual[u] = row_speed(s, r) + s.rows[r].compliance * set.solution[u];
+    largest = std::max(largest, std::abs(set.residual[u]));
+  }
+  return largest;
+}
+
+/// The solution of a regular symmetric system, refined as long as that helps: an error that has
+/// fallen by some factor will do so again, so that the last one need not be measured.
+void solve_symmetric(PartSystem& s, SolveScratch& set) {
+  const std::size_t count = set.row_of_unknown.size();
+  set.solution.assign(count, 0.0);
+  set.residual.resize(count);
+  s.velocity = s.free_velocity;
+  double missing = find_missing(s, set);
+  const double first = missing;
+  double rounding = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    s.ldl.solve(set.residual);
+    for (std::size_t u = 0; u < count; ++u) {
+      set.solution[u] -= set.residual[u];
+      push(s, index(set.row_of_unknown[u]), -set.residual[u]);
+    }
+    if (k == 0) rounding = 1e-13 * first + 4e-16 * fastest(s);
+    if (k > 0 && missing * missing <= rounding * first) break;
+    missing = find_missing(s, set);
+    if (missing <= rounding) break;
+  }
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    const int unknown = set.unknown_of_row[r];
+    row.impulse = unknown >= 0 ? at(set.solution, unknown) : 0.0;
+    row.speed = unknown >= 0 ? 0.0 : row_speed(s, r);
+  }
+}
+
+}  // namespace
+
 void solve_for_states(PartSystem& s, SolveScratch& set) {
   if (!set.capstan.runs.empty()) make_groups(s, set);
   number_unknowns(s, set);
@@ -380,11 +467,8 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
     express(s, set);
     gather_body_terms(s, set);
   }
-  int repeated = 0;
-  if (!factors_stand(s, set)) {
-    repeated = factor(s, set, 0.0);
-    if (set.symmetric && repeated == 0) s.factored = set.row_of_unknown;
-  }
+  const int repeated = factor(s, set, 0.0);
+  if (set.symmetric && repeated == 0) return solve_symmetric(s, set);
   const double before = start(s, set);
   double residual = refine(s, set);
   const double rounding = 1e-13 * before + 4e-16 * fastest(s);

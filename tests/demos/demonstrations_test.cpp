@@ -67,7 +67,7 @@ Motion play(const Scene& scene, Method method) {
 }
 
 /// Hashes of the motions that the pair of clips shows. What changes one changes the clips: put the
-/// printed value here and say so in demos/CHANGELOG.md.
+/// printed value here and say so in CHANGELOG.md.
 struct Golden {
   const char* name;
   std::uint64_t pinch, baseline;

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/experiments/growth.h"
+
+#include <functional>
+#include <stdexcept>
+
+#include "analysis/experiments/scenes.h"
+
+namespace pinchlab::experiments {
+
+namespace {
+
+Configuration awake() {
+  Configuration configuration = Method::pinch;
+  configuration.sleep = false;
+  return configuration;
+}
+
+/// Discs that lie on slabs of their own, in a row.
+Scene discs_on_walls(int count) {
+  Scene scene = disconnected_scene(0, 0);
+  scene.name = "discs-on-walls";
+  constexpr double spacing = 4.0, radius = 0.2, half_slab = 1.0;
+  for (int i = 0; i < count; ++i) {
+    Body disc;
+    disc.name = "disc " + std::to_string(i);
+    disc.radius = radius;
+    disc.position = {spacing * i, radius};
+    scene.bodies.push_back(disc);
+    Wall slab;
+    slab.a = {spacing * i - half_slab, 0.0};
+    slab.b = {spacing * i + half_slab, 0.0};
+    scene.walls.push_back(slab);
+  }
+  return scene;
+}
+
+Scene frictionless_chain(int pulleys) {
+  Scene scene = chain_scene(pulleys);
+  for (Body& body : scene.bodies) body.cable_friction = 0.0;
+  return scene;
+}
+
+/// Times one step of a scene that is stepped on.
+class Steps {
+ public:
+  explicit Steps(const Scene& scene) : scene_(scene), world_(make_world(scene, awake())) {}
+  void step() {
+    if (pinchlab::step(scene_, world_, work_) != StepStatus::ok) {
+      throw std::runtime_error(scene_.name + ": " + world_.failure);
+    }
+  }
+  void velocities() { velocities_now(scene_, world_, work_); }
+
+ private:
+  Scene scene_;
+  World world_;
+  Workspace work_;
+};
+
+double step_seconds(const Scene& scene, const Effort& effort) {
+  Steps steps(scene);
+  return measure_call([&steps] { steps.step(); }, effort).seconds.median;
+}
+
+double make_seconds(const Scene& scene, const Effort& effort) {
+  return measure_call([&scene] { make_world(scene, awake()); }, effort).seconds.median;
+}
+
+GrowthResult grow(const std::string& what, const std::vector<int>& sizes,
+                  const std::function<double(int)>& seconds) {
+  GrowthResult result{what, sizes, {}, 0.0};
+  for (const int size : sizes) result.seconds.push_back(seconds(size));
+  result.exponent =
+      growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
+  return result;
+}
+
+}  // namespace
+
+std::vector<GrowthResult> measure_growth(const Effort& effort) {
+  const std::vector<int> many{100, 1000, 10000};
+  return {
+      grow("swinging cables, a step", many,
+           [&](int n) { return step_seconds(disconnected_scene(n, n), effort); }),
+      grow("discs on walls of their own, a step", many,
+           [&](int n) { return step_seconds(discs_on_walls(n), effort); }),
+      grow("pulleys without friction under one cable, a step", {11, 33, 101, 331, 1001},
+           [&](int n) { return step_seconds(frictionless_chain(n), effort); }),
+      grow("pinched stress scene, `make_world`", {20, 200, 2000},
+           [&](int n) { return make_seconds(stress_scene(n, pinched_spacing), effort); }),
+  };
+}
+
+IndependenceResult measure_independence(const Effort& effort) {
+  const Scene one = swinging_scene(21);
+  Scene resting = one;
+  for (Body& body : resting.bodies) body.velocity = Vec2::Zero();
+  Scene two = resting;
+  const int bodies = static_cast<int>(resting.bodies.size());
+  for (Body body : resting.bodies) {
+    body.name += " of the other";
+    body.position.y() -= 100.0;
+    two.bodies.push_back(body);
+  }
+  Cable other = resting.cables.front();
+  other.name += " of the other";
+  other.start.point.y() -= 100.0;
+  other.end.body += bodies;
+  for (Wrap& wrap : other.wraps) wrap.body += bodies;
+  two.cables.push_back(other);
+  Scene beside = resting;
+  Body disc;
+  disc.name = "disc";
+  disc.position = {-1000.0, 0.0};
+  beside.bodies.push_back(disc);
+  const auto ratio = [&effort](const std::function<void()>& a, const std::function<void()>& b) {
+    const BothCosts both = measure_both(a, b, effort);
+    return both.first.seconds.median / both.second.seconds.median;
+  };
+  Steps alone(resting), pair(two), with_disc(beside), moving(one);
+  IndependenceResult result;
+  result.two_cables = ratio([&] { pair.step(); }, [&] { alone.step(); });
+  result.with_a_disc = ratio([&] { with_disc.step(); }, [&] { alone.step(); });
+  result.velocities = ratio([&] { moving.velocities(); }, [&] { moving.step(); });
+  return result;
+}
+
+}  // namespace pinchlab::experiments
