@@ -10,7 +10,7 @@ int main() {
   scene.bodies.resize(3);
   Body &pulley = scene.bodies[0], &light = scene.bodies[1], &heavy = scene.bodies[2];
   pulley.kind = BodyKind::fixed_axle;
-  light.position = {-0.55, -2.0};  // m: the cable hangs straight down from the rim
+  light.position = {-0.55, -4.0};  // m: the cable hangs straight down from the rim
   heavy.position = {0.55, -2.0};
   light.radius = heavy.radius = 0.2;
   heavy.mass = 3.0;  // kg; the others have 1
