@@ -22,6 +22,7 @@
 #include "base/text_checks.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
+#include "demos/help_pages.h"
 #include "demos/still.h"
 #include "demos/trajectory.h"
 #include "demos/version.h"
@@ -66,6 +67,7 @@ void add_render(CLI::App& app) {
           "h264 (MP4), vp9 (WebM) or ffv1 (Matroska, lossless) [h264]")
       ->type_name("C")
       ->check(CLI::IsMember({"h264", "vp9", "ffv1"}));
+  add_time_limit(*command, options->time_limit, "Give up on a clip");
   command->add_option("--jobs", options->jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
@@ -142,6 +144,7 @@ void add_still(CLI::App& app) {
   command->add_flag("--both", options->both, "A row of pinch over a row of the baseline")
       ->excludes("--method");
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
+  add_time_limit(*command, options->time_limit, "Give up");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
@@ -182,6 +185,7 @@ void add_simulate(CLI::App& app) {
                    "Steps a frame [the scene's]")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
+  add_time_limit(*command, options->time_limit, "Give up");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
       "SEG.csv:  "
@@ -410,8 +414,8 @@ void add_study(CLI::App& app) {
   study::Stimuli stimuli;
   stimuli.demonstrations = [] {
     std::vector<std::string> names;
-    if (std::filesystem::is_directory("demos")) {
-      for (const std::filesystem::path& scene : find_scenes({"demos"})) {
+    if (const auto folder = find_demos_folder()) {
+      for (const std::filesystem::path& scene : find_scenes({*folder})) {
         names.push_back(scene.stem().string());
       }
     }
@@ -456,6 +460,7 @@ int run(int argc, char** argv) {
   add_analyse(app);
   add_power(app);
   add_study(app);
+  add_help_page_commands(app, version);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& error) {

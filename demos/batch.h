@@ -19,10 +19,11 @@ struct BatchOptions {
   int width = 960, height = 960;      ///< px, of one panel
   Timing timing;
   Codec codec = Codec::h264;
-  int jobs = 0;               ///< worker processes; 0: one a core
-  bool singles = true;        ///< each method's clip by itself, and the poster
-  bool side_by_side = false;  ///< both left/right orders of each pair in one file
-  bool report = false;        ///< how each pair differs: figures, a strip of pictures, report.html
+  std::optional<double> time_limit;  ///< s of work on one method of a clip, then it has failed
+  int jobs = 0;                      ///< worker processes; 0: one a core
+  bool singles = true;               ///< each method's clip by itself, and the poster
+  bool side_by_side = false;         ///< both left/right orders of each pair in one file
+  bool report = false;  ///< how each pair differs: figures, a strip of pictures, report.html
   bool checks = false;  ///< attention checks: the pinch clip beside itself upside down, both orders
 };
 

@@ -2,11 +2,15 @@
 #pragma once
 // A scene under one method, frame by frame: frame i is step i * steps_per_frame, frame 0 the start.
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "demos/scene_json.h"
+#include "sim/promises.h"
 #include "sim/step.h"
 
 namespace pinchlab {
@@ -27,6 +31,9 @@ Scene with_timing(const Scene& scene, const Timing& timing);
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
                            const World& world, int frame);
 
+/// Writes what Player::broken_promises says of a file to standard error, and a line on what helps;
+/// nothing where there is nothing.
+void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines);
 /// What people call a way of simulating: "pinch joints", "cable joints".
 const char* in_words(const Configuration& configuration);
 
@@ -35,9 +42,18 @@ class Player {
   /// `file` must outlive the player. Throws SceneFileError where the geometry cannot exist.
   Player(const SceneFile& file, const Scene& scene, const Configuration& configuration);
 
+  /// Called after every step.
+  void on_step(std::function<void()> call) { on_step_ = std::move(call); }
+  /// Lets advance_to throw std::runtime_error at the first step that ends after `seconds` from now.
+  void give_up_after(std::optional<double> seconds);
+
   /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with
   /// a failure_report if a value is not finite.
   void advance_to(int frame);
+
+  /// What the simulation has not kept so far of what sim/README.md promises, one line each with the
+  /// method; none is good.
+  std::vector<std::string> broken_promises() const;
 
   int frame() const { return frame_; }
   /// s; the frame's number over the frame rate, free of the round-off of summing steps.
@@ -52,7 +68,11 @@ class Player {
   Scene scene_;
   World world_;
   mutable Workspace work_;  // changes no result
+  Promises promises_;
   int frame_ = 0;
+  std::function<void()> on_step_;
+  std::optional<std::chrono::steady_clock::time_point> deadline_;
+  double time_limit_ = infinity;  // s, what the deadline came from
 };
 
 }  // namespace pinchlab

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/progress.h"
 #include "demos/player.h"
 #include "render/canvas.h"
 #include "render/compose.h"
@@ -31,7 +32,8 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<double>& times)
 
 // The frames asked for, in the order asked for, though the simulation only runs forward.
 std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& method,
-                                    const std::vector<int>& frames, Canvas& canvas) {
+                                    const std::vector<int>& frames,
+                                    std::optional<double> time_limit, Canvas& canvas) {
   std::vector<std::size_t> by_time(frames.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
   std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return frames[i]; });
@@ -39,6 +41,10 @@ std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& 
       4 * static_cast<std::size_t>(canvas.width()) * static_cast<std::size_t>(canvas.height());
   std::vector<SheetFrame> drawn(frames.size());
   Player player(file, file.scene, method);
+  player.give_up_after(time_limit);
+  Progress progress(fmt::format("simulating {}, {}", file.scene.name, to_string(method)), "steps",
+                    std::int64_t{*std::ranges::max_element(frames)} * file.scene.steps_per_frame);
+  player.on_step([&progress] { progress.add(1); });
   Picture picture;
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
@@ -46,6 +52,8 @@ std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& 
     const std::uint8_t* rgba = canvas.draw(picture);
     drawn[i] = {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())};
   }
+  progress.clear();
+  tell_broken_promises(file.path.string(), player.broken_promises());
   return drawn;
 }
 
@@ -56,7 +64,8 @@ void write_still(const SceneFile& file, const StillOptions& options) {
   Canvas canvas(options.width, options.height);
   std::vector<SheetFrame> sheet;
   for (const Configuration& method : options.methods) {
-    std::ranges::move(draw_frames(file, method, frames, canvas), std::back_inserter(sheet));
+    std::ranges::move(draw_frames(file, method, frames, options.time_limit, canvas),
+                      std::back_inserter(sheet));
   }
   if (sheet.size() == 1) {
     write_png(options.out.string(), options.width, options.height, sheet.front().rgba.data());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "demos/scene_json.h"
@@ -13,6 +14,7 @@ struct StillOptions {
   std::vector<Configuration> methods;  ///< one a row of the sheet
   int width = 960, height = 960;       ///< px, of one picture
   std::filesystem::path out;           ///< PNG
+  std::optional<double> time_limit;    ///< s of work on one method, after which it is given up
 };
 
 /// One frame of a scene as PNG, or, for several times or methods, a contact sheet with a label
