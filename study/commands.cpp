@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 
 struct ServeOptions {
   fs::path clips, answers, config;
-  ServerOptions server{"127.0.0.1", 8080};
+  ServerOptions server{.host = "127.0.0.1", .port = 8080, .names = {}, .limits = {}};
   int participants = 0;
   std::uint64_t seed = 0;
   bool has_seed = false, no_webm = false;
@@ -208,6 +208,11 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
                    "Address to listen on; 0.0.0.0: all, for participants on other computers")
       ->type_name("H")
       ->capture_default_str();
+  command
+      ->add_option("--name", options->server.names,
+                   "Name that participants open the study by, if it is not this computer's own: "
+                   "study.example.org")
+      ->type_name("NAME");
   command
       ->add_option("--participants", options->participants,
                    "Most that may take part [the configuration's, or no limit]")
