@@ -52,9 +52,10 @@ void add_render(CLI::App& app) {
       ->type_name("SCENE");
   command->add_option("--out", options->out, "Folder for the files, made if missing [clips]")
       ->type_name("DIR");
-  add_method(*command, options->method,
-             "Make one clip a scene: pinch, pinch_no_contact, cable or baseline (each scene's own) "
-             "[the pair]");
+  add_method(
+      *command, options->method,
+      "Make one clip a scene: pinch, pinch_no_contact, cable, baseline (each scene's own) or "
+      "thesis (all of the thesis' ways, its iterative solver too) [the pair]");
   add_size(*command, *size, "Pixels of one picture, even unless ffv1 [960x960]");
   add_fps(*command, options->timing);
   command
@@ -80,6 +81,20 @@ void add_render(CLI::App& app) {
           "Nothing but these, as `study serve` makes them")
       ->excludes(also)
       ->excludes("--method");
+  CLI::Option* report = command->add_flag(
+      "--report", options->report,
+      "Also how each pair differs and when, as a table, report.html and strips of pictures");
+  report->excludes("--method");
+  command
+      ->add_flag_callback(
+          "--only-report",
+          [options] {
+            options->report = true;
+            options->singles = false;
+          },
+          "Nothing but this")
+      ->excludes("--method")
+      ->excludes(report);
   command
       ->add_flag("--attention-checks", options->checks,
                  "Also the clip with pinch joints beside itself upside down, in both orders")
@@ -90,6 +105,7 @@ void add_render(CLI::App& app) {
       "  pinchlab render                             all of demos/ into clips/\n"
       "  pinchlab render --side-by-side              and what the study shows\n"
       "  pinchlab render demos/03-drop.json --out /tmp/drop --size 640x480\n"
+      "  pinchlab render --only-report               how the pairs differ, without the clips\n"
       "  pinchlab render --method cable --codec ffv1 one lossless clip a scene");
   command->callback([options, size] {
     if (options->scenes.empty()) {
@@ -121,7 +137,7 @@ void add_still(CLI::App& app) {
       ->delimiter(',');
   command->add_option("--out", options->out, "PNG file")->type_name("FILE.png")->required();
   add_method(*command, options->method,
-             "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
+             "pinch, pinch_no_contact, cable, baseline (the scene's own) or thesis [pinch]");
   command->add_flag("--both", options->both, "A row of pinch over a row of the baseline")
       ->excludes("--method");
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
@@ -131,8 +147,8 @@ void add_still(CLI::App& app) {
       "  pinchlab still demos/03-drop.json --time 0,1,2,3 --both --out drop-sheet.png");
   command->callback([options] {
     const SceneFile file = read_scene_file(options->scene);
-    options->methods = options->both ? std::vector{Method::pinch, file.scene.baseline}
-                                     : std::vector{method_of(file.scene, options->method)};
+    options->methods = {method_of(file.scene, options->method)};
+    if (options->both) options->methods = {Method::pinch, file.scene.baseline};
     const bool sheet = options->times.size() * options->methods.size() > 1;
     const Size usual = sheet ? Size{480, 480} : Size{960, 960};
     options->width = options->size.width > 0 ? options->size.width : usual.width;
@@ -156,8 +172,7 @@ void add_simulate(CLI::App& app) {
       ->type_name("SEG.csv");
   add_method(*command, options->method,
              "pinch, pinch_no_contact, cable, baseline (the scene's own), or thesis: all of the "
-             "thesis' ways, its iterative solver too [pinch]",
-             {"pinch", "pinch_no_contact", "cable", "baseline", "thesis"});
+             "thesis' ways, its iterative solver too [pinch]");
   command->add_option("--until", options->until, "Time of the last row, s [the clip's last frame]")
       ->type_name("S");
   add_fps(*command, options->timing);
@@ -180,8 +195,7 @@ void add_simulate(CLI::App& app) {
       "  pinchlab simulate demos/02-stack.json --method thesis --out stack-thesis.csv");
   command->callback([options] {
     const SceneFile file = read_scene_file(options->scene);
-    options->configuration =
-        configuration_from_string(options->method).value_or(Configuration(file.scene.baseline));
+    options->configuration = method_of(file.scene, options->method);
     write_trajectory(file, *options);
   });
 }

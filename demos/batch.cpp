@@ -16,6 +16,7 @@
 
 #include "demos/manifest.h"
 #include "demos/progress.h"
+#include "demos/report_page.h"
 #include "demos/worker_pool.h"
 #include "render/canvas.h"
 
@@ -51,7 +52,7 @@ class FolderLock {
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
-  const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json"};
+  const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json", ".html"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
     if (path.extension() == ".partial" && ours.contains(path.stem().extension())) {
@@ -80,8 +81,12 @@ bool is_demo_name(const fs::path& path) {
          name.ends_with(".json");
 }
 
+std::int64_t pictures_a_tick(const ClipPlan& plan) {
+  return plan.product == Product::poster ? 1 : static_cast<std::int64_t>(plan.methods.size());
+}
+
 std::int64_t panels_to_draw(const ClipPlan& plan) {
-  return plan.poster ? 1 : static_cast<std::int64_t>(plan.methods.size()) * plan.scene.frame_count;
+  return plan.product == Product::poster ? 1 : pictures_a_tick(plan) * plan.scene.frame_count;
 }
 
 double cpu_seconds(int who) {
@@ -123,10 +128,7 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
   Outcome outcome;
   Progress progress("rendering", "pictures", total);
   const WorkerPoolEvents events = {
-      .tick =
-          [&](std::size_t i) {
-            progress.add(plans[i].poster ? 1 : static_cast<std::int64_t>(plans[i].methods.size()));
-          },
+      .tick = [&](std::size_t i) { progress.add(pictures_a_tick(plans[i])); },
       .done =
           [&](std::size_t, const std::string& entry) {
             put(manifest, ordered_json::parse(entry));
@@ -160,8 +162,10 @@ void check_size(const BatchOptions& options) {
 
 }  // namespace
 
-Method method_of(const Scene& scene, const std::string& name) {
-  return name == "baseline" ? scene.baseline : method_from_string(name);
+Configuration method_of(const Scene& scene, const std::string& name) {
+  if (name == "baseline") return scene.baseline;
+  if (const auto known = configuration_from_string(name)) return *known;
+  throw std::invalid_argument("no method is called " + name);
 }
 
 std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
@@ -189,17 +193,20 @@ std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
   check_size(options);
   const Scene scene = with_timing(source.scene, options.timing);
-  const auto plan = [&](const std::string& role, std::vector<Method> methods,
+  const auto plan = [&](const std::string& role, std::vector<Configuration> methods,
                         const std::string& ending) {
     ClipPlan clip;
     clip.file = scene.name + "." + role + ending;
     clip.role = role;
     clip.source = &source;
     clip.scene = scene;
-    clip.poster = role == "poster";
+    clip.product = role == "poster"   ? Product::poster
+                   : role == "report" ? Product::report
+                                      : Product::clip;
     clip.methods = std::move(methods);
+    const int panels = static_cast<int>(clip.methods.size());
     clip.video.codec = options.codec;
-    clip.video.width = options.width * (clip.poster ? 1 : static_cast<int>(clip.methods.size()));
+    clip.video.width = options.width * (clip.product == Product::clip ? panels : 1);
     clip.video.height = options.height;
     clip.video.frames_per_second = scene.frames_per_second;
     return clip;
@@ -208,7 +215,7 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
   if (options.method) {
     return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
   }
-  const Method pinch = Method::pinch, baseline = scene.baseline;
+  const Configuration pinch = Method::pinch, baseline = scene.baseline;
   std::vector<ClipPlan> plans;
   if (options.singles) {
     plans = {plan("pinch", {pinch}, ending), plan("baseline", {baseline}, ending),
@@ -218,6 +225,7 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
     plans.push_back(plan("left-pinch", {pinch, baseline}, ending));
     plans.push_back(plan("left-baseline", {baseline, pinch}, ending));
   }
+  if (options.report) plans.push_back(plan("report", {pinch, baseline}, ".png"));
   if (options.checks) {
     plans.push_back(plan("check-left", {pinch, pinch}, ending));
     plans.back().upside_down = 1;
@@ -235,7 +243,7 @@ int render_batch(const BatchOptions& options) {
     std::ranges::move(plan_clips(scene, options), std::back_inserter(plans));
   }
   for (const ClipPlan& plan : plans) {
-    for (const Method method : plan.methods) {
+    for (const Configuration& method : plan.methods) {
       start_world(plan.scene, plan.source->path, method);
     }
   }
@@ -270,6 +278,10 @@ int render_batch(const BatchOptions& options) {
                (cpu_seconds(RUSAGE_CHILDREN) - cpu_before) / wall, cores);
   }
   fmt::print(stderr, "\n");
+  if (options.report) {
+    write_report_page(options.out, manifest);
+    fmt::print("{}", report_table(manifest));
+  }
   return outcome.failed;
 }
 

@@ -22,11 +22,13 @@ struct BatchOptions {
   int jobs = 0;               ///< worker processes; 0: one a core
   bool singles = true;        ///< each method's clip by itself, and the poster
   bool side_by_side = false;  ///< both left/right orders of each pair in one file
+  bool report = false;        ///< how each pair differs: figures, a strip of pictures, report.html
   bool checks = false;  ///< attention checks: the pinch clip beside itself upside down, both orders
 };
 
-/// The method called `name`, where "baseline" is the scene's own. Throws std::invalid_argument.
-Method method_of(const Scene& scene, const std::string& name);
+/// What `name` stands for: a method, "baseline" (the scene's own) or "thesis". Throws
+/// std::invalid_argument.
+Configuration method_of(const Scene& scene, const std::string& name);
 
 /// The scene files that `paths` name, in order: a folder stands for its NN-name.json, NN two
 /// digits. Throws std::runtime_error if a folder has none.
@@ -37,9 +39,9 @@ std::vector<std::filesystem::path> find_scenes(const std::vector<std::filesystem
 std::vector<ClipPlan> plan_clips(const SceneFile& scene, const BatchOptions& options);
 
 /// Makes what is missing or out of date and keeps the rest; tells progress, and at the end what was
-/// done, on standard error. Files appear under their names when complete, one by one, and
-/// manifest.json with them. The same scenes and options give the same bytes, for any number of
-/// jobs.
+/// done, on standard error, and the reports on standard output. Files appear under their names when
+/// complete, one by one, and manifest.json with them. The same scenes and options give the same
+/// bytes, for any number of jobs.
 ///
 /// A clip that fails does not stop the others. Returns the number of failed ones; throws
 /// std::runtime_error (SceneFileError for a bad scene, before anything is made) if nothing could be

@@ -8,6 +8,7 @@
 #include <deque>
 
 #include "demos/hash.h"
+#include "demos/pair_report.h"
 #include "demos/player.h"
 #include "demos/version.h"
 #include "render/canvas.h"
@@ -21,7 +22,7 @@ using nlohmann::ordered_json;
 
 std::vector<std::string> method_names(const ClipPlan& plan) {
   std::vector<std::string> names;
-  for (const Method method : plan.methods) {
+  for (const Configuration& method : plan.methods) {
     names.emplace_back(to_string(method));
   }
   return names;
@@ -48,7 +49,7 @@ void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
 std::string write_video(const ClipPlan& plan, const std::string& path,
                         const std::function<void()>& tick) {
   std::deque<Player> players;
-  for (const Method method : plan.methods) {
+  for (const Configuration& method : plan.methods) {
     players.emplace_back(*plan.source, plan.scene, method);
   }
   std::vector<Picture> pictures(players.size());
@@ -88,14 +89,14 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
   Picture picture;
   Hash frames(HashKind::murmur3);
   std::vector<SheetFrame> sheet;
-  for (const Method method : plan.methods) {
+  for (const Configuration& method : plan.methods) {
     Player player(*plan.source, plan.scene, method);
     player.advance_to(poster_frame(plan));
     compose(plan.scene, player.world(), picture);
     const std::uint8_t* rgba = canvas.draw(picture);
     frames.add(std::as_bytes(std::span(rgba, bytes)));
     sheet.push_back(
-        {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", to_string(method), player.time())});
+        {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())});
   }
   contact_sheet(path, width, plan.video.height, sheet, static_cast<int>(plan.methods.size()));
   tick();
@@ -105,7 +106,8 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
 }  // namespace
 
 int panel_width(const ClipPlan& plan) {
-  return plan.poster ? plan.video.width : plan.video.width / static_cast<int>(plan.methods.size());
+  return plan.product == Product::clip ? plan.video.width / static_cast<int>(plan.methods.size())
+                                       : plan.video.width;
 }
 
 int poster_frame(const ClipPlan& plan) {
@@ -131,11 +133,13 @@ ordered_json plan_entry(const ClipPlan& plan) {
   if (plan.upside_down) {
     entry["upside_down_panel"] = *plan.upside_down;
   }
-  if (plan.poster) {
+  if (plan.product == Product::poster) {
     entry["time_s"] = static_cast<double>(poster_frame(plan)) / scene.frames_per_second;
   } else {
     entry["frame_count"] = scene.frame_count;
     entry["duration_s"] = static_cast<double>(scene.frame_count) / scene.frames_per_second;
+  }
+  if (plan.product == Product::clip) {
     entry["codec"] = to_string(plan.video.codec);
     entry["settings"] = describe(plan.video);
   }
@@ -147,8 +151,18 @@ ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder
                        const std::function<void()>& tick) {
   const std::string path = (folder / plan.file).string();
   ordered_json entry = plan_entry(plan);
-  entry["raw_frames_murmur3"] =
-      plan.poster ? write_poster(plan, path, tick) : write_video(plan, path, tick);
+  switch (plan.product) {
+    case Product::clip:
+      entry["raw_frames_murmur3"] = write_video(plan, path, tick);
+      break;
+    case Product::poster:
+      entry["raw_frames_murmur3"] = write_poster(plan, path, tick);
+      break;
+    case Product::report:
+      entry["report"] = to_json(
+          report_pair(*plan.source, plan.scene, plan.video.width, plan.video.height, path, tick));
+      break;
+  }
   entry["sha256"] = sha256_of_file(path);
   return entry;
 }

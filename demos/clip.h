@@ -14,18 +14,24 @@
 
 namespace pinchlab {
 
+enum class Product {
+  clip,    ///< a video
+  poster,  ///< one frame of each method as PNG, with labels
+  report,  ///< figures of the pair in the manifest (pair_report.h), and a strip of it as PNG
+};
+
 /// Everything that a file's bytes depend on.
 struct ClipPlan {
   std::string file;  ///< name in the output folder, e.g. "03-drop.pinch.mp4"
-  /// "pinch", "baseline", "left-pinch", "left-baseline", "check-left", "check-right", "poster", or
-  /// a method
+  /// "pinch", "baseline", "left-pinch", "left-baseline", "check-left", "check-right", "poster",
+  /// "report", or a method
   std::string role;
   const SceneFile* source = nullptr;
-  Scene scene;                     ///< the source's, with the timing to use
-  std::vector<Method> methods;     ///< one a panel, left to right
-  std::optional<int> upside_down;  ///< panel that is shown so, in attention checks
-  VideoSettings video;             ///< of the whole frame, all panels together
-  bool poster = false;             ///< one frame as PNG, with labels
+  Scene scene;                         ///< the source's, with the timing to use
+  std::vector<Configuration> methods;  ///< one a panel, left to right
+  std::optional<int> upside_down;      ///< panel that is shown so, in attention checks
+  VideoSettings video;                 ///< of the whole frame, all panels together
+  Product product = Product::clip;
 };
 
 /// px of one panel.

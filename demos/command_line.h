@@ -22,8 +22,8 @@ std::filesystem::path demos_folder();
 /// --method: a std::string, or a std::optional of one.
 template <class Text>
 void add_method(CLI::App& command, Text& method, const std::string& help,
-                std::vector<std::string> names = {"pinch", "pinch_no_contact", "cable",
-                                                  "baseline"}) {
+                std::vector<std::string> names = {"pinch", "pinch_no_contact", "cable", "baseline",
+                                                  "thesis"}) {
   command.add_option("--method", method, help)
       ->type_name("M")
       ->check(CLI::IsMember(std::move(names)));

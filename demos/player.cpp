@@ -57,6 +57,19 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
       scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
 }
 
+const char* in_words(const Configuration& configuration) {
+  if (configuration == thesis_configuration()) return "the thesis' pinch joints";
+  switch (configuration.method) {
+    case Method::pinch:
+      return "pinch joints";
+    case Method::pinch_no_contact:
+      return "pinch joints, no contact";
+    case Method::cable:
+      return "cable joints";
+  }
+  return "unknown";
+}
+
 Player::Player(const SceneFile& file, const Scene& scene, const Configuration& configuration)
     : file_(file), scene_(scene), world_(start_world(scene, file.path, configuration)) {}
 

@@ -26,6 +26,9 @@ Scene with_timing(const Scene& scene, const Timing& timing);
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
                            const World& world, int frame);
 
+/// What people call a way of simulating: "pinch joints", "cable joints".
+const char* in_words(const Configuration& configuration);
+
 class Player {
  public:
   /// `file` must outlive the player. Throws SceneFileError where the geometry cannot exist.

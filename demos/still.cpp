@@ -30,7 +30,7 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<double>& times)
 }
 
 // The frames asked for, in the order asked for, though the simulation only runs forward.
-std::vector<SheetFrame> draw_frames(const SceneFile& file, Method method,
+std::vector<SheetFrame> draw_frames(const SceneFile& file, const Configuration& method,
                                     const std::vector<int>& frames, Canvas& canvas) {
   std::vector<std::size_t> by_time(frames.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
@@ -44,8 +44,7 @@ std::vector<SheetFrame> draw_frames(const SceneFile& file, Method method,
     player.advance_to(frames[i]);
     compose(player.scene(), player.world(), picture);
     const std::uint8_t* rgba = canvas.draw(picture);
-    drawn[i] = {{rgba, rgba + bytes},
-                fmt::format("{}, {:.2f} s", to_string(method), player.time())};
+    drawn[i] = {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())};
   }
   return drawn;
 }
@@ -56,7 +55,7 @@ void write_still(const SceneFile& file, const StillOptions& options) {
   const std::vector<int> frames = frames_at(file.scene, options.times);
   Canvas canvas(options.width, options.height);
   std::vector<SheetFrame> sheet;
-  for (const Method method : options.methods) {
+  for (const Configuration& method : options.methods) {
     std::ranges::move(draw_frames(file, method, frames, canvas), std::back_inserter(sheet));
   }
   if (sheet.size() == 1) {

@@ -9,10 +9,10 @@
 namespace pinchlab {
 
 struct StillOptions {
-  std::vector<double> times;      ///< s, each shown by the nearest frame; any order
-  std::vector<Method> methods;    ///< one a row of the sheet
-  int width = 960, height = 960;  ///< px, of one picture
-  std::filesystem::path out;      ///< PNG
+  std::vector<double> times;           ///< s, each shown by the nearest frame; any order
+  std::vector<Configuration> methods;  ///< one a row of the sheet
+  int width = 960, height = 960;       ///< px, of one picture
+  std::filesystem::path out;           ///< PNG
 };
 
 /// One frame of a scene as PNG, or, for several times or methods, a contact sheet with a label

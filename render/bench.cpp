@@ -72,8 +72,8 @@ void advance_frame(const Scene& scene, World& world) {
 }
 
 /// The stages as in making a clip, with the yardstick's encoder.
-void time_stages(const Scene& scene, Method method, Canvas& canvas, VideoWriter& writer,
-                 RenderCost& cost) {
+void time_stages(const Scene& scene, const Configuration& method, Canvas& canvas,
+                 VideoWriter& writer, RenderCost& cost) {
   std::vector<double> simulate, draw, convert, encode;
   World world = make_world(scene, method);
   Picture picture;
@@ -97,8 +97,8 @@ void time_stages(const Scene& scene, Method method, Canvas& canvas, VideoWriter&
 }
 
 /// The clip as it is written, and how near its frames come to the drawn ones.
-void measure_clip(const Scene& scene, Method method, Canvas& canvas, const std::string& path,
-                  const VideoSettings& settings, RenderCost& cost) {
+void measure_clip(const Scene& scene, const Configuration& method, Canvas& canvas,
+                  const std::string& path, const VideoSettings& settings, RenderCost& cost) {
   VideoWriter writer(path, settings);
   std::vector<double> encode;
   World world = make_world(scene, method);
@@ -129,7 +129,8 @@ void measure_clip(const Scene& scene, Method method, Canvas& canvas, const std::
 
 }  // namespace
 
-RenderCost measure_render(const Scene& scene, Method method, int width, int height, int frames) {
+RenderCost measure_render(const Scene& scene, const Configuration& method, int width, int height,
+                          int frames) {
   RenderCost cost;
   cost.width = width;
   cost.height = height;

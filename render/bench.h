@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/scene.h"
+#include "sim/configuration.h"
 
 namespace pinchlab {
 
@@ -27,7 +27,8 @@ struct RenderCost {
 /// Simulates, draws, converts and encodes `frames` frames of the scene (0: all of them) in one run,
 /// into scratch files that are removed. Throws std::runtime_error where the simulation or a file
 /// fails.
-RenderCost measure_render(const Scene& scene, Method method, int width, int height, int frames = 0);
+RenderCost measure_render(const Scene& scene, const Configuration& method, int width, int height,
+                          int frames = 0);
 
 /// Several scenes together: each figure the mean over all their frames of the scenes' medians, the
 /// PSNR the least of all. `costs` is not empty.

@@ -85,7 +85,7 @@ void add_render(CLI::App& bench) {
   command->add_option("scene", *scene, "Scene file [all of demos, and their mean]")
       ->type_name("SCENE");
   add_method(*command, run->method,
-             "pinch, pinch_no_contact, cable or baseline (the scene's own) [pinch]");
+             "pinch, pinch_no_contact, cable, baseline (the scene's own) or thesis [pinch]");
   add_size(*command, *size, "Pixels of a frame, even [960x960]");
   command->add_option("--frames", run->frames, "Frames to measure [all of the clip]")
       ->type_name("N")

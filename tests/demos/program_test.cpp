@@ -70,7 +70,6 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"render", "--size", "65x65", "01-small.json"},
       {"render", "--size", "999999x64"},
       {"render", "--method", "plain"},
-      {"render", "--method", "thesis"},
       {"render", "--codec", "mpeg2"},
       {"render", "--jobs", "0"},
       {"render", "--jobs", "two"},

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/events.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "sim/cable.h"
+
+namespace pinchlab {
+
+void EventWatch::hold(const std::string& what, double time) {
+  std::vector<Event>& times = seen_[what];
+  if (times.empty() || time - times.back().to > shortest_break) times.push_back({what, time, time});
+  times.back().to = time;
+}
+
+void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
+  const CableState& cable = world.cables[c];
+  const std::string& name = scene_.cables[c].name;
+  const auto body = [&](std::size_t link) -> const std::string& {
+    return scene_.bodies[static_cast<std::size_t>(cable.links[link].body)].name;
+  };
+  const std::size_t count = cable.links.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Link& link = cable.links[i];
+    if (link.orientation != 0 && !link.pinch_middle) {
+      hold(fmt::format("{} runs round {}", name, body(i)), time);
+    }
+    if (i < first_segment(cable)) continue;
+    const std::size_t before = i == 0 ? count - 1 : i - 1;
+    const Segment& segment = cable.segments[i];
+    // (A winch's rope ends on the body that it is wound on: no pinch.)
+    const int from = cable.links[before].body;
+    if (segment.pinched && link.body >= 0 && from >= 0 && from != link.body) {
+      const std::string &a = body(before), &b = body(i);
+      hold(fmt::format("{} pinched between {} and {}", name, std::min(a, b), std::max(a, b)), time);
+    }
+    // Slack that shows: by half a cable's width.
+    if (!segment.pinched && segment.rest_length - segment.length > cable.half_width) {
+      hold(fmt::format("{} slack", name), time);
+    }
+  }
+}
+
+void EventWatch::look(const World& world, double time) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) look_at_cable(world, c, time);
+  for (const Contact& contact : world.contacts) {
+    if (!contact.touching || contact.pinch_points > 0) continue;
+    const std::string& a = scene_.bodies[static_cast<std::size_t>(contact.a)].name;
+    hold(contact.b < 0 ? fmt::format("{} touches a wall", a)
+                       : fmt::format("{} touches {}", a,
+                                     scene_.bodies[static_cast<std::size_t>(contact.b)].name),
+         time);
+  }
+}
+
+std::vector<Event> EventWatch::events() const {
+  std::vector<Event> all;
+  for (const auto& [what, times] : seen_) all.insert(all.end(), times.begin(), times.end());
+  std::ranges::stable_sort(all, {}, &Event::from);
+  return all;
+}
+
+}  // namespace pinchlab

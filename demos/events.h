@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What happens in a simulation, in words: which cables are pinched, slack or wrapped, and what
+// touches, from when to when.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// Something that holds for a while.
+struct Event {
+  std::string what;           ///< e.g. "rope pinched between drum and left"
+  double from = 0.0, to = 0;  ///< s, times of the first and the last frame that show it
+};
+
+/// Watches a world frame by frame.
+class EventWatch {
+ public:
+  explicit EventWatch(const Scene& scene) : scene_(scene) {}
+
+  /// To be called for every frame, in order.
+  void look(const World& world, double time);
+
+  /// What was seen so far, in order of its beginning. What ceases for less than `shortest_break` is
+  /// one event: a body that bounces on a cable does not begin to pinch it again and again.
+  std::vector<Event> events() const;
+
+  static constexpr double shortest_break = 0.25;  ///< s
+
+ private:
+  void hold(const std::string& what, double time);
+  void look_at_cable(const World& world, std::size_t cable, double time);
+
+  const Scene& scene_;
+  std::map<std::string, std::vector<Event>> seen_;  // by what
+};
+
+}  // namespace pinchlab
