@@ -39,7 +39,8 @@ using boost::system::error_code;
 constexpr std::size_t part_bytes = 1U << 16U;          // of a reply that is read as it is sent
 constexpr std::chrono::milliseconds accept_pause{50};  // where the system has no more sockets
 constexpr std::chrono::seconds linger_time{2};         // for a refusal to arrive
-constexpr std::size_t other_files = 128;               // that the program needs beside connections
+constexpr std::size_t linger_bytes = 1U << 20U;
+constexpr std::size_t other_files = 128;  // that the program needs beside connections
 
 // A connection's coroutine goes on with its error in `error`, not with an exception.
 auto into(error_code& error) {
@@ -311,8 +312,8 @@ struct HttpServer::Implementation {
     connection.stream.socket().shutdown(tcp::socket::shutdown_send, error);
     connection.stream.expires_after(linger_time);
     std::array<char, 4096> unread{};
-    while (!error) {
-      co_await connection.stream.async_read_some(asio::buffer(unread), into(error));
+    for (std::size_t got = 0; !error && got < linger_bytes;) {
+      got += co_await connection.stream.async_read_some(asio::buffer(unread), into(error));
     }
   }
 

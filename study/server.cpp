@@ -257,11 +257,26 @@ struct Server::Implementation {
       return reply({{"done", true}});
     };
     routes[{"GET", "/api/overview"}] = [this](const HttpRequest& request) {
-      if (!equal_in_constant_time(token_of(request), researcher_token)) {
-        throw Refused(401, "this needs the token that was printed at start");
-      }
+      check_researcher(request);
       return reply(overview_json(desk.overview()));
     };
+    routes[{"POST", "/api/release"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      const json body = parse_body(request);
+      check_keys(body, {"participant"});
+      const json participant = body.value("participant", json());
+      if (!participant.is_string()) {
+        throw Refused(422, "participant must be a string");
+      }
+      desk.release(participant.get<std::string>());
+      return reply({{"done", true}});
+    };
+  }
+
+  void check_researcher(const HttpRequest& request) const {
+    if (!equal_in_constant_time(token_of(request), researcher_token)) {
+      throw Refused(401, "this needs the token that was printed at start");
+    }
   }
 
   HttpReply start(const HttpRequest& request) {
@@ -274,7 +289,8 @@ struct Server::Implementation {
     if (!link.is_string()) {
       throw Refused(422, "the link must be a string");
     }
-    const std::string token = desk.start(link.get<std::string>(), request.header("user-agent"));
+    const std::string token =
+        desk.start(link.get<std::string>(), request.header("user-agent"), request.address);
     json started = progress_json(desk.progress(token));
     started["token"] = token;
     return reply(started);

@@ -20,8 +20,13 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
-// RFC 4180.
-std::string quoted(const std::string& text) {
+// RFC 4180. A text that a spreadsheet would take for a formula gets an apostrophe before it, which
+// spreadsheets do not show; numbers stay as they are.
+std::string quoted(const std::string& given) {
+  const bool is_text = given.find_first_not_of("+-.0123456789eE") != std::string::npos;
+  const bool is_formula =
+      is_text && std::string_view("=+-@\t\r").find(given.front()) != std::string_view::npos;
+  const std::string text = (is_formula ? "'" : "") + given;
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }
@@ -167,9 +172,10 @@ std::string answers_csv(const fs::path& folder) {
     names.emplace_back(column.name);
   }
   std::string csv = row(names);
+  analysis::SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
     const json file = analysis::read_json_file(path, largest_file);
-    analysis::parse_answer_file(file, path.string());
+    same_study.check(analysis::parse_answer_file(file, path.string()), path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
       values.reserve(columns.size());

@@ -19,6 +19,7 @@
 #include <atomic>
 #include <barrier>
 #include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -133,9 +134,10 @@ class SlowConnections {
     open_missing();
     thread_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested()) {
-        for (int i = 0; i < 40 && !stop.stop_requested(); ++i) {
-          std::this_thread::sleep_for(milliseconds(100));
-        }
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any().wait_for(lock, stop, std::chrono::seconds(4),
+                                               [] { return false; });
         for (int& connection : connections_) {
           if (connection >= 0 && ::send(connection, "x", 1, MSG_NOSIGNAL) <= 0) {
             ::close(connection);
