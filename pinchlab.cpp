@@ -15,10 +15,10 @@
 
 #include "analysis/experiments/advise.h"
 #include "analysis/experiments/commands.h"
-#include "analysis/input_error.h"
 #include "analysis/power.h"
 #include "analysis/report.h"
-#include "analysis/text_checks.h"
+#include "base/input_error.h"
+#include "base/text_checks.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
 #include "demos/still.h"
@@ -299,7 +299,7 @@ void add_analyse(CLI::App& app) {
       throw CLI::ValidationError("--pinch-value", "must differ from --cable-value");
     }
     for (const std::string& label : {args->read.pinch_value, args->read.cable_value}) {
-      const std::string why = analysis::why_not_a_name(label);
+      const std::string why = why_not_a_name(label);
       if (!why.empty())
         throw CLI::ValidationError("--pinch-value, --cable-value", "bad name: " + why);
     }
@@ -338,7 +338,7 @@ void add_power(CLI::App& app) {
   command->callback([question] {
     try {
       fmt::print("{}", analysis::power_text(*question, analysis::participants_needed(*question)));
-    } catch (const analysis::InputError& error) {
+    } catch (const InputError& error) {
       throw CLI::ValidationError(error.what());  // all of its input stands on the command line
     }
   });

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "analysis/input_error.h"
 #include "analysis/report.h"
+#include "base/input_error.h"
 
 namespace pinchlab::analysis {
 

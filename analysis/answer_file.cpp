@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <set>
 
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
-#include "analysis/text_checks.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/json_object.h"
+#include "base/text_checks.h"
 
 namespace pinchlab::analysis {
 
 namespace {
 
 constexpr long billion = 1000000000;
+constexpr const char* format_cure = "; see analysis/README.md for the format";
 
 Side side_of(const std::string& word) {
   return word == "left" ? Side::left : Side::right;
@@ -74,7 +76,7 @@ Trial read_trial(JsonObject object) {
   }
   trial.reaction_time_s = object.number("reaction_time_s", 0.0, 86400.0);
   read_circumstances(object, trial);
-  object.finish();
+  object.finish(format_cure);
   return trial;
 }
 
@@ -98,7 +100,7 @@ void read_plan(JsonObject plan, AnswerFile& file) {
   if (plan.has("both_orders")) plan.flag("both_orders");
   optional_count(plan, "training_trials");
   optional_count(plan, "attention_checks");
-  plan.finish();
+  plan.finish(format_cure);
 }
 
 void read_study(JsonObject study, AnswerFile& file) {
@@ -181,7 +183,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
     return trial.kind == TrialKind::main;
   });
   if (!answered) object.fail("trials", "holds no answer of kind `main`; take the file out");
-  object.finish();
+  object.finish(format_cure);
   return file;
 }
 

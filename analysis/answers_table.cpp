@@ -9,9 +9,9 @@
 #include "analysis/answer_file.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/groups.h"
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
 #include "analysis/table_builder.h"
+#include "base/input_error.h"
+#include "base/strict_json.h"
 
 namespace pinchlab::analysis {
 

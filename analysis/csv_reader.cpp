@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 
 namespace pinchlab::analysis {
 

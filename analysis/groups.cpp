@@ -9,8 +9,9 @@
 #include <set>
 
 #include "analysis/csv_reader.h"
-#include "analysis/input_error.h"
-#include "analysis/text_checks.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/text_checks.h"
 
 namespace pinchlab::analysis {
 

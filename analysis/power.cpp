@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "analysis/gsl_support.h"
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 
 namespace pinchlab::analysis {
 

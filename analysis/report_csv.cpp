@@ -4,20 +4,11 @@
 #include <ostream>
 
 #include "analysis/report.h"
+#include "base/csv.h"
 
 namespace pinchlab::analysis {
 
 namespace {
-
-std::string quote(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
 
 // Shortest text that reads back as the same number; nothing where there is no value.
 std::string field(const Estimate& estimate) {
@@ -31,7 +22,7 @@ constexpr const char* row_header =
 constexpr const char* scale_header = "bradley_terry_log_odds,thurstone_d,jod,jod_low,jod_high";
 
 std::string row_fields(const Row& row) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quote(row.name),
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_cell(row.name),
                      row.counts.pinch, row.counts.cable, row.share, row.chi_square,
                      row.p_chi_square, row.p_exact, row.wilson.low, row.wilson.high,
                      row.clopper_pearson.low, row.clopper_pearson.high, row.cohens_h, row.p_holm,
@@ -111,7 +102,7 @@ CsvTable times_csv(const Report& report) {
                "name,answers,median_s,lower_quartile_s,upper_quartile_s,shortest_s,longest_s\n"};
   for (const ReactionTimes& row : report.reaction_times) {
     csv.content +=
-        fmt::format("{},{},{},{},{},{},{}\n", quote(row.name), row.answers, field(row.median_s),
+        fmt::format("{},{},{},{},{},{},{}\n", csv_cell(row.name), row.answers, field(row.median_s),
                     field(row.lower_quartile_s), field(row.upper_quartile_s), field(row.shortest_s),
                     field(row.longest_s));
   }
@@ -122,8 +113,8 @@ CsvTable texts_csv(const AnswersTable& table) {
   CsvTable csv{"free_text.csv", "participant,question,text\n"};
   for (const auto& [participant, session] : table.sessions) {
     for (const auto& [question, text] : session.free_text) {
-      csv.content += fmt::format("{},{},{}\n", quote(table.participants[participant]),
-                                 quote(question), quote(text));
+      csv.content += fmt::format("{},{},{}\n", csv_cell(table.participants[participant]),
+                                 csv_cell(question), csv_cell(text));
     }
   }
   return csv;
@@ -152,15 +143,15 @@ std::vector<std::string> group_column(const AnswersTable& table) {
 void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
   if (table.answers.empty()) return;
   std::vector<std::string> groups = group_column(table);
-  for (std::string& group : groups) group = quote(group) + ",";
+  for (std::string& group : groups) group = csv_cell(group) + ",";
   out << "participant,demonstration," << (groups.empty() ? "" : "group,")
       << "choice,side,position,reaction_time_s,kind\n";
   std::vector<std::string> names;
-  for (const std::string& name : table.demonstrations) names.push_back(quote(name));
+  for (const std::string& name : table.demonstrations) names.push_back(csv_cell(name));
   std::string line;
   for (const Answer& answer : table.answers) {
     line =
-        fmt::format("{},{},{}{},{},", quote(table.participants[answer.participant]),
+        fmt::format("{},{},{}{},{},", csv_cell(table.participants[answer.participant]),
                     names[answer.demonstration], groups.empty() ? "" : groups[answer.demonstration],
                     answer.chose_pinch ? "pinch" : "cable", word(answer.pinch_side));
     if (answer.position > 0) fmt::format_to(std::back_inserter(line), "{}", answer.position);
@@ -171,7 +162,7 @@ void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
   }
   for (const auto& [participant, session] : table.sessions) {
     for (int i = 0; i < session.attention_passed + session.attention_failed; ++i) {
-      out << quote(table.participants[participant]) << ",attention-check,"
+      out << csv_cell(table.participants[participant]) << ",attention-check,"
           << (groups.empty() ? "" : ",") << (i < session.attention_passed ? "pass" : "fail")
           << ",,,,attention\n";
     }

@@ -13,8 +13,10 @@
 
 #include "analysis/gnuplot.h"
 #include "analysis/size_study.h"
+#include "base/partial_file.h"
 
 using namespace pinchlab::analysis;
+using pinchlab::StagingFolder;
 namespace fs = std::filesystem;
 
 namespace {
@@ -140,26 +142,16 @@ std::string page_of(const std::vector<Measured>& all, const Settings& settings) 
   return page;
 }
 
-void write_file(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(fmt::format("{}: cannot be written", path.string()));
-}
-
 void run(const Settings& settings) {
   const std::vector<Measured> all = measure(settings);
-  const fs::path staging = settings.out / ".unfinished";
-  fs::create_directories(staging);
-  write_file(staging / "pooled-test-size.gp", chart_of(all, settings));
-  run_gnuplot(staging, "pooled-test-size.gp");
-  write_file(staging / "pooled-test-size.csv", csv_of(all));
-  write_file(staging / "pooled-test-size.md", page_of(all, settings));
-  for (const char* ending : {"gp", "svg", "pdf", "csv", "md"}) {
-    const std::string name = fmt::format("pooled-test-size.{}", ending);
-    fs::rename(staging / name, settings.out / name);
-  }
-  fs::remove_all(staging);
+  StagingFolder staging(settings.out);
+  staging.write("pooled-test-size.gp", chart_of(all, settings));
+  run_gnuplot(staging.path(), "pooled-test-size.gp");
+  staging.add("pooled-test-size.svg");
+  staging.add("pooled-test-size.pdf");
+  staging.write("pooled-test-size.csv", csv_of(all));
+  staging.write("pooled-test-size.md", page_of(all, settings));
+  staging.keep();
 }
 
 }  // namespace

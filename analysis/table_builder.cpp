@@ -8,8 +8,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "analysis/input_error.h"
-#include "analysis/text_checks.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/text_checks.h"
 
 namespace pinchlab::analysis {
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "demos/batch.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,8 +11,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/folder_lock.h"
+#include "base/partial_file.h"
+#include "base/progress.h"
 #include "demos/manifest.h"
-#include "demos/progress.h"
 #include "demos/report_page.h"
 #include "demos/worker_pool.h"
 #include "render/canvas.h"
@@ -26,36 +25,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// One batch at a time in a folder. The lock is on the folder itself and goes with the process.
-class FolderLock {
- public:
-  explicit FolderLock(const fs::path& folder)
-      : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (folder_ < 0) {
-      throw std::runtime_error(
-          fmt::format("{}: is not a folder that can be used", folder.string()));
-    }
-    if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(folder_);
-      throw std::runtime_error(
-          fmt::format("{}: another process is rendering into it; wait for it or use another --out",
-                      folder.string()));
-    }
-  }
-  ~FolderLock() { ::close(folder_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int folder_;
-};
-
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
   const std::set<std::string> ours = {".mp4", ".webm", ".mkv", ".png", ".json", ".html"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
-    if (path.extension() == ".partial" && ours.contains(path.stem().extension())) {
+    if (path.extension() == partial_ending && ours.contains(path.stem().extension())) {
       fs::remove(path);
     }
   }
@@ -249,7 +224,10 @@ int render_batch(const BatchOptions& options) {
   }
 
   fs::create_directories(options.out);
-  const FolderLock lock(options.out);
+  const FolderLock lock(
+      options.out,
+      fmt::format("{}: another process is rendering into it; wait for it or use another --out",
+                  options.out.string()));
   remove_partial_files(options.out);
   Manifest manifest = read_manifest(options.out);
   const auto is_gone = [&](const ordered_json& entry) {

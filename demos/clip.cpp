@@ -7,12 +7,13 @@
 #include <cmath>
 #include <deque>
 
-#include "demos/hash.h"
+#include "base/sha256.h"
 #include "demos/pair_report.h"
 #include "demos/player.h"
 #include "demos/version.h"
 #include "render/canvas.h"
 #include "render/compose.h"
+#include "render/frame_hash.h"
 #include "render/png.h"
 
 namespace pinchlab {
@@ -57,7 +58,7 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
-  Hash frames(HashKind::murmur3);
+  FrameHash frames;
   std::vector<std::uint8_t> turned;
   for (int frame = 0; frame < plan.scene.frame_count; ++frame) {
     for (std::size_t i = 0; i < players.size(); ++i) {
@@ -87,7 +88,7 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
   const std::size_t bytes = frame_bytes(width, plan.video.height);
   Canvas canvas(width, plan.video.height);
   Picture picture;
-  Hash frames(HashKind::murmur3);
+  FrameHash frames;
   std::vector<SheetFrame> sheet;
   for (const Configuration& method : plan.methods) {
     Player player(*plan.source, plan.scene, method);

@@ -7,8 +7,8 @@
 #include <cctype>
 #include <cmath>
 
-#include "demos/did_you_mean.h"
-#include "demos/strict_json.h"
+#include "base/did_you_mean.h"
+#include "base/strict_json.h"
 
 namespace pinchlab {
 namespace {
@@ -41,7 +41,7 @@ std::string either(const std::vector<std::string>& words) {
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  const std::string meant = did_you_mean(word, known);
+  const std::string meant = nearest_word(word, known);
   return meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant);
 }
 
@@ -182,7 +182,7 @@ void check_format(const json& value, const ObjectFormat& format, const std::stri
       check_value(child, *key, child_place, problems);
       continue;
     }
-    const std::string meant = did_you_mean(name, known);
+    const std::string meant = nearest_word(name, known);
     problems.push_back(
         {child_place, meant.empty()
                           ? fmt::format("unknown key (known here: {})", fmt::join(known, ", "))

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "demos/hash.h"
-#include "demos/output_file.h"
+#include "base/output_file.h"
+#include "base/sha256.h"
 
 namespace pinchlab {
 namespace {

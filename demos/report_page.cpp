@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "demos/output_file.h"
+#include "base/output_file.h"
 
 namespace pinchlab {
 namespace {

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <map>
 
-#include "demos/did_you_mean.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/read_file.h"
+#include "base/sha256.h"
+#include "base/strict_json.h"
 #include "demos/format_check.h"
-#include "demos/hash.h"
-#include "demos/strict_json.h"
 #include "sim/scene_error.h"
 
 namespace pinchlab {
@@ -120,7 +119,7 @@ int Reader::body_index(const json& name, const std::string& place) {
   for (const auto& [body, index] : body_names_) {
     known.push_back(body);
   }
-  const std::string meant = did_you_mean(name.get<std::string>(), known);
+  const std::string meant = nearest_word(name.get<std::string>(), known);
   problem(place, fmt::format("no body is called \"{}\"{}", name.get<std::string>(),
                              meant.empty() ? "" : fmt::format(" (did you mean \"{}\"?)", meant)));
   return 0;
@@ -405,9 +404,7 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
   SceneFile file;
   file.path = path;
   file.scene.name = scene_name(path);
-  Hash sha(HashKind::sha256);
-  sha.add(std::as_bytes(std::span(text)));
-  file.sha256 = sha.hex();
+  file.sha256 = sha256(text);
 
   std::vector<SceneProblem> problems;
   try {
@@ -426,25 +423,15 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
 }
 
 SceneFile read_scene_file(const std::filesystem::path& path) {
-  const auto fail = [&](const std::string& why) {
-    throw SceneFileError(path.string(), {{"", why}});
-  };
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    fail(error ? error.message() : "is not a file");
+    throw SceneFileError(path.string(), {{"", error ? error.message() : "is not a file"}});
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    fail(std::string("cannot read: ") + std::strerror(errno));
-  }
-  std::string text(max_scene_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad()) {
-    fail(std::string("cannot read: ") + std::strerror(errno));
-  }
-  if (text.size() > max_scene_bytes) {
-    fail(fmt::format("is larger than {} bytes", max_scene_bytes));
+  std::string text;
+  try {
+    text = read_whole(path, max_scene_bytes);
+  } catch (const InputError& unreadable) {
+    throw SceneFileError(path.string(), {{"", unreadable.message}});
   }
   return parse_scene(text, path);
 }

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <string>
 
-#include "demos/output_file.h"
-#include "demos/progress.h"
+#include "base/output_file.h"
+#include "base/progress.h"
 #include "demos/scene_format.h"
 #include "sim/step.h"
 

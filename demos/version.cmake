@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Run at build time: writes OUT, which defines pinchlab::version, from VERSION and the sources in ROOT.
-file(GLOB sources RELATIVE ${ROOT} ${ROOT}/sim/*.cpp ${ROOT}/sim/*.h ${ROOT}/render/*.cpp ${ROOT}/render/*.h
-  ${ROOT}/demos/*.cpp ${ROOT}/demos/*.h)
+foreach(room base sim render demos)
+  file(GLOB_RECURSE of_room RELATIVE ${ROOT} ${ROOT}/${room}/*.cpp ${ROOT}/${room}/*.h)
+  list(APPEND sources ${of_room})
+endforeach()
 list(SORT sources)
 set(hashes "")
 foreach(source ${sources})

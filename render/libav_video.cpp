@@ -13,8 +13,8 @@ extern "C" {
 
 #include <stdexcept>
 
+#include "base/partial_file.h"
 #include "render/canvas.h"
-#include "render/partial_file.h"
 #include "render/processor_time.h"
 #include "render/video.h"
 #include "render/yuv.h"

@@ -10,7 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "render/partial_file.h"
+#include "base/partial_file.h"
 #include "render/text.h"
 
 namespace pinchlab {

@@ -7,8 +7,9 @@
 #include <stdexcept>
 
 #include "analysis/answer_file.h"
-#include "analysis/json_object.h"
-#include "study/durable_file.h"
+#include "base/durable_file.h"
+#include "base/read_file.h"
+#include "base/strict_json.h"
 #include "study/secrets.h"
 
 namespace pinchlab::study {
@@ -142,7 +143,7 @@ std::string withdraw(const fs::path& folder, const std::string& code) {
         "`{}` is no withdrawal code; it looks like 7K3M-9Q2X-0BVA", code.substr(0, 60)));
   }
   for (const fs::path& path : answer_files(folder)) {
-    const nlohmann::json file = analysis::read_json_file(path, largest_file);
+    const nlohmann::json file = read_json_file(path, largest_file);
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
       return path.stem().string();

@@ -11,9 +11,9 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "analysis/json_object.h"
-#include "analysis/text_checks.h"
-#include "study/durable_file.h"
+#include "base/did_you_mean.h"
+#include "base/sha256.h"
+#include "base/strict_json.h"
 #include "study/secrets.h"
 
 namespace pinchlab::study {
@@ -31,7 +31,7 @@ std::map<std::string, std::string> read_hashes(const fs::path& folder) {
   if (!fs::exists(path)) {
     return hashes;
   }
-  const json manifest = analysis::read_json_file(path, largest_manifest);
+  const json manifest = read_json_file(path, largest_manifest);
   const bool is_ours = manifest.is_object() &&
                        manifest.value("format", json()) == "pinchlab clips 1" &&
                        manifest.value("clips", json()).is_array();
@@ -138,7 +138,7 @@ const char* to_string(Encoding encoding) {
 
 Clip::Clip(const fs::path& path, Encoding encoding)
     : name_(path.filename().string()), encoding_(encoding) {
-  sha256_ = study::sha256(read_whole(path));
+  sha256_ = sha256_of_file(path);
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status = {};
   if (file_ < 0 || ::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -208,7 +208,7 @@ Clips open_clips(const fs::path& folder, const Config& config) {
       throw std::runtime_error(
           fmt::format("{}: has no {} of `{}`{}; pinchlab render {} makes them", folder.string(),
                       kind == PairKind::check ? "attention check" : "side-by-side clips", name,
-                      analysis::did_you_mean(name, known),
+                      did_you_mean(name, known),
                       kind == PairKind::check ? "--attention-checks" : "--side-by-side"));
     }
     return open_rendered(folder, name, kind, hashes);

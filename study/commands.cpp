@@ -17,10 +17,10 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/durable_file.h"
 #include "study/answers.h"
 #include "study/config.h"
 #include "study/desk.h"
-#include "study/durable_file.h"
 #include "study/jatos.h"
 #include "study/page_assets.h"
 #include "study/server.h"

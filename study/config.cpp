@@ -6,39 +6,24 @@
 #include <algorithm>
 #include <set>
 
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
-#include "analysis/text_checks.h"
+#include "base/input_error.h"
+#include "base/json_object.h"
+#include "base/strict_json.h"
+#include "base/text_checks.h"
 #include "study/page_assets.h"
 
 namespace pinchlab::study {
 namespace {
 
-using analysis::InputError;
-using analysis::JsonObject;
 using nlohmann::json;
 
 constexpr std::size_t largest_file = 1U << 20U;  // bytes
 constexpr std::size_t longest_text = 10000;      // bytes
 constexpr std::size_t most_trials = 1000;        // of one participant
-
-// Ahead of everything else, so that a misspelt key is told as such.
-void check_keys(const json& object, const std::string& place,
-                const std::vector<std::string>& known) {
-  if (!object.is_object()) {
-    throw InputError(place, fmt::format("must be an object, not {}", object.type_name()));
-  }
-  for (const auto& item : object.items()) {
-    if (std::ranges::find(known, item.key()) == known.end()) {
-      throw InputError(fmt::format("{}: /{}", place, item.key().substr(0, 64)),
-                       fmt::format("unknown key{}; study/README.md has the keys",
-                                   analysis::did_you_mean(item.key(), known)));
-    }
-  }
-}
+constexpr const char* key_cure = "; study/README.md has the keys";
 
 void check_demonstration(JsonObject& object, const std::string& key, const std::string& name) {
-  const std::string why = analysis::why_not_a_name(name);
+  const std::string why = why_not_a_name(name);
   if (!why.empty() || name.find('/') != std::string::npos) {
     object.fail(key, fmt::format("`{}` is no name of a demonstration{}{}", name.substr(0, 60),
                                  why.empty() ? "" : ": ", why));
@@ -74,8 +59,8 @@ std::string read_clip_name(JsonObject& object, const std::string& key) {
 
 AttentionCheck read_own_check(const json& document, const std::string& file,
                               const std::string& pointer) {
-  check_keys(document, fmt::format("{}: {}", file, pointer), {"name", "left", "right"});
   JsonObject entry(document, file, pointer);
+  entry.expect_only({"name", "left", "right"}, key_cure);
   AttentionCheck check;
   check.name = entry.name("name");
   check.left = read_clip_name(entry, "left");
@@ -117,8 +102,8 @@ std::map<std::string, std::string> read_texts(const json& document, const std::s
     known.push_back(key);
   }
   if (document.contains("texts")) {
-    check_keys(document["texts"], file + ": /texts", known);
     JsonObject object(document["texts"], file, "/texts");
+    object.expect_only(known, key_cure);
     for (const std::string& key : object.all_keys()) {
       texts[key] = object.text(key, longest_text);
       if (texts[key].find_first_not_of(" \n") == std::string::npos) {
@@ -173,10 +158,10 @@ Config default_config() {
 }
 
 Config parse_config(const json& document, const std::string& file) {
-  check_keys(document, file,
-             {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
-              "both_orders", "participant_limit", "one_time_links", "texts"});
   JsonObject object(document, file, "");
+  object.expect_only({"format", "language", "demonstrations", "training", "attention_checks",
+                      "repetitions", "both_orders", "participant_limit", "one_time_links", "texts"},
+                     key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
   if (object.has("language")) config.language = read_language(object);
@@ -202,7 +187,7 @@ Config parse_config(const json& document, const std::string& file) {
 }
 
 Config read_config(const std::filesystem::path& path) {
-  return parse_config(analysis::read_json_file(path, largest_file), path.string());
+  return parse_config(read_json_file(path, largest_file), path.string());
 }
 
 PlanOptions plan_options(const Config& config) {

@@ -38,7 +38,7 @@ std::map<std::string, std::string> delivered_texts(const std::string& language);
 /// What a study is without a file: every pair once, in English.
 Config default_config();
 
-/// Reads a file strictly: throws analysis::InputError with the place and the cure.
+/// Reads a file strictly: throws InputError with the place and the cure.
 Config read_config(const std::filesystem::path& path);
 
 /// The same for a parsed document; `file` is for messages.

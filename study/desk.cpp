@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
+#include "base/durable_file.h"
+#include "base/input_error.h"
+#include "base/partial_file.h"
+#include "base/sha256.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 #include "study/secrets.h"
 #include "study/utc.h"
 
@@ -59,7 +61,10 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
     throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
                                          options_.answers.string(), problem.message()));
   }
-  lock_.emplace(options_.answers);
+  lock_.emplace(running_folder(options_.answers),
+                fmt::format("{}: another server is using this folder; stop it or use another "
+                            "--answers",
+                            options_.answers.string()));
   sweep();
   shown_ = what_is_shown(options_.config, options_.clips);
   study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);
@@ -69,7 +74,7 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
 
 void Desk::read_finished() {
   for (const fs::path& path : answer_files(options_.answers)) {
-    const json file = analysis::read_json_file(path, largest_file);
+    const json file = read_json_file(path, largest_file);
     if (!file.is_object() || file.value("format", json()) != "pinchlab-answers") {
       throw std::runtime_error(
           fmt::format("{}: is no answer file; keep other files elsewhere", path.string()));
@@ -95,8 +100,8 @@ void Desk::read_running() {
     }
     auto entry = std::make_shared<Entry>();
     try {
-      entry->session = session_from_json(analysis::read_json_file(path, largest_file));
-    } catch (const analysis::InputError& error) {
+      entry->session = session_from_json(read_json_file(path, largest_file));
+    } catch (const InputError& error) {
       throw std::runtime_error(
           fmt::format("{}: {}; remove the file to go on without this participant", path.string(),
                       error.what()));
@@ -484,7 +489,7 @@ std::string Desk::saved_code(const std::string& id, const std::string& secret) c
   if (!fs::exists(path)) {
     return "";
   }
-  const json file = analysis::read_json_file(path, largest_file);
+  const json file = read_json_file(path, largest_file);
   const std::string code = withdrawal_code(secret);
   const json kept = file.is_object() ? file.value("withdrawal_code_sha256", json()) : json();
   return kept.is_string() && equal_in_constant_time(kept.get<std::string>(), withdrawal_hash(code))

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "base/folder_lock.h"
 #include "study/clips.h"
 #include "study/config.h"
 #include "study/session.h"

@@ -9,10 +9,12 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
+#include "base/durable_file.h"
+#include "base/input_error.h"
+#include "base/json_object.h"
+#include "base/read_file.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 #include "study/page_assets.h"
 #include "study/secrets.h"
 #include "study/session.h"
@@ -23,8 +25,6 @@ namespace pinchlab::study {
 namespace {
 
 namespace fs = std::filesystem;
-using analysis::InputError;
-using analysis::JsonObject;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
@@ -173,7 +173,7 @@ std::vector<std::string> read_names(JsonObject& object, const std::string& key) 
 }
 
 Key read_key(const fs::path& path) {
-  const json document = analysis::read_json_file(path, largest_key);
+  const json document = read_json_file(path, largest_key);
   JsonObject object(document, path.string(), "");
   object.choice("format", {"pinchlab-jatos-key 2"});
   Key key;
@@ -202,8 +202,8 @@ struct Result {
 Result read_result(const std::string& line, const std::string& place, const Key& key) {
   json document;
   try {
-    document = json::parse(line);
-  } catch (const json::exception&) {
+    document = parse_strict_json(line);
+  } catch (const JsonError&) {
     throw InputError(place, "is not JSON; export the results from JATOS as text, data only");
   }
   JsonObject object(document, place, "");

@@ -2,19 +2,13 @@
 #include "study/secrets.h"
 
 #include <fmt/format.h>
-#include <sys/random.h>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
 
-#include <array>
-#include <cerrno>
-#include <memory>
-#include <new>
 #include <stdexcept>
 #include <vector>
 
-extern "C" {
-#include <libavutil/mem.h>
-#include <libavutil/sha.h>
-}
+#include "base/sha256.h"
 
 namespace pinchlab::study {
 namespace {
@@ -23,49 +17,25 @@ constexpr std::string_view base32 =
     "0123456789ABCDEFGHJKMNPQRSTVWXYZ";  // Crockford's: no I, L, O, U
 constexpr std::size_t code_length = 12;
 
-std::array<unsigned char, 32> digest(std::string_view bytes) {
-  const std::unique_ptr<AVSHA, void (*)(void*)> sha(av_sha_alloc(), &av_free);
-  if (!sha || av_sha_init(sha.get(), 256) != 0) {
-    throw std::bad_alloc();
-  }
-  av_sha_update(sha.get(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
-  std::array<unsigned char, 32> result{};
-  av_sha_final(sha.get(), result.data());
-  return result;
-}
-
 }  // namespace
 
 std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
-  std::size_t have = 0;
-  while (have < bytes) {
-    const ssize_t got = ::getrandom(random.data() + have, bytes - have, 0);
-    if (got < 0 && errno != EINTR) {
-      throw std::runtime_error("the system gives no random numbers");
-    }
-    have += got > 0 ? static_cast<std::size_t>(got) : 0;
+  if (RAND_bytes(random.data(), static_cast<int>(bytes)) != 1) {
+    throw std::runtime_error("the system gives no random numbers");
   }
   return fmt::format("{:02x}", fmt::join(random, ""));
 }
 
-std::string sha256(std::string_view bytes) {
-  return fmt::format("{:02x}", fmt::join(digest(bytes), ""));
-}
-
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) {
-    return false;
-  }
-  volatile unsigned char difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference = static_cast<unsigned char>(difference | (a[i] ^ b[i]));
-  }
-  return difference == 0;
+  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 std::string withdrawal_code(std::string_view secret) {
-  const auto bytes = digest("withdrawal " + std::string(secret));
+  Sha256 sha;
+  sha.add("withdrawal ");
+  sha.add(secret);
+  const Sha256::Digest bytes = sha.digest();
   std::string code;
   for (std::size_t i = 0; i < code_length; ++i) {
     if (i > 0 && i % 4 == 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Random identifiers, hashes and the codes that participants keep.
+// Random identifiers and the codes that participants keep.
 
 #include <cstddef>
 #include <string>
@@ -8,11 +8,8 @@
 
 namespace pinchlab::study {
 
-/// `bytes` random bytes of the kernel as lower-case hexadecimal digits.
+/// `bytes` random bytes, fit for secrets (OpenSSL's), as lower-case hexadecimal digits.
 std::string random_hex(std::size_t bytes);
-
-/// SHA-256 as 64 lower-case hexadecimal digits.
-std::string sha256(std::string_view bytes);
 
 /// Whether two texts are equal, in a time that depends on their lengths only.
 bool equal_in_constant_time(std::string_view a, std::string_view b);

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/strict_json.h"
 #include "study/http_server.h"
 #include "study/page_assets.h"
 #include "study/rate_limit.h"
@@ -19,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int deepest_json = 8;
+constexpr std::size_t deepest_json = 8;
 constexpr double requests_per_second = 500, requests_at_once = 5000;  // of one address
 
 // No inline code, nothing from elsewhere, no frames; clips are played from memory (blob:).
@@ -53,25 +54,10 @@ json parse_body(const HttpRequest& request) {
   if (type != "application/json" && !type.starts_with("application/json;")) {
     throw Refused(415, "the body must be application/json");
   }
-  std::vector<std::set<std::string>> keys;
-  const auto watch = [&keys](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > deepest_json) {
-      throw Refused(400, "nested too deep");
-    }
-    if (event == json::parse_event_t::object_start) {
-      keys.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      keys.pop_back();
-    } else if (event == json::parse_event_t::key &&
-               !keys.back().insert(parsed.get<std::string>()).second) {
-      throw Refused(400, "a key stands twice");
-    }
-    return true;
-  };
   try {
-    return json::parse(request.body, watch);
-  } catch (const json::exception&) {
-    throw Refused(400, "the body is not JSON");
+    return parse_strict_json(request.body, deepest_json);
+  } catch (const JsonError& error) {
+    throw Refused(400, fmt::format("{}: {}", error.place, error.what()));
   }
 }
 

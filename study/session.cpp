@@ -3,14 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "analysis/input_error.h"
-#include "analysis/json_object.h"
+#include "base/input_error.h"
+#include "base/json_object.h"
 
 namespace pinchlab::study {
 namespace {
 
-using analysis::InputError;
-using analysis::JsonObject;
 using nlohmann::json;
 using nlohmann::ordered_json;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/shown.h"
 
-#include "study/secrets.h"
+#include "base/sha256.h"
 
 namespace pinchlab::study {
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/study_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <stdexcept>
 
-#include "analysis/json_object.h"
-#include "study/durable_file.h"
+#include "base/durable_file.h"
+#include "base/json_object.h"
+#include "base/strict_json.h"
 #include "study/secrets.h"
 #include "study/shown.h"
 
@@ -60,8 +58,8 @@ StudyFile open_study_file(const fs::path& answers, const Config& config, const j
     write_study_file(answers, config, shown, study);
     return study;
   }
-  const json file = analysis::read_json_file(path, largest_file);
-  analysis::JsonObject object(file, path.string(), "");
+  const json file = read_json_file(path, largest_file);
+  JsonObject object(file, path.string(), "");
   if (object.choice("format", {"pinchlab-running 1", "pinchlab-running 2"}) ==
       "pinchlab-running 1") {
     object.fail("format",
@@ -103,24 +101,6 @@ void write_study_file(const fs::path& answers, const Config& config, const json&
                      {"link_secret", study.link_secret}, {"used_links", study.used_links},
                      {"plan", fingerprint(config)},      {"shown", shown}};
   write_durably(study_path(answers), file.dump(2) + "\n");
-}
-
-FolderLock::FolderLock(const fs::path& answers)
-    : folder_(::open(running_folder(answers).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (folder_ < 0) {
-    throw std::runtime_error(running_folder(answers).string() +
-                             ": is not a folder that can be used");
-  }
-  if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(folder_);
-    throw std::runtime_error(
-        fmt::format("{}: another server is using this folder; stop it or use another --answers",
-                    answers.string()));
-  }
-}
-
-FolderLock::~FolderLock() {
-  ::close(folder_);
 }
 
 }  // namespace pinchlab::study

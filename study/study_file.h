@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What a study in a folder of answers is from its first start on: ANSWERS/.running/study.json, and
-// the lock that keeps a second server out.
+// What a study in a folder of answers is from its first start on: ANSWERS/.running/study.json.
 
 #include <cstdint>
 #include <filesystem>
@@ -33,18 +32,5 @@ StudyFile open_study_file(const std::filesystem::path& answers, const Config& co
 
 void write_study_file(const std::filesystem::path& answers, const Config& config,
                       const nlohmann::json& shown, const StudyFile& study);
-
-/// One server at a time in a folder. The lock is on the folder itself and goes with the process.
-class FolderLock {
- public:
-  /// Throws std::runtime_error if another process has it.
-  explicit FolderLock(const std::filesystem::path& answers);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int folder_;
-};
 
 }  // namespace pinchlab::study

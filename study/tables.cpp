@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "analysis/answer_file.h"
-#include "analysis/json_object.h"
+#include "base/csv.h"
+#include "base/durable_file.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 
 namespace pinchlab::study {
 namespace {
@@ -20,21 +21,13 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
-// RFC 4180. A text that a spreadsheet would take for a formula gets an apostrophe before it, which
+// A text that a spreadsheet would take for a formula gets an apostrophe before it, which
 // spreadsheets do not show; numbers stay as they are.
-std::string quoted(const std::string& given) {
-  const bool is_text = given.find_first_not_of("+-.0123456789eE") != std::string::npos;
+std::string harmless(const std::string& text) {
+  const bool is_number = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
   const bool is_formula =
-      is_text && std::string_view("=+-@\t\r").find(given.front()) != std::string_view::npos;
-  const std::string text = (is_formula ? "'" : "") + given;
-  if (text.find_first_of(",\"\r\n") == std::string::npos) {
-    return text;
-  }
-  std::string result = "\"";
-  for (const char c : text) {
-    result += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return result + "\"";
+      !is_number && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return (is_formula ? "'" : "") + text;
 }
 
 std::string value_of(const json& object, const char* key) {
@@ -105,7 +98,7 @@ const std::vector<Column> columns = {
 std::string row(const std::vector<std::string>& values) {
   std::string text;
   for (const std::string& value : values) {
-    text += (text.empty() ? "" : ",") + quoted(value);
+    text += (text.empty() ? "" : ",") + csv_cell(harmless(value));
   }
   return text + "\n";
 }
@@ -174,7 +167,7 @@ std::string answers_csv(const fs::path& folder) {
   std::string csv = row(names);
   analysis::SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
-    const json file = analysis::read_json_file(path, largest_file);
+    const json file = read_json_file(path, largest_file);
     same_study.check(analysis::parse_answer_file(file, path.string()), path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;

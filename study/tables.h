@@ -17,7 +17,7 @@ nlohmann::ordered_json plan_json(std::uint64_t seed, std::uint64_t participants,
 /// The same as CSV, one row a trial.
 std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanOptions& options);
 
-/// All answers of a folder as tidy CSV, one row a trial. Throws analysis::InputError for a file
+/// All answers of a folder as tidy CSV, one row a trial. Throws InputError for a file
 /// that is no answer file.
 std::string answers_csv(const std::filesystem::path& folder);
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "study/durable_file.h"
+#include "base/partial_file.h"
 
 namespace pinchlab::study {
 namespace {

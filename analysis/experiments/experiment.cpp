@@ -12,8 +12,9 @@
 #include <stdexcept>
 
 #include "analysis/gnuplot.h"
-#include "demos/output_file.h"
-#include "demos/progress.h"
+#include "base/csv.h"
+#include "base/output_file.h"
+#include "base/progress.h"
 #include "demos/version.h"
 
 namespace pinchlab::experiments {
@@ -70,19 +71,8 @@ double growth_exponent(const std::vector<double>& sizes, const std::vector<doubl
 
 namespace {
 
-/// A cell as RFC 4180 wants it.
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 std::string csv_text(const Csv::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return csv_text(*text);
+  if (const auto* text = std::get_if<std::string>(&cell)) return csv_cell(*text);
   if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{}", *number);
   return fmt::format("{}", std::get<std::int64_t>(cell));
 }
@@ -125,7 +115,7 @@ void Csv::row(std::vector<Cell> cells) {
 std::string Csv::text() const {
   std::string text;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
-    text += (c > 0 ? "," : "") + csv_text(columns_[c]);
+    text += (c > 0 ? "," : "") + csv_cell(columns_[c]);
   }
   text += '\n';
   for (const std::vector<Cell>& row : rows_) {

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "analysis/answer_file.h"
-#include "analysis/input_error.h"
-#include "analysis/text_checks.h"
+#include "base/input_error.h"
+#include "base/text_checks.h"
 #include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {
@@ -307,8 +307,8 @@ TEST(Malformed, AnswerFileText) {
   add("{", "line 1");
   add("{}", "`format` is missing");
   add("{\"format\": NaN}", "");
-  add("{\"a\": 1, \"a\": 2}", "`a` stands twice");
-  add("{\"a\": {\"b\": 1, \"b\": 1}}", "`b` stands twice");
+  add("{\"a\": 1, \"a\": 2}", "/a: key given twice");
+  add("{\"a\": {\"b\": 1, \"b\": 1}}", "/a/b: key given twice");
   add("// comment\n{}", "");
   add(good + "x", "");
   add(good.substr(0, good.size() - 1), "");

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "analysis/input_error.h"
 #include "analysis/power.h"
 #include "analysis/size_study.h"
 #include "analysis/tests_2afc.h"
+#include "base/input_error.h"
 #include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {

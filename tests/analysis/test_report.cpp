@@ -5,7 +5,7 @@
 
 #include "analysis/document.h"
 #include "analysis/gnuplot.h"
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 #include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {

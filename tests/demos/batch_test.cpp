@@ -2,6 +2,7 @@
 // The main job on small scenes: the same bytes always, nothing made twice, no half file ever.
 
 #include "demos/batch.h"
+#include "base/sha256.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 #include <set>
 #include <thread>
 
-#include "demos/hash.h"
 #include "demos/version.h"
 #include "run_program.h"
 #include "scene_files.h"

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "demos/player.h"
-#include "demos/progress.h"
 #include "demos/version.h"
 #include "demos/worker_pool.h"
 #include "run_program.h"
@@ -334,13 +333,6 @@ TEST(WorkerPool, ResultsErrorsAndDeathsComeBack) {
   EXPECT_EQ(errors, (std::map<std::size_t, std::string>{
                         {1, "no luck"},
                         {2, "its process was ended by signal 9 (Killed); was memory short?"}}));
-}
-
-TEST(Progress, Times) {
-  EXPECT_EQ(minutes_and_seconds(-1), "0:00");
-  EXPECT_EQ(minutes_and_seconds(9.4), "0:09");
-  EXPECT_EQ(minutes_and_seconds(725), "12:05");
-  EXPECT_EQ(minutes_and_seconds(3723), "1:02:03");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/config.h"
 
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 #include "study/page_assets.h"
 #include "tests/study/support.h"
 
@@ -13,7 +13,7 @@ using nlohmann::json;
 std::string error_of(const json& document) {
   try {
     parse_config(document, "study.json");
-  } catch (const analysis::InputError& error) {
+  } catch (const InputError& error) {
     return error.what();
   }
   return "";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions, answers and what survives a restart.
 #include "study/desk.h"
+#include "base/read_file.h"
+#include "base/sha256.h"
 
 #include <sys/stat.h>
 
@@ -9,9 +11,8 @@
 #include <thread>
 
 #include "analysis/answers_table.h"
-#include "analysis/input_error.h"
+#include "base/input_error.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -420,8 +421,8 @@ TEST(Desk, WhatIsAskedAndShownStaysTheSame) {
   other["participant"] = "somebody-else";
   other["study"]["question"] = "Which looks worst?";
   write_text(folder / "answers" / "somebody-else.json", other.dump());
-  EXPECT_THROW(analysis::read_answers({folder / "answers"}, {}), analysis::InputError);
-  EXPECT_THROW(answers_csv(folder / "answers"), analysis::InputError);
+  EXPECT_THROW(analysis::read_answers({folder / "answers"}, {}), InputError);
+  EXPECT_THROW(answers_csv(folder / "answers"), InputError);
 }
 
 TEST(Desk, UnwritableFolderIsToldAndNothingIsLost) {
@@ -454,14 +455,6 @@ TEST(Withdraw, RemovesOneParticipant) {
   EXPECT_EQ(withdraw(folder / "answers", codes[1]), "") << "gone already";
   EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
   EXPECT_THROW(withdraw(folder / "answers", "nonsense"), std::invalid_argument);
-}
-
-TEST(DurableFile, FailureLeavesNothing) {
-  const fs::path folder = scratch_folder();
-  EXPECT_THROW(write_durably(folder / "missing" / "a.json", "x"), std::runtime_error);
-  fs::create_directory(folder / "a.json");
-  EXPECT_THROW(write_durably(folder / "a.json", "x"), std::runtime_error);
-  EXPECT_FALSE(fs::exists(folder / "a.json.partial"));
 }
 
 TEST(Export, PsychDs) {

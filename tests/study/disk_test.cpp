@@ -7,9 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "analysis/json_object.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -82,7 +81,7 @@ void expect_nothing_is_lost(const fs::path& folder, const Break& break_it, const
   EXPECT_NE(desk.save(token, {}), "");
   const std::vector<fs::path> files = answer_files(folder / "answers");
   ASSERT_EQ(files.size(), 1U);
-  EXPECT_EQ(analysis::read_json_file(files[0], 1U << 20U)["trials"].size(), 3U);
+  EXPECT_EQ(read_json_file(files[0], 1U << 20U)["trials"].size(), 3U);
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder / "answers")) {
     EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Archives for JATOS, and results that come back from it.
 #include "study/jatos.h"
+#include "base/read_file.h"
+#include "base/strict_json.h"
 
 #include <zlib.h>
 
@@ -8,9 +10,7 @@
 #include <set>
 
 #include "analysis/answer_file.h"
-#include "analysis/json_object.h"
 #include "study/answers.h"
-#include "study/durable_file.h"
 #include "study/zip.h"
 #include "tests/study/support.h"
 
@@ -131,7 +131,7 @@ TEST(Jatos, PlansNameClipsThatTellNothing) {
   Config config = small_config();
   config.repetitions = 2;
   const Exported study = exported(config);
-  const json key = analysis::read_json_file(study.folder / "study.key.json", 1U << 20U);
+  const json key = read_json_file(study.folder / "study.key.json", 1U << 20U);
   std::set<std::size_t> sizes;
   for (int participant = 0; participant < 4; ++participant) {
     const json plan = json::parse(

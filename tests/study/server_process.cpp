@@ -11,7 +11,7 @@
 #include <sstream>
 #include <thread>
 
-#include "study/secrets.h"
+#include "base/sha256.h"
 
 namespace pinchlab::study {
 

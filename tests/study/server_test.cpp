@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The server over HTTP: malformed requests, many participants at once, and being killed.
 #include "study/server.h"
+#include "base/read_file.h"
+#include "base/sha256.h"
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
@@ -16,7 +18,6 @@
 #include "analysis/answer_file.h"
 #include "study/answers.h"
 #include "study/connections.h"
-#include "study/durable_file.h"
 #include "study/page_assets.h"
 #include "tests/study/http_client.h"
 #include "tests/study/support.h"

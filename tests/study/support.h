@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/sha256.h"
 #include "study/desk.h"
 #include "study/secrets.h"
 #include "tests/study/server_process.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "render/partial_file.h"
+#include "base/partial_file.h"
 
 namespace pinchlab {
 

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "study/durable_file.h"
+#include "base/durable_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 
-namespace pinchlab::study {
+#include "base/partial_file.h"
+#include "base/read_file.h"
+
+namespace pinchlab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,20 +46,6 @@ class File {
       bytes.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
     }
   }
-  [[nodiscard]] std::string read() const {
-    std::string bytes;
-    std::array<char, 1U << 16U> buffer{};
-    while (true) {
-      const ssize_t got = ::read(file_, buffer.data(), buffer.size());
-      if (got < 0 && errno != EINTR) {
-        fail(path_, "cannot be read");
-      }
-      if (got == 0) {
-        return bytes;
-      }
-      bytes.append(buffer.data(), got > 0 ? static_cast<std::size_t>(got) : 0);
-    }
-  }
   void sync() const {
     if (::fsync(file_) != 0) {
       fail(path_, "cannot be brought to the disk");
@@ -89,23 +76,16 @@ void sync_folder(const fs::path& path) {
 }  // namespace
 
 void write_durably(const fs::path& path, std::string_view bytes) {
-  const fs::path partial = path.string() + std::string(partial_ending);
-  try {
-    File file(partial, O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
-    file.write(bytes);
-    file.sync();
-    file.close();
-    if (read_whole(partial) != bytes) {
-      throw std::runtime_error(
-          fmt::format("{}: the disk holds something else than was written", path.string()));
-    }
-    if (::rename(partial.c_str(), path.c_str()) != 0) {
-      fail(path, "cannot be given its name");
-    }
-  } catch (const std::exception&) {
-    ::unlink(partial.c_str());
-    throw;
+  PartialFile partial(path.string());
+  File file(partial.name(), O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
+  file.write(bytes);
+  file.sync();
+  file.close();
+  if (read_whole(partial.name()) != bytes) {
+    throw std::runtime_error(
+        fmt::format("{}: the disk holds something else than was written", path.string()));
   }
+  partial.keep();
   sync_folder(path);
 }
 
@@ -116,8 +96,4 @@ void remove_durably(const fs::path& path) {
   sync_folder(path);
 }
 
-std::string read_whole(const fs::path& path) {
-  return File(path, O_RDONLY, "cannot be opened").read();
-}
-
-}  // namespace pinchlab::study
+}  // namespace pinchlab

@@ -8,10 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pinchlab::analysis {
-
-/// " (did you mean `x`?)" for the candidate nearest to `word` if it is near enough, otherwise "".
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
+namespace pinchlab {
 
 /// "`a`, `b` or `c`", for messages that list what would be right.
 std::string one_of(std::span<const std::string> words);
@@ -30,4 +27,4 @@ std::optional<long> parse_whole(std::string_view text, long low, long high);
 /// Order of people: runs of digits compare as numbers, so "2-stack" comes before "10-drop".
 bool natural_less(std::string_view a, std::string_view b);
 
-}  // namespace pinchlab::analysis
+}  // namespace pinchlab

@@ -1,56 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/json_object.h"
+#include "base/json_object.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 
-#include "analysis/input_error.h"
-#include "analysis/text_checks.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/strict_json.h"
+#include "base/text_checks.h"
 
-namespace pinchlab::analysis {
+namespace pinchlab {
 
 using nlohmann::json;
 
 namespace {
-
-std::string read_bytes(const std::filesystem::path& path, size_t limit_bytes) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), "cannot be opened");
-  std::string bytes(limit_bytes + 1, '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (file.bad()) throw InputError(path.string(), "cannot be read");
-  bytes.resize(static_cast<size_t>(file.gcount()));
-  if (bytes.size() > limit_bytes) {
-    throw InputError(path.string(),
-                     fmt::format("larger than {} bytes, no answer file is", limit_bytes));
-  }
-  return bytes;
-}
-
-// Refuses doubled keys, of which the parser would silently keep the last.
-class DoubledKeys {
- public:
-  explicit DoubledKeys(std::string file) : file_(std::move(file)) {}
-
-  bool operator()(int /*depth*/, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == json::parse_event_t::object_end) keys_.pop_back();
-    if (event == json::parse_event_t::key) {
-      const auto& key = parsed.get_ref<const std::string&>();
-      if (!keys_.back().insert(key).second) {
-        throw InputError(file_, fmt::format("key `{}` stands twice in one object", key));
-      }
-    }
-    return true;
-  }
-
- private:
-  std::string file_;
-  std::vector<std::set<std::string>> keys_;
-};
 
 bool matches(const std::string& text, const char* pattern) {
   for (size_t i = 0; i < text.size(); ++i) {
@@ -76,18 +41,6 @@ bool is_moment(const std::string& text) {
 }
 
 }  // namespace
-
-json read_json_file(const std::filesystem::path& path, size_t limit_bytes) {
-  const std::string bytes = read_bytes(path, limit_bytes);
-  try {
-    return json::parse(bytes, DoubledKeys(path.string()));
-  } catch (const json::exception& error) {
-    const std::string message = error.what();
-    const size_t end_of_tag = message.find("] ");
-    throw InputError(path.string(),
-                     end_of_tag == std::string::npos ? message : message.substr(end_of_tag + 2));
-  }
-}
 
 JsonObject::JsonObject(const json& value, std::string file, std::string pointer)
     : value_(value), file_(std::move(file)), pointer_(std::move(pointer)) {
@@ -209,13 +162,20 @@ std::vector<std::string> JsonObject::all_keys() {
   return keys;
 }
 
-void JsonObject::finish() const {
-  const std::vector<std::string> known(asked_.begin(), asked_.end());
+void JsonObject::expect_only(const std::vector<std::string>& known, const std::string& cure) const {
   for (const auto& item : value_.items()) {
-    if (asked_.contains(item.key())) continue;
-    fail(item.key(), fmt::format("unknown key{}; see analysis/README.md for the format",
-                                 did_you_mean(item.key(), known)));
+    if (std::find(known.begin(), known.end(), item.key()) == known.end()) {
+      fail(item.key(), fmt::format("unknown key{}{}", did_you_mean(item.key(), known), cure));
+    }
   }
 }
 
-}  // namespace pinchlab::analysis
+void JsonObject::finish(const std::string& cure) const {
+  expect_only({asked_.begin(), asked_.end()}, cure);
+}
+
+std::string JsonObject::pointer_to(const std::string& key) const {
+  return pointer_ + "/" + pointer_token(key);
+}
+
+}  // namespace pinchlab

@@ -2,17 +2,12 @@
 #pragma once
 // Strict reading of JSON that comes from outside.
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
-namespace pinchlab::analysis {
-
-/// Reads and parses one JSON file of at most `limit_bytes`. Syntax errors, doubled keys and numbers
-/// that do not fit throw InputError with the file and, where it is known, line and column.
-nlohmann::json read_json_file(const std::filesystem::path& path, size_t limit_bytes);
+namespace pinchlab {
 
 /// One JSON object whose keys are asked for one by one: a missing or wrongly typed value throws
 /// InputError with its place, and finish() throws for every key that nobody asked for.
@@ -39,12 +34,14 @@ class JsonObject {
   /// The keys present, in order; they count as asked for.
   std::vector<std::string> all_keys();
 
-  /// Throws for the first key that was not asked for, with the nearest one that was.
-  void finish() const;
+  /// Throws for the first key that is not `known`, with the nearest one that is: ahead of
+  /// everything else, so that a misspelt key is told as such. `cure` ends the message.
+  void expect_only(const std::vector<std::string>& known, const std::string& cure) const;
 
-  [[nodiscard]] std::string pointer_to(const std::string& key) const {
-    return pointer_ + "/" + key;
-  }
+  /// The same for keys that were not asked for.
+  void finish(const std::string& cure = "") const;
+
+  [[nodiscard]] std::string pointer_to(const std::string& key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 
  private:
@@ -54,4 +51,4 @@ class JsonObject {
   std::set<std::string> asked_;
 };
 
-}  // namespace pinchlab::analysis
+}  // namespace pinchlab

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "demos/strict_json.h"
+#include "base/strict_json.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
 
+#include "base/input_error.h"
+#include "base/read_file.h"
+
 namespace pinchlab {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::size_t max_depth = 16;
 
 // Columns count characters, not bytes, as editors do.
 std::string line_and_column(std::string_view text, std::size_t offset) {
@@ -35,7 +36,7 @@ std::string plain_reason(const std::string& what) {
 // Builds the value while watching what the library's own builder lets pass.
 class Builder : public nlohmann::json_sax<json> {
  public:
-  explicit Builder(std::string_view text) : text_(text) {}
+  Builder(std::string_view text, std::size_t max_depth) : text_(text), max_depth_(max_depth) {}
 
   json root;
 
@@ -82,8 +83,8 @@ class Builder : public nlohmann::json_sax<json> {
     return true;
   }
   bool start(json value) {
-    if (open_.size() == max_depth) {
-      throw JsonError(pointer(), fmt::format("nested deeper than {} levels", max_depth));
+    if (open_.size() == max_depth_) {
+      throw JsonError(pointer(), fmt::format("nested deeper than {} levels", max_depth_));
     }
     std::string token = open_.empty()              ? ""
                         : open_.back()->is_array() ? fmt::format("/{}", open_.back()->size())
@@ -100,6 +101,7 @@ class Builder : public nlohmann::json_sax<json> {
   std::string pointer() const { return fmt::format("{}", fmt::join(tokens_, "")); }
 
   std::string_view text_;
+  std::size_t max_depth_;
   std::string key_;
   std::vector<json*> open_;          // parents stay put while a child is open: only it grows
   std::vector<std::string> tokens_;  // one an open value
@@ -122,10 +124,19 @@ std::string pointer_token(const std::string& key) {
   return token;
 }
 
-json parse_strict_json(std::string_view text) {
-  Builder builder(text);
+json parse_strict_json(std::string_view text, std::size_t max_depth) {
+  Builder builder(text, max_depth);
   json::sax_parse(text, &builder);
   return std::move(builder.root);
+}
+
+json read_json_file(const std::filesystem::path& path, std::size_t limit_bytes) {
+  const std::string text = read_whole(path, limit_bytes);
+  try {
+    return parse_strict_json(text);
+  } catch (const JsonError& error) {
+    throw InputError(fmt::format("{}: {}", path.string(), error.place), error.what());
+  }
 }
 
 }  // namespace pinchlab

@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/text_checks.h"
+#include "base/text_checks.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 
-namespace pinchlab::analysis {
+namespace pinchlab {
 
 namespace {
-
-// Levenshtein's edit distance, one row of the table at a time.
-size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
@@ -53,21 +35,6 @@ size_t utf8_length(std::string_view text) {
 }
 
 }  // namespace
-
-std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-  if (word.size() > 64) return "";
-  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;
-  const std::string* best = nullptr;
-  for (const std::string& candidate : candidates) {
-    if (candidate.size() > 64) continue;
-    const size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
-      best_distance = distance;
-      best = &candidate;
-    }
-  }
-  return best ? fmt::format(" (did you mean `{}`?)", *best) : "";
-}
 
 std::string one_of(std::span<const std::string> words) {
   std::string text;
@@ -132,4 +99,4 @@ bool natural_less(std::string_view a, std::string_view b) {
   return a_ended && b_ended ? a < b : a_ended;
 }
 
-}  // namespace pinchlab::analysis
+}  // namespace pinchlab

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "demos/output_file.h"
+#include "base/output_file.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace pinchlab {
 
@@ -50,10 +51,10 @@ void OutputFile::finish() {
   if (std::fflush(file_) != 0 || (partial_ && ::fsync(::fileno(file_)) != 0)) {
     fail("cannot be written");
   }
-  if (file_ != stdout) {
-    std::fclose(file_);
+  if (std::FILE* const file = std::exchange(file_, nullptr);
+      file != stdout && std::fclose(file) != 0) {
+    fail("cannot be written");
   }
-  file_ = nullptr;
   if (partial_) {
     partial_->keep();
   }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+namespace pinchlab {
+
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& taken)
+    : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (folder_ < 0) {
+    throw std::runtime_error(folder.string() + ": is not a folder that can be used");
+  }
+  if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(folder_);
+    throw std::runtime_error(taken);
+  }
+}
+
+FolderLock::~FolderLock() {
+  ::close(folder_);
+}
+
+}  // namespace pinchlab

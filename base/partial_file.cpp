@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/partial_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+namespace pinchlab {
+
+namespace fs = std::filesystem;
+
+PartialFile::PartialFile(std::string path)
+    : path_(std::move(path)), name_(path_ + std::string(partial_ending)) {
+  const fs::path folder = fs::path(path_).parent_path();
+  if (!folder.empty() && !fs::is_directory(folder)) {
+    throw std::runtime_error(
+        fmt::format("{}: the folder {} does not exist; create it first", path_, folder.string()));
+  }
+  if (fs::is_directory(path_)) {
+    throw std::runtime_error(path_ + ": is a folder; give a file's name");
+  }
+}
+
+PartialFile::~PartialFile() {
+  if (!kept_) {
+    std::error_code ignored;
+    fs::remove(name_, ignored);
+  }
+}
+
+void PartialFile::keep() {
+  std::error_code error;
+  fs::rename(name_, path_, error);
+  if (error) {
+    throw std::runtime_error(path_ + ": cannot be put in place: " + error.message());
+  }
+  kept_ = true;
+}
+
+std::runtime_error PartialFile::error(std::string_view what) const {
+  return std::runtime_error(
+      fmt::format("{}: {}: {}", path_, what, std::generic_category().message(errno)));
+}
+
+StagingFolder::StagingFolder(const fs::path& folder)
+    : folder_(folder), staging_(folder / fmt::format(".unfinished-{}", ::getpid())) {
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw std::runtime_error(
+        fmt::format("{}: is not a folder; name another one with --out", folder.string()));
+  }
+  fs::create_directories(staging_);
+}
+
+StagingFolder::~StagingFolder() {
+  std::error_code ignored;
+  fs::remove_all(staging_, ignored);
+}
+
+void StagingFolder::write(const std::string& name,
+                          const std::function<void(std::ostream&)>& write_to) {
+  std::ofstream file(staging_ / name, std::ios::binary);
+  write_to(file);
+  file.close();
+  if (!file) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written; is the disk full?", (folder_ / name).string()));
+  }
+  add(name);
+}
+
+void StagingFolder::write(const std::string& name, std::string_view text) {
+  write(name, [text](std::ostream& file) { file << text; });
+}
+
+std::vector<std::string> StagingFolder::keep() {
+  for (const std::string& name : names_) {
+    fs::rename(staging_ / name, folder_ / name);
+  }
+  return std::exchange(names_, {});
+}
+
+}  // namespace pinchlab

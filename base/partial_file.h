@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// START HERE for files: what is written gets its name only when it is whole. OutputFile,
+// write_durably and every writer of pictures, videos and archives do it by this class.
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pinchlab {
+
+/// Ending of what is not finished; a leftover of an interrupted write is never a result.
+inline constexpr std::string_view partial_ending = ".partial";
+
+/// The file is written as name() in the folder of its final path; keep() renames it, the destructor
+/// removes it otherwise.
+class PartialFile {
+ public:
+  /// Throws std::runtime_error if the folder does not exist or the path is a folder.
+  explicit PartialFile(std::string path);
+  ~PartialFile();
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& name() const { return name_; }
+
+  void keep();  ///< Throws std::runtime_error.
+
+  /// An error about this file with the system's reason (errno).
+  std::runtime_error error(std::string_view what) const;
+
+ private:
+  std::string path_, name_;
+  bool kept_ = false;
+};
+
+/// A folder inside `folder` (so that renaming cannot cross file systems) that takes files that
+/// belong together, and vanishes with what is not finished.
+class StagingFolder {
+ public:
+  /// Makes `folder` too if it is missing. Throws std::runtime_error.
+  explicit StagingFolder(const std::filesystem::path& folder);
+  ~StagingFolder();
+  StagingFolder(const StagingFolder&) = delete;
+  StagingFolder& operator=(const StagingFolder&) = delete;
+
+  const std::filesystem::path& path() const { return staging_; }
+
+  /// Writes a file. Throws std::runtime_error.
+  void write(const std::string& name, const std::function<void(std::ostream&)>& write_to);
+  void write(const std::string& name, std::string_view text);
+  /// Takes note of a file that another program has put here.
+  void add(const std::string& name) { names_.push_back(name); }
+
+  /// Moves all files to `folder` and returns their names, in the order in which they came.
+  std::vector<std::string> keep();
+
+ private:
+  std::filesystem::path folder_, staging_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <ostream>
+
+#include "base/durable_file.h"
+#include "base/folder_lock.h"
+#include "base/input_error.h"
+#include "base/output_file.h"
+#include "base/partial_file.h"
+#include "base/read_file.h"
+#include "tests/base/temporary_folder.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+using pinchlab::testing::message_of;
+using pinchlab::testing::TemporaryFolder;
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(ReadFile, WholeAndByPieces) {
+  const TemporaryFolder folder;
+  const std::string text = std::string(200'000, 'x') + '\0' + "end";  // more than one piece
+  const fs::path path = folder.write("a", text);
+  EXPECT_EQ(read_whole(path), text);
+  std::string pieces;
+  read_by_pieces(path, [&](std::string_view piece) { pieces += piece; });
+  EXPECT_EQ(pieces, text);
+  EXPECT_EQ(read_whole(folder.write("empty", "")), "");
+}
+
+TEST(ReadFile, RefusesWhatIsTooLargeAbsentOrNoFile) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.write("a", "12345");
+  EXPECT_EQ(read_whole(path, 5), "12345");
+  EXPECT_EQ(message_of<InputError>([&] { read_whole(path, 4); }),
+            path.string() + ": is larger than 4 bytes");
+  const std::string absent = (folder.path() / "b").string();
+  EXPECT_EQ(message_of<InputError>([&] { read_whole(absent); }),
+            absent + ": cannot be opened: No such file or directory");
+  EXPECT_EQ(message_of<InputError>([&] { read_whole(folder.path()); }),
+            folder.path().string() + ": cannot be read: Is a directory");
+}
+
+TEST(OutputFile, AppearsWhenItIsWhole) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.csv";
+  {
+    OutputFile file(path);
+    file.write("one");
+    EXPECT_FALSE(fs::exists(path));
+    file.write("two");
+    file.finish();
+  }
+  EXPECT_EQ(read_whole(path), "onetwo");
+  {
+    OutputFile file(path);
+    file.write("three");
+  }
+  EXPECT_EQ(read_whole(path), "onetwo") << "what was not finished changed the file";
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+TEST(OutputFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
+  OutputFile file("/dev/null");
+  file.write("x");
+  EXPECT_NO_THROW(file.finish());
+  OutputFile full("/dev/full");
+  full.write("x");
+  EXPECT_EQ(message_of<std::runtime_error>([&] { full.finish(); }),
+            "/dev/full: cannot be written: No space left on device");
+}
+
+TEST(PartialFile, TellsWhereItCannotBe) {
+  const TemporaryFolder folder;
+  const std::string inside = (folder.path() / "none/a").string();
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(inside); }),
+            inside + ": the folder " + (folder.path() / "none").string() +
+                " does not exist; create it first");
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(folder.path().string()); }),
+            folder.path().string() + ": is a folder; give a file's name");
+}
+
+TEST(StagingFolder, FilesAppearTogetherOrNotAtAll) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "made/on the way";
+  {
+    StagingFolder staging(out);
+    staging.write("a", "1");
+  }
+  EXPECT_EQ(files_in(out), 0U);
+  {
+    StagingFolder staging(out);
+    staging.write("a", "1");
+    staging.write("b", [](std::ostream& file) { file << 2; });
+    fs::copy_file(staging.path() / "a", staging.path() / "c");
+    staging.add("c");
+    EXPECT_FALSE(fs::exists(out / "a"));
+    EXPECT_EQ(staging.keep(), (std::vector<std::string>{"a", "b", "c"}));
+  }
+  EXPECT_EQ(read_whole(out / "b"), "2");
+  EXPECT_EQ(read_whole(out / "c"), "1");
+  EXPECT_EQ(files_in(out), 3U);
+  EXPECT_THROW(StagingFolder{out / "a"}, std::runtime_error) << "a file is no folder";
+}
+
+TEST(DurableFile, FailureLeavesNothing) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_durably(folder.path() / "missing/a.json", "x"), std::runtime_error);
+  fs::create_directory(folder.path() / "a.json");
+  EXPECT_THROW(write_durably(folder.path() / "a.json", "x"), std::runtime_error);
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+TEST(DurableFile, OnlyTheUserReads) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.json";
+  write_durably(path, "x");
+  write_durably(path, "y");
+  EXPECT_EQ(read_whole(path), "y");
+  struct stat status = {};
+  ASSERT_EQ(::stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+  remove_durably(path);
+  remove_durably(path);
+  EXPECT_EQ(files_in(folder.path()), 0U);
+}
+
+TEST(FolderLock, OneAtATime) {
+  const TemporaryFolder folder;
+  {
+    const FolderLock lock(folder.path(), "taken");
+    EXPECT_EQ(message_of<std::runtime_error>([&] { FolderLock(folder.path(), "taken"); }), "taken");
+  }
+  EXPECT_NO_THROW(FolderLock(folder.path(), "taken")) << "the lock went with its owner";
+  EXPECT_THROW(FolderLock(folder.path() / "none", "taken"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pinchlab
