@@ -174,9 +174,10 @@ void Desk::forget(const std::string& id) const {
 }
 
 // Nothing is kept of somebody who does not come back, and the number goes to somebody else.
-void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why) {
+void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
+                bool only_without_answers) {
   const std::scoped_lock entry_lock(entry->mutex);
-  if (entry->is_gone) {
+  if (entry->is_gone || (only_without_answers && !entry->session.answers.empty())) {
     return;
   }
   forget(entry->session.id);
@@ -304,7 +305,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   try {
     drop_idle();
     if (const auto entry = who_makes_room(link, address)) {
-      drop(entry, "had answered nothing and made room");
+      drop(entry, "had answered nothing and made room", true);
     }
   } catch (const std::exception& error) {
     options_.tell(fmt::format("a place cannot be released: {}", error.what()));

@@ -35,7 +35,7 @@ struct DeskOptions {
   std::filesystem::path answers;      ///< folder, made if missing
   std::optional<std::uint64_t> seed;  ///< none: the folder's own, or a random one
   std::size_t most_open = 1000;       ///< participants at a time
-  std::size_t most_unanswered = 100;  ///< of one address, participants who have not answered yet
+  std::size_t most_unanswered = 500;  ///< of one address, participants who have not answered yet
   std::chrono::seconds longest_idle{24 * 3600};  ///< without a sign, before a place is released
   std::function<std::string()> utc_now;
   std::function<void(const std::string&)> tell;  ///< who started, finished, left
@@ -137,7 +137,8 @@ class Desk {
   void note(const Session& session);
   void remove(const Entry& entry);
   void drop_idle();
-  void drop(const std::shared_ptr<Entry>& entry, const std::string& why);
+  void drop(const std::shared_ptr<Entry>& entry, const std::string& why,
+            bool only_without_answers = false);
   void forget(const std::string& id) const;
   void sweep() const;
   std::shared_ptr<Entry> who_makes_room(const std::string& link, const std::string& address);

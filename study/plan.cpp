@@ -164,7 +164,7 @@ std::vector<std::vector<bool>> sides_of_pair(std::uint64_t seed, std::uint64_t p
     for (int throws = 0; throws < most_throws && static_cast<int>(sides.size()) < rounds;
          ++throws) {
       std::vector<bool> round(n);
-      std::ranges::generate(round, [&] { return coins.coin(); });
+      std::generate(round.begin(), round.end(), [&] { return coins.coin(); });
       SidesSoFar next[] = {so_far[0], so_far[1]};
       bool passes = true;
       for (int i = 0; i < step; ++i) {
