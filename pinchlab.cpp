@@ -17,11 +17,13 @@
 #include "analysis/experiments/commands.h"
 #include "analysis/power.h"
 #include "analysis/report.h"
+#include "analysis/threshold_report.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 #include "demos/baseline.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
+#include "demos/help_pages.h"
 #include "demos/still.h"
 #include "demos/trajectory.h"
 #include "demos/version.h"
@@ -77,6 +79,7 @@ void add_render(CLI::App& app) {
           "apng, webp or gif (with --fps 50) [h264]")
       ->type_name("C")
       ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
+  add_time_limit(*command, options->time_limit, "Give up on a clip");
   command->add_option("--jobs", options->jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
@@ -184,6 +187,7 @@ void add_still(CLI::App& app) {
   command->add_flag("--neutral", options->neutral, "Label the rows A and B, not by method");
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
+  add_time_limit(*command, options->time_limit, "Give up");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
@@ -228,6 +232,7 @@ void add_simulate(CLI::App& app) {
                    "Steps a frame [the scene's]")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
+  add_time_limit(*command, options->time_limit, "Give up");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
       "SEG.csv:  "
@@ -284,6 +289,18 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
   return columns;
 }
 
+// "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
+analysis::Rate rate_of(const char* flag, const std::string& text, double most_fixed,
+                       double most_free) {
+  if (text == "free") return {true, 0.0, most_free};
+  const auto value = parse_number(text);
+  if (!value || *value < 0.0 || *value > most_fixed) {
+    throw CLI::ValidationError(
+        flag, fmt::format("`{}` is neither `free` nor a number from 0 to {}", text, most_fixed));
+  }
+  return {false, *value, most_free};
+}
+
 void add_analyse(CLI::App& app) {
   struct Arguments {
     std::vector<std::filesystem::path> inputs;
@@ -293,6 +310,8 @@ void add_analyse(CLI::App& app) {
     bool no_figures = false;
     analysis::ReadOptions read;
     analysis::AnalysisOptions analyse;
+    analysis::PsychometricModel model;
+    std::string guess = "0.5 of correct answers, 0 of choices", lapse = "free";
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* command =
@@ -302,13 +321,17 @@ void add_analyse(CLI::App& app) {
       "participant, demonstration, choice and, if known, group, side, position, reaction_time_s, "
       "kind,\n"
       "or as a CSV table of counts with the columns demonstration, pinch, cable.\n"
+      "With a column `level` (graded stimuli) and `correct` (0 or 1; a count beside `trials`) or "
+      "`choice`\n"
+      "psychometric functions are fitted: thresholds and slopes with intervals.\n"
       "Written to --out: report.html, report.md, report.json, CSV tables, figures as SVG and "
       "PDF.\n\n"
       "  pinchlab analyse answers/ --out report\n"
       "  pinchlab analyse analysis/data/thesis-table-5.3.csv --out report\n"
       "  pinchlab analyse other.csv --map-column participant=subject --map-column "
       "demonstration=scene \\\n"
-      "      --map-column choice=picked --pinch-value ours --cable-value theirs --out report");
+      "      --map-column choice=picked --pinch-value ours --cable-value theirs --out report\n"
+      "  pinchlab analyse squeeze.csv --function weibull --guess 0.5 --out report");
   command->add_option("answers", args->inputs, "Answer files (.json), folders of them, CSV files")
       ->required();
   command->add_option("--out", args->out, "Folder to write the report to (made if need be)")
@@ -351,8 +374,31 @@ void add_analyse(CLI::App& app) {
                     "Accept participants with answers missing");
   command->add_flag("--ignore-other-columns", args->read.ignore_other_columns,
                     "Accept CSV columns that are not known");
+  const std::map<std::string, analysis::Shape> shapes{{"logistic", analysis::Shape::logistic},
+                                                      {"normal", analysis::Shape::normal},
+                                                      {"weibull", analysis::Shape::weibull}};
+  command
+      ->add_option_function<std::string>(
+          "--function",
+          [args, shapes](const std::string& name) { args->model.shape = shapes.at(name); },
+          "Psychometric function of graded stimuli: logistic, normal or weibull [logistic]")
+      ->type_name("F")
+      ->check(CLI::IsMember(shapes));
+  CLI::Option* guess = command->add_option(
+      "--guess", args->guess, "Rate of hits by guessing, 0 to 0.9, or `free`: estimated up to 0.5");
+  command
+      ->add_option("--lapse", args->lapse,
+                   "Rate of misses by inattention, 0 to 0.5, or `free`: estimated up to 0.1")
+      ->capture_default_str();
+  guess->capture_default_str();
+  command
+      ->add_option("--threshold-at", args->model.threshold_at,
+                   "Share of the function's height at the threshold")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 0.99));
   command->add_flag("--no-figures", args->no_figures, "Do without figures (and without gnuplot)");
-  command->callback([args] {
+  const CLI::Option* resamples = command->get_option("--bootstrap");
+  command->callback([args, guess, resamples] {
     args->read.columns = column_map(args->mapped);
     if (args->separator != "tab" && args->separator.size() != 1) {
       throw CLI::ValidationError("--separator", "must be one character or `tab`");
@@ -368,6 +414,26 @@ void add_analyse(CLI::App& app) {
     }
     args->analyse.pinch_label = args->read.pinch_value;
     args->analyse.cable_label = args->read.cable_value;
+    if (std::any_of(args->inputs.begin(), args->inputs.end(),
+                    [&](const auto& input) { return analysis::has_levels(input, args->read); })) {
+      const analysis::LevelsTable levels = analysis::read_levels(args->inputs, args->read);
+      args->model.guess = rate_of("--guess",
+                                  guess->count() > 0 ? args->guess
+                                  : levels.correct   ? "0.5"
+                                                     : "0",
+                                  0.9, 0.5);
+      args->model.lapse = rate_of("--lapse", args->lapse, 0.5, 0.1);
+      // A resample fits every participant again; 399 are enough for percentiles.
+      const analysis::ThresholdReport report = analysis::analyse_thresholds(
+          levels, args->model,
+          {args->analyse.alpha, resamples->count() > 0 ? args->analyse.bootstrap : 399,
+           args->analyse.seed});
+      const std::vector<std::string> written =
+          analysis::write_threshold_report(report, levels, args->out, !args->no_figures);
+      fmt::print("{}\n\nWritten to {}: {}\n", analysis::threshold_words(report, levels),
+                 args->out.string(), fmt::join(written, ", "));
+      return;
+    }
     const analysis::AnswersTable table = analysis::read_answers(args->inputs, args->read);
     const analysis::Report report = analysis::analyse_table(table, args->analyse);
     const std::vector<std::string> written =
@@ -411,8 +477,8 @@ void add_study(CLI::App& app) {
   study::Stimuli stimuli;
   stimuli.demonstrations = [] {
     std::vector<std::string> names;
-    if (std::filesystem::is_directory("demos")) {
-      for (const std::filesystem::path& scene : find_scenes({"demos"})) {
+    if (const auto folder = find_demos_folder()) {
+      for (const std::filesystem::path& scene : find_scenes({*folder})) {
         names.push_back(scene.stem().string());
       }
     }
@@ -458,6 +524,7 @@ int run(int argc, char** argv) {
   add_analyse(app);
   add_power(app);
   add_study(app);
+  add_help_page_commands(app, version);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& error) {

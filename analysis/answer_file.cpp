@@ -103,6 +103,15 @@ void read_plan(JsonObject plan, AnswerFile& file) {
   plan.finish(format_cure);
 }
 
+void read_study(JsonObject study, AnswerFile& file) {
+  file.study["language"] = study.text("language", 64);
+  file.study["question"] = study.text("question", 10000);
+  for (const char* key : {"consent_sha256", "texts_sha256", "clips_sha256"}) {
+    file.study[key] = study.sha256(key);
+  }
+  study.finish();
+}
+
 void read_trials(const nlohmann::json& trials, const std::string& file_name, AnswerFile& file) {
   std::map<int, size_t> positions;
   for (size_t i = 0; i < trials.size(); ++i) {
@@ -163,6 +172,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
     object.fail("saved_utc", fmt::format("is before started_utc ({})", started));
   }
   object.text("software_version", 256);
+  if (object.has("study")) read_study(object.object("study"), file);
   if (object.has("language")) object.text("language", 64);
   if (object.has("user_agent")) object.text("user_agent", 4096);
   if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");
@@ -175,6 +185,39 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   if (!answered) object.fail("trials", "holds no answer of kind `main`; take the file out");
   object.finish(format_cure);
   return file;
+}
+
+void SameStudy::check(const AnswerFile& file, const std::string& name) {
+  if (study_of_.empty()) {
+    study_ = file.study;
+    study_of_ = name;
+  }
+  if (file.study != study_) {
+    const std::map<std::string, std::string> words = {{"language", "the language"},
+                                                      {"question", "the question"},
+                                                      {"consent_sha256", "the consent text"},
+                                                      {"texts_sha256", "the texts of the page"},
+                                                      {"clips_sha256", "the clips"}};
+    std::string what;
+    const auto value = [](const std::map<std::string, std::string>& study, const std::string& key) {
+      const auto found = study.find(key);
+      return found == study.end() ? "" : found->second;
+    };
+    for (const auto& [key, word] : words) {
+      if (value(file.study, key) != value(study_, key)) what += (what.empty() ? "" : ", ") + word;
+    }
+    throw InputError(name, fmt::format("was answered in another study than {}: {} differ; analyse "
+                                       "each study in a run of its own",
+                                       study_of_, what));
+  }
+  for (const auto& [clip, hash] : file.clips_sha256) {
+    const auto [before, is_new] = clips_.emplace(clip, std::pair(hash, name));
+    if (is_new || before->second.first == hash) continue;
+    throw InputError(
+        name, fmt::format("clip `{}` of `{}` is not the one of {} (other SHA-256); analyse the "
+                          "participants who saw the same clips in one run",
+                          clip.second, clip.first, before->second.second));
+  }
 }
 
 }  // namespace pinchlab::analysis

@@ -36,10 +36,27 @@ struct AnswerFile {
   std::map<std::string, std::string> free_text;  ///< question -> text
   /// (demonstration, variant) -> hash
   std::map<std::pair<std::string, std::string>, std::string> clips_sha256;
+  /// what was asked, told and shown (key -> text or hash); empty in files of older versions
+  std::map<std::string, std::string> study;
 };
 
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file);
+
+/// Answers to another question, or to other clips, are not answers to the same question. Watches
+/// over files that are read one after the other.
+class SameStudy {
+ public:
+  /// Throws InputError if `file`, called `name`, was asked or shown something else than those
+  /// before it.
+  void check(const AnswerFile& file, const std::string& name);
+
+ private:
+  std::map<std::string, std::string> study_;
+  std::string study_of_;  // the first file; empty before
+  // (demonstration, variant) -> hash, file
+  std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> clips_;
+};
 
 }  // namespace pinchlab::analysis

@@ -25,15 +25,17 @@ Progress::~Progress() {
 void Progress::add(std::int64_t units) {
   done_ += units;
   const Clock::time_point now = Clock::now();
-  if (now < next_ || done_ <= 0) {
+  if (now < next_) {
     return;
   }
   next_ = now + (on_terminal_ ? 250ms : 10s);
   const double elapsed = std::chrono::duration<double>(now - start_).count();  // s
   const double share = static_cast<double>(done_) / static_cast<double>(total_);
   const std::string of = unit_.empty() ? "" : fmt::format(" of {} {}", total_, unit_);
-  const std::string line = fmt::format("{}: {:.0f} %{}, {} left", what_, std::floor(100.0 * share),
-                                       of, minutes_and_seconds(elapsed * (1.0 / share - 1.0)));
+  const std::string time = done_ > 0 ? minutes_and_seconds(elapsed * (1.0 / share - 1.0)) + " left"
+                                     : "after " + minutes_and_seconds(elapsed);
+  const std::string line =
+      fmt::format("{}: {:.0f} %{}, {}", what_, std::floor(100.0 * share), of, time);
   fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\x1b[K" : "\n");
   std::fflush(stderr);
   shown_ = on_terminal_;

@@ -18,7 +18,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void add(std::int64_t units);
+  void add(std::int64_t units);  ///< 0: says how long it has lasted, while nothing is done
   /// Clears the terminal's line, so that something else can be written; the next add() restores it.
   void clear();
 

@@ -93,13 +93,13 @@ struct Outcome {
   int signal = 0, made = 0, failed = 0;
 };
 
-Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jobs,
+Outcome make_all(const std::vector<ClipPlan>& plans, const BatchOptions& options, int jobs,
                  Manifest& manifest) {
   std::vector<Work> work;
   std::int64_t total = 0;
   for (const ClipPlan& plan : plans) {
-    work.emplace_back([&plan, &out](const std::function<void()>& tick) {
-      return make_clip(plan, out, tick).dump();
+    work.emplace_back([&plan, &options](const std::function<void()>& tick) {
+      return make_clip(plan, options.out, tick, options.time_limit).dump();
     });
     total += panels_to_draw(plan);
   }
@@ -110,7 +110,7 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
       .done =
           [&](std::size_t, const std::string& entry) {
             put(manifest, ordered_json::parse(entry));
-            write_manifest(out, manifest);
+            write_manifest(options.out, manifest);
             ++outcome.made;
           },
       .failed =
@@ -118,7 +118,8 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const fs::path& out, int jo
             progress.clear();
             fmt::print(stderr, "{}: not made: {}\n", plans[i].file, error);
             ++outcome.failed;
-          }};
+          },
+      .idle = [&] { progress.add(0); }};
   outcome.signal = run_in_processes(work, jobs, events);
   return outcome;
 }
@@ -135,6 +136,15 @@ void check_size(const BatchOptions& options) {
     throw std::invalid_argument(
         fmt::format("{} needs an even size, not {}x{}; change --size, or use --codec ffv1",
                     to_string(options.codec), options.width, options.height));
+  }
+}
+
+// Of a clip that was made just now, or kept.
+void tell_broken_promises(const fs::path& folder, const std::string& file,
+                          const Manifest& manifest) {
+  for (const ordered_json& entry : manifest.entries) {
+    if (entry["file"] != file || !entry.contains("broken_promises")) continue;
+    pinchlab::tell_broken_promises((folder / file).string(), entry["broken_promises"]);
   }
 }
 
@@ -255,13 +265,14 @@ int render_batch(const BatchOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds(RUSAGE_CHILDREN);
   const Outcome outcome =
-      make_all(to_make, options.out, options.jobs > 0 ? options.jobs : cores, manifest);
+      make_all(to_make, options, options.jobs > 0 ? options.jobs : cores, manifest);
   if (outcome.signal != 0) {
     remove_partial_files(options.out);
     ::raise(outcome.signal);  // as if it had not been caught
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();  // s
+  for (const ClipPlan& plan : plans) tell_broken_promises(options.out, plan.file, manifest);
   fmt::print(stderr, "{}: {} made, {} up to date already, {} failed", options.out.string(),
              outcome.made, plans.size() - to_make.size(), outcome.failed);
   if (outcome.made > 0) {

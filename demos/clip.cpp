@@ -46,12 +46,23 @@ void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
   }
 }
 
-// Returns the hash of the raw frames (RGBA, top row first, one after the other).
-std::string write_video(const ClipPlan& plan, const std::string& path,
-                        const std::function<void()>& tick) {
+struct Made {
+  std::string frames_hash;  // of the raw frames (RGBA, top row first, one after the other)
+  std::vector<std::string> broken_promises;
+};
+
+void add_new(const std::vector<std::string>& lines, std::vector<std::string>& all) {
+  for (const std::string& line : lines) {
+    if (std::ranges::find(all, line) == all.end()) all.push_back(line);
+  }
+}
+
+Made write_video(const ClipPlan& plan, const std::string& path, const std::function<void()>& tick,
+                 std::optional<double> time_limit) {
   std::deque<Player> players;
   for (const Configuration& method : plan.methods) {
     players.emplace_back(*plan.source, plan.scene, method);
+    players.back().give_up_after(time_limit);
   }
   std::vector<Picture> pictures(players.size());
   std::vector<const Picture*> panels(pictures.size());
@@ -80,12 +91,15 @@ std::string write_video(const ClipPlan& plan, const std::string& path,
     }
     tick();
   }
+  Made made;
+  for (const Player& player : players) add_new(player.broken_promises(), made.broken_promises);
   video.finish();
-  return frames.hex();
+  made.frames_hash = frames.hex();
+  return made;
 }
 
-std::string write_poster(const ClipPlan& plan, const std::string& path,
-                         const std::function<void()>& tick) {
+Made write_poster(const ClipPlan& plan, const std::string& path, const std::function<void()>& tick,
+                  std::optional<double> time_limit) {
   const int width = panel_width(plan);
   const std::size_t bytes = frame_bytes(width, plan.video.height);
   const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme);
@@ -93,9 +107,12 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
   Picture picture;
   FrameHash frames;
   std::vector<SheetFrame> sheet;
+  Made made;
   for (const Configuration& method : plan.methods) {
     Player player(*plan.source, plan.scene, method);
+    player.give_up_after(time_limit);
     player.advance_to(poster_frame(plan));
+    add_new(player.broken_promises(), made.broken_promises);
     compose(plan.scene, scenery, player.world(), picture);
     const std::uint8_t* rgba = canvas.draw(picture);
     frames.add(std::as_bytes(std::span(rgba, bytes)));
@@ -104,7 +121,8 @@ std::string write_poster(const ClipPlan& plan, const std::string& path,
   }
   contact_sheet(path, width, plan.video.height, sheet, static_cast<int>(plan.methods.size()));
   tick();
-  return frames.hex();
+  made.frames_hash = frames.hex();
+  return made;
 }
 
 }  // namespace
@@ -163,22 +181,25 @@ ordered_json plan_entry(const ClipPlan& plan) {
 }
 
 ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
-                       const std::function<void()>& tick) {
+                       const std::function<void()>& tick, std::optional<double> time_limit) {
   const std::string path = (folder / plan.file).string();
   ordered_json entry = plan_entry(plan);
+  Made made;
   switch (plan.product) {
     case Product::clip:
-      entry["raw_frames_murmur3"] = write_video(plan, path, tick);
+      made = write_video(plan, path, tick, time_limit);
       break;
     case Product::poster:
-      entry["raw_frames_murmur3"] = write_poster(plan, path, tick);
+      made = write_poster(plan, path, tick, time_limit);
       break;
     case Product::report:
-      entry["report"] = to_json(
-          report_pair(*plan.source, plan.scene, plan.video.width, plan.video.height, path, tick));
+      entry["report"] = to_json(report_pair(*plan.source, plan.scene, plan.video.width,
+                                            plan.video.height, path, tick, time_limit));
       break;
   }
+  if (plan.product != Product::report) entry["raw_frames_murmur3"] = made.frames_hash;
   entry["sha256"] = sha256_of_file(path);
+  if (!made.broken_promises.empty()) entry["broken_promises"] = made.broken_promises;
   return entry;
 }
 

@@ -49,10 +49,12 @@ int poster_frame(const ClipPlan& plan);
 /// What the manifest says of the plan before the file is made. Free of paths, dates and hosts.
 nlohmann::ordered_json plan_entry(const ClipPlan& plan);
 
-/// Makes the file in `folder` and returns its manifest entry: the plan's, and the hashes. Calls
-/// `tick` after every frame. Throws std::runtime_error where the simulation, OpenGL or the file
-/// fails.
+/// Makes the file in `folder` and returns its manifest entry: the plan's, the hashes, and in
+/// `broken_promises` what Player says of it, if anything. Calls `tick` after every frame. Throws
+/// std::runtime_error where the simulation, OpenGL or the file fails, or where one method takes
+/// longer than `time_limit` (s).
 nlohmann::ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
-                                 const std::function<void()>& tick);
+                                 const std::function<void()>& tick,
+                                 std::optional<double> time_limit = std::nullopt);
 
 }  // namespace pinchlab

@@ -38,12 +38,27 @@ void add_size(CLI::App& command, Size& size, const std::string& help) {
       });
 }
 
+void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& what) {
+  command.add_option("--time-limit", seconds, what + " after so many seconds, and fail [none]")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+}
+
+std::optional<std::filesystem::path> find_demos_folder() {
+  if (std::filesystem::is_directory("demos")) return "demos";
+  // An installed program may lie anywhere, its data always in the same place beside it.
+  std::error_code unknown;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const std::filesystem::path installed =
+      (program.parent_path() / PINCHLAB_DATA_FROM_PROGRAM / "demos").lexically_normal();
+  if (!unknown && std::filesystem::is_directory(installed)) return installed;
+  return std::nullopt;
+}
+
 std::filesystem::path demos_folder() {
-  if (!std::filesystem::is_directory("demos")) {
-    throw std::runtime_error(
-        "demos: there is no such folder here; go to the project's folder, or name scene files");
-  }
-  return "demos";
+  if (const auto folder = find_demos_folder()) return *folder;
+  throw std::runtime_error(
+      "demos: there is no such folder here; go to the project's folder, or name scene files");
 }
 
 }  // namespace pinchlab

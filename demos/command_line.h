@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace pinchlab {
@@ -15,8 +16,13 @@ struct Size {
 /// --size WxH.
 void add_size(CLI::App& command, Size& size, const std::string& help);
 
-/// What commands take when no scene is named. Throws std::runtime_error where the current folder
-/// has no demos.
+/// --time-limit S.
+void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& what);
+
+/// What commands take when no scene is named: demos/ of the current folder, or else the one that
+/// was installed with the program. Nothing where there is neither; demos_folder then throws
+/// std::runtime_error.
+std::optional<std::filesystem::path> find_demos_folder();
 std::filesystem::path demos_folder();
 
 /// --method: a std::string, or a std::optional of one.

@@ -200,7 +200,8 @@ ordered_json clip_json(const ClipReport& clip, double duration) {
 }  // namespace
 
 PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int height,
-                       const std::string& strip_path, const std::function<void()>& tick) {
+                       const std::string& strip_path, const std::function<void()>& tick,
+                       std::optional<double> time_limit) {
   PairReport report;
   report.frame_count = scene.frame_count;
   report.frames_per_second = scene.frames_per_second;
@@ -212,6 +213,8 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
   const Scenery scenery = set_scenery(scene, file.look);
   Canvas canvas(2 * block * blocks.columns, block * blocks.rows);
   Player pinch(file, scene, Method::pinch), baseline(file, scene, scene.baseline);
+  pinch.give_up_after(time_limit);
+  baseline.give_up_after(time_limit);
   Picture pinch_picture, baseline_picture;
   EventWatch pinch_events(scene), baseline_events(scene);
   Poses pinch_poses, baseline_poses;

@@ -47,9 +47,11 @@ struct PairReport {
 ///
 /// Pixels are those of a clip of `width` x `height`; the pictures that are compared are half as
 /// large. A strip of both clips and their difference at equal distances in time is written to
-/// `strip`, a PNG file. Calls `tick` after every frame.
+/// `strip`, a PNG file. Calls `tick` after every frame. Throws
+/// std::runtime_error where a simulation fails, or one takes longer than `time_limit` (s).
 PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int height,
-                       const std::string& strip, const std::function<void()>& tick);
+                       const std::string& strip, const std::function<void()>& tick,
+                       std::optional<double> time_limit = std::nullopt);
 
 /// The sum of the intervals, s, and the longest one.
 double total(const std::vector<Interval>& intervals);

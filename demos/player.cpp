@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "demos/scene_format.h"
@@ -56,6 +57,16 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
       scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
 }
 
+void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print(stderr, "{}: note: {}\n", file, line);
+  if (!lines.empty()) {
+    fmt::print(stderr,
+               "{}: note: sim/README.md says what is promised and where the limits are; more "
+               "steps a frame often help\n",
+               file);
+  }
+}
+
 const char* in_words(const Configuration& configuration) {
   if (configuration == thesis_configuration()) return "the thesis' pinch joints";
   switch (configuration.method) {
@@ -70,7 +81,19 @@ const char* in_words(const Configuration& configuration) {
 }
 
 Player::Player(const SceneFile& file, const Scene& scene, const Configuration& configuration)
-    : file_(file), scene_(scene), world_(start_world(scene, file.path, configuration)) {}
+    : file_(file),
+      scene_(scene),
+      world_(start_world(scene, file.path, configuration)),
+      promises_(scene_, world_) {}
+
+void Player::give_up_after(std::optional<double> seconds) {
+  using std::chrono::steady_clock;
+  deadline_.reset();
+  if (!seconds) return;
+  time_limit_ = *seconds;
+  deadline_ = steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
+                                        std::chrono::duration<double>(*seconds));
+}
 
 void Player::advance_to(int frame) {
   advance_to_step(std::int64_t{frame} * scene_.steps_per_frame);
@@ -81,7 +104,24 @@ void Player::advance_to_step(std::int64_t wanted) {
     if (step(scene_, world_, work_) != StepStatus::ok) {
       throw std::runtime_error(failure_report(file_.path, scene_, world_, frame() + 1));
     }
+    promises_.note(scene_, world_);
+    if (on_step_) on_step_();
+    if (deadline_ && std::chrono::steady_clock::now() > *deadline_) {
+      throw std::runtime_error(fmt::format(
+          "{}: method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
+          "steps a frame or fewer bodies are faster",
+          file_.path.string(), to_string(world_.configuration), world_.time(), world_.step,
+          time_limit_));
+    }
   }
+}
+
+std::vector<std::string> Player::broken_promises() const {
+  std::vector<std::string> lines = promises_.broken(scene_, world_);
+  for (std::string& line : lines) {
+    line = fmt::format("method {}: {}", to_string(world_.configuration), line);
+  }
+  return lines;
 }
 
 }  // namespace pinchlab

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/progress.h"
 #include "demos/player.h"
 #include "render/canvas.h"
 #include "render/compose.h"
@@ -42,6 +43,10 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
   std::iota(by_time.begin(), by_time.end(), 0U);
   std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return frames[i]; });
   Player player(file, file.scene, method);
+  player.give_up_after(options.time_limit);
+  Progress progress(fmt::format("simulating {}, {}", file.scene.name, to_string(method)), "steps",
+                    std::int64_t{*std::ranges::max_element(frames)} * file.scene.steps_per_frame);
+  player.on_step([&progress] { progress.add(1); });
   Picture picture;
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
@@ -49,6 +54,8 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
     if (options.burn_time) picture.add(time_label(scenery, player.time()));
     show(i, player, picture);
   }
+  progress.clear();
+  tell_broken_promises(file.path.string(), player.broken_promises());
 }
 
 std::string label_of(const StillOptions& options, std::size_t row, double time) {

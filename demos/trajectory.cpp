@@ -81,7 +81,10 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
         "time_s,cable,segment,from_body,to_body,length_m,rest_length_m,tension_n,pinched,"
         "slipping\n");
   }
-  Progress progress("simulating " + scene.name, "frames", last + 1);
+  Progress progress("simulating " + scene.name, "steps",
+                    std::int64_t{last} * scene.steps_per_frame);
+  player.on_step([&progress] { progress.add(1); });
+  player.give_up_after(options.time_limit);
   std::string rows;
   for (int frame = 0; frame <= last; ++frame) {
     player.advance_to(frame);
@@ -93,18 +96,13 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
       add_segments(player, rows);
       segments->write(rows);
     }
-    progress.add(1);
   }
   bodies.finish();
   if (segments) {
     segments->finish();
   }
   progress.clear();
-  if (const auto fallbacks = player.world().diagnostics.fallbacks; fallbacks > 0) {
-    fmt::print(stderr,
-               "{}: note: {} of {} steps took the solver's fallback; more steps a frame may help\n",
-               file.path.string(), fallbacks, player.world().step);
-  }
+  tell_broken_promises(file.path.string(), player.broken_promises());
 }
 
 }  // namespace pinchlab

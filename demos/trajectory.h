@@ -12,8 +12,9 @@ namespace pinchlab {
 struct TrajectoryOptions {
   Configuration configuration;
   Timing timing;
-  std::optional<double> until;  ///< s, of the last row; default: the last frame's
-  std::filesystem::path out;    ///< one row a body and frame; "-": standard output
+  std::optional<double> until;       ///< s, of the last row; default: the last frame's
+  std::optional<double> time_limit;  ///< s of work, after which it is given up
+  std::filesystem::path out;         ///< one row a body and frame; "-": standard output
   std::optional<std::filesystem::path> segments;  ///< one row a cable's segment and frame
 };
 

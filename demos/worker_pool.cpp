@@ -175,6 +175,7 @@ int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvent
         end_workers(workers);
         return caught_signal;
       }
+      events.idle();
       for (std::size_t i = pipes.size(); i-- > 0;) {
         if (pipes[i].revents != 0 && !receive(workers[i], events)) {
           const Worker ended = std::move(workers[i]);

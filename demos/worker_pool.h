@@ -15,6 +15,7 @@ struct WorkerPoolEvents {
   std::function<void(std::size_t work)> tick;
   std::function<void(std::size_t work, const std::string& result)> done;
   std::function<void(std::size_t work, const std::string& error)> failed;
+  std::function<void()> idle = [] {};  ///< several times a second, whatever else happens
 };
 
 /// Does all of `work`, in this order, up to `jobs` pieces at a time, each in a freshly forked

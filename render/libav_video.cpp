@@ -24,7 +24,9 @@ namespace pinchlab {
 
 namespace {
 
-/// What differs from codec to codec. Options are FFmpeg's; "g" is the distance of key frames.
+/// What differs from codec to codec. Options are FFmpeg's; "g" is the distance of key frames. No
+/// bit rates are written (`btrt`): the two files of a pair differ in them, which would tell them
+/// apart.
 struct CodecTraits {
   const char* name;
   const char* ending;
@@ -45,7 +47,7 @@ const CodecTraits& traits(Codec codec) {
       "mp4",
       AV_PIX_FMT_YUV420P,
       "preset=veryfast:crf=14:aq-mode=0:x264-params=cpu-independent=1",
-      "movflags=+faststart+write_colr"};
+      "movflags=+faststart+write_colr:write_btrt=0"};
   static constexpr CodecTraits vp9{"vp9",
                                    ".webm",
                                    "libvpx-vp9",

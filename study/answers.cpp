@@ -70,7 +70,7 @@ void check(const std::string& bytes, const fs::path& path) {
 }  // namespace
 
 ordered_json answer_file(const Session& session, const PlanOptions& options,
-                         const ShownFiles& shown,
+                         const nlohmann::json& study, const ShownFiles& shown,
                          const std::map<std::string, std::string>& free_text,
                          const std::string& saved_utc, const std::string& code_hash) {
   if (!is_finished(session)) {
@@ -91,6 +91,7 @@ ordered_json answer_file(const Session& session, const PlanOptions& options,
           {"participant_number", session.number},
           {"seed", session.seed},
           {"plan", plan_entry(options)},
+          {"study", study},
           {"started_utc", session.started_utc},
           {"saved_utc", std::max(saved_utc, session.started_utc)},
           {"software_version", PINCHLAB_VERSION},

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <iterator>
@@ -34,8 +35,9 @@ namespace fs = std::filesystem;
 
 struct ServeOptions {
   fs::path clips, answers, config;
-  ServerOptions server{"127.0.0.1", 8080};
+  ServerOptions server{.host = "127.0.0.1", .port = 8080, .names = {}, .limits = {}};
   int participants = 0;
+  int release_after = 24 * 60;  // min
   std::uint64_t seed = 0;
   bool has_seed = false, no_webm = false;
 };
@@ -154,6 +156,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   if (options.has_seed) {
     desk_options.seed = options.seed;
   }
+  desk_options.longest_idle = std::chrono::minutes(options.release_after);
   desk_options.tell = tell;
 
   Desk desk(std::move(desk_options));
@@ -209,10 +212,21 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
       ->type_name("H")
       ->capture_default_str();
   command
+      ->add_option("--name", options->server.names,
+                   "Name that participants open the study by, if it is not this computer's own: "
+                   "study.example.org")
+      ->type_name("NAME");
+  command
       ->add_option("--participants", options->participants,
                    "Most that may take part [the configuration's, or no limit]")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--release-after", options->release_after,
+                   "Minutes without a sign of a participant, after which the place goes to another")
+      ->type_name("MIN")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 60 * 24 * 365));
   add_seed(*command, options->seed, "Seed of the plan [the answers folder's, or a random one]");
   add_config(*command, options->config);
   command->add_flag("--no-webm", options->no_webm,

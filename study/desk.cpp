@@ -8,6 +8,7 @@
 
 #include "base/durable_file.h"
 #include "base/input_error.h"
+#include "base/partial_file.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -20,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
-constexpr std::chrono::hours longest_idle{24};
+constexpr std::size_t largest_file = 16U << 20U;       // bytes
+constexpr std::chrono::minutes longest_unanswered{5};  // without a sign, where places are short
 
 // "<id>.<secret>"
 std::pair<std::string, std::string> split(const std::string& token) {
@@ -64,7 +65,9 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
                 fmt::format("{}: another server is using this folder; stop it or use another "
                             "--answers",
                             options_.answers.string()));
-  study_ = open_study_file(options_.answers, options_.config, options_.seed);
+  sweep();
+  shown_ = what_is_shown(options_.config, options_.clips);
+  study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);
   read_finished();
   read_running();
 }
@@ -75,6 +78,12 @@ void Desk::read_finished() {
     if (!file.is_object() || file.value("format", json()) != "pinchlab-answers") {
       throw std::runtime_error(
           fmt::format("{}: is no answer file; keep other files elsewhere", path.string()));
+    }
+    if (file.value("study", json()) != shown_) {
+      throw std::runtime_error(
+          fmt::format("{}: was answered in a study that asked or showed something else; use its "
+                      "configuration and clips, or another --answers",
+                      path.string()));
     }
     if (file.value("participant_number", json()).is_number_unsigned()) {
       taken_.insert(file["participant_number"].get<std::uint64_t>());
@@ -102,11 +111,24 @@ void Desk::read_running() {
       remove_durably(path);
       continue;
     }
-    add(entry);
+    add(entry, "");
   }
 }
 
-void Desk::add(const std::shared_ptr<Entry>& entry) {
+// What a killed server left half written is nobody's answer; it may hold what somebody wrote.
+void Desk::sweep() const {
+  for (const fs::path& folder : {options_.answers, running_folder(options_.answers)}) {
+    std::vector<fs::path> partial;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+      if (file.path().filename().string().ends_with(".json" + std::string(partial_ending))) {
+        partial.push_back(file.path());
+      }
+    }
+    std::ranges::for_each(partial, remove_durably);
+  }
+}
+
+void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
   const Session& session = entry->session;
   for (std::size_t i = 0; i < session.plan.size(); ++i) {
     const auto files = options_.clips.find(session.plan[i].demonstration);
@@ -115,42 +137,129 @@ void Desk::add(const std::shared_ptr<Entry>& entry) {
                                            session_path(session.id).string(),
                                            session.plan[i].demonstration));
     }
-    media_[session.media[i]] = {&files->second, session.plan[i].pinch};
+    media_[session.media[i]] = {&files->second, session.plan[i].pinch, session.id};
   }
   taken_.insert(session.number);
-  entries_[session.id] = entry;
+  places_[session.id] = {entry, address, ++starts_, {}, false, false};
+  note(session);
+}
+
+// Under mutex_.
+void Desk::note(const Session& session) {
+  const auto place = places_.find(session.id);
+  if (place != places_.end()) {
+    place->second.seen = parse_utc(session.last_seen_utc);
+    place->second.has_answered = !session.answers.empty();
+    place->second.is_shown = place->second.has_answered || !session.shown_utc.empty();
+  }
 }
 
 void Desk::remove(const Entry& entry) {
   for (const std::string& media : entry.session.media) {
     media_.erase(media);
   }
-  entries_.erase(entry.session.id);
+  places_.erase(entry.session.id);
 }
 
-// Who has not been seen for a day has left; the number goes to somebody else.
+// All that the disk holds of somebody who has not saved, half written files among it.
+void Desk::forget(const std::string& id) const {
+  const fs::path answers = answer_path(options_.answers, id);
+  for (const fs::path& path : {answers, session_path(id)}) {
+    const fs::path partial = path.string() + std::string(partial_ending);
+    if (fs::exists(partial)) {
+      remove_durably(partial);
+    }
+  }
+  remove_durably(session_path(id));
+}
+
+// Nothing is kept of somebody who does not come back, and the number goes to somebody else.
+void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
+                bool only_without_answers) {
+  const std::scoped_lock entry_lock(entry->mutex);
+  if (entry->is_gone || (only_without_answers && !entry->session.answers.empty())) {
+    return;
+  }
+  forget(entry->session.id);
+  entry->is_gone = true;
+  const std::scoped_lock lock(mutex_);
+  remove(*entry);
+  taken_.erase(entry->session.number);
+  ++left_;
+  options_.tell(fmt::format("{} {}; nothing is kept", entry->session.id, why));
+}
+
 void Desk::drop_idle() {
   const auto now = parse_utc(options_.utc_now());
-  std::vector<std::shared_ptr<Entry>> all;
+  std::vector<std::shared_ptr<Entry>> idle;
   {
     const std::scoped_lock lock(mutex_);
-    for (const auto& [id, entry] : entries_) {
-      all.push_back(entry);
+    for (const auto& [id, place] : places_) {
+      if (now - place.seen >= options_.longest_idle) {
+        idle.push_back(place.entry);
+      }
     }
   }
-  for (const auto& entry : all) {
-    const std::scoped_lock entry_lock(entry->mutex);
-    if (entry->is_gone || now - parse_utc(entry->session.last_seen_utc) < longest_idle) {
-      continue;
-    }
-    remove_durably(session_path(entry->session.id));
-    entry->is_gone = true;
+  for (const auto& entry : idle) {
+    drop(entry, "was not seen for too long and is dropped");
+  }
+}
+
+void Desk::release(const std::string& id) {
+  std::shared_ptr<Entry> entry;
+  {
     const std::scoped_lock lock(mutex_);
-    remove(*entry);
-    taken_.erase(entry->session.number);
-    ++left_;
-    options_.tell(fmt::format("{} was not seen for a day and is dropped", entry->session.id));
+    const auto found = places_.find(id);
+    if (found == places_.end()) {
+      throw Refused(404, "nobody of that name is running");
+    }
+    entry = found->second.entry;
   }
+  drop(entry, "was released by the researcher");
+}
+
+// Who has to go for somebody that starts from `address`; nullptr: nobody has to, or nobody can.
+std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
+                                                  const std::string& address) {
+  const auto now = parse_utc(options_.utc_now());
+  const std::scoped_lock lock(mutex_);
+  std::map<std::string, std::size_t> unanswered;  // by address
+  for (const auto& [id, place] : places_) {
+    if (!place.has_answered) {
+      ++unanswered[place.address];
+    }
+  }
+  const auto oldest = [&](const auto& may_go) {
+    const Place* found = nullptr;
+    for (const auto& [id, place] : places_) {
+      const bool is_older = found == nullptr || place.order < found->order;
+      if (!place.has_answered && is_older && may_go(place)) {
+        found = &place;
+      }
+    }
+    return found == nullptr ? nullptr : found->entry;
+  };
+  const auto is_away = [&](const Place& place) { return now - place.seen >= longest_unanswered; };
+  if (options_.config.one_time_links) {
+    return oldest([&](const Place& place) {
+      return !place.is_shown && equal_in_constant_time(link, link_of(place.entry->session.number));
+    });
+  }
+  if (unanswered[address] >= options_.most_unanswered) {
+    return oldest([&](const Place& place) { return place.address == address && is_away(place); });
+  }
+  const auto limit = static_cast<std::size_t>(options_.config.participant_limit);
+  const bool is_full =
+      places_.size() >= options_.most_open || (limit > 0 && taken_.size() >= limit);
+  if (!is_full) {
+    return nullptr;
+  }
+  const auto busiest =
+      std::ranges::max_element(unanswered, {}, [](const auto& entry) { return entry.second; });
+  if (busiest->second > unanswered[address] + 1) {
+    return oldest([&](const Place& place) { return place.address == busiest->first; });
+  }
+  return oldest(is_away);
 }
 
 std::string Desk::link_of(std::uint64_t number) const {
@@ -191,8 +300,17 @@ std::uint64_t Desk::number_for(const std::string& link) {
   return number;
 }
 
-std::string Desk::start(const std::string& link, const std::string& user_agent) {
-  drop_idle();
+std::string Desk::start(const std::string& link, const std::string& user_agent,
+                        const std::string& address) {
+  try {
+    drop_idle();
+    if (const auto entry = who_makes_room(link, address)) {
+      drop(entry, "had answered nothing and made room", true);
+    }
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("a place cannot be released: {}", error.what()));
+    throw Refused(503, "the disk does not take it");
+  }
   const std::string secret = random_hex(16);
   auto entry = std::make_shared<Entry>();
   Session& session = entry->session;
@@ -204,7 +322,11 @@ std::string Desk::start(const std::string& link, const std::string& user_agent) 
   session.started_utc = session.last_seen_utc = options_.utc_now();
   {
     const std::scoped_lock lock(mutex_);
-    if (entries_.size() >= options_.most_open) {
+    const auto unanswered = std::ranges::count_if(places_, [&](const auto& place) {
+      return place.second.address == address && !place.second.has_answered;
+    });
+    if (places_.size() >= options_.most_open ||
+        static_cast<std::size_t>(unanswered) >= options_.most_unanswered) {
       throw Refused(503, "too many participants at a time");
     }
     session.number = number_for(link);
@@ -218,15 +340,10 @@ std::string Desk::start(const std::string& link, const std::string& user_agent) 
   try {
     write_durably(session_path(session.id), to_json(session).dump());
     const std::scoped_lock lock(mutex_);
-    if (options_.config.one_time_links) {
-      study_.used_links.insert(session.number);
-      write_study_file(options_.answers, options_.config, study_);
-    }
-    add(entry);
+    add(entry, address);
   } catch (const std::exception& error) {
     const std::scoped_lock lock(mutex_);
     taken_.erase(session.number);
-    study_.used_links.erase(session.number);
     options_.tell(fmt::format("a participant could not start: {}", error.what()));
     throw Refused(503, "the disk does not take it");
   }
@@ -239,11 +356,11 @@ std::shared_ptr<Desk::Entry> Desk::find(const std::string& token) {
   std::shared_ptr<Entry> entry;
   {
     const std::scoped_lock lock(mutex_);
-    const auto found = entries_.find(id);
-    if (found == entries_.end()) {
+    const auto found = places_.find(id);
+    if (found == places_.end()) {
       throw Refused(401, "no session");
     }
-    entry = found->second;
+    entry = found->second.entry;
   }
   // The secret's hash never changes, so that it can be read without the entry's lock.
   if (!equal_in_constant_time(entry->session.secret_sha256, sha256(secret))) {
@@ -272,6 +389,8 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.shown_utc = std::move(next.shown_utc);
   entry->session.last_seen_utc = std::move(next.last_seen_utc);
   entry->session.resumed_count = next.resumed_count;
+  const std::scoped_lock desk_lock(mutex_);
+  note(entry->session);
 }
 
 Progress Desk::progress_of(const Session& session) const {
@@ -298,7 +417,24 @@ Progress Desk::resume(const std::string& token) {
   return progress(token);
 }
 
+// Whoever has seen a clip has had the link's one session.
+void Desk::use_up_link(const std::string& token) {
+  const std::uint64_t number = find(token)->session.number;
+  const std::scoped_lock lock(mutex_);
+  if (!options_.config.one_time_links || !study_.used_links.insert(number).second) {
+    return;
+  }
+  try {
+    write_study_file(options_.answers, options_.config, shown_, study_);
+  } catch (const std::exception& error) {
+    study_.used_links.erase(number);
+    options_.tell(fmt::format("a link cannot be marked as used: {}", error.what()));
+    throw Refused(507, "the disk does not take it");
+  }
+}
+
 void Desk::show(const std::string& token, std::size_t index) {
+  use_up_link(token);
   change(token, [&](Session& session) { study::show(session, index, options_.utc_now()); });
 }
 
@@ -316,15 +452,27 @@ void Desk::answer(const std::string& token, const SentAnswer& sent) {
 }
 
 void Desk::leave(const std::string& token) {
-  const std::shared_ptr<Entry> entry = find(token);
+  const auto [id, secret] = split(token);
+  const auto refuse_if_saved = [&, &id = id, &secret = secret] {
+    if (!saved_code(id, secret).empty()) {
+      throw Refused(409, "the answers are saved");
+    }
+  };
+  std::shared_ptr<Entry> entry;
+  try {
+    entry = find(token);
+  } catch (const Refused&) {
+    refuse_if_saved();
+    throw;
+  }
   const std::scoped_lock entry_lock(entry->mutex);
   if (entry->is_gone) {
-    return;
+    return refuse_if_saved();
   }
   try {
-    remove_durably(session_path(entry->session.id));
+    forget(id);
   } catch (const std::exception& error) {
-    options_.tell(fmt::format("{}: cannot be removed: {}", entry->session.id, error.what()));
+    options_.tell(fmt::format("{}: cannot be removed: {}", id, error.what()));
     throw Refused(507, "the disk does not take it");
   }
   entry->is_gone = true;
@@ -332,7 +480,7 @@ void Desk::leave(const std::string& token) {
   remove(*entry);
   taken_.erase(entry->session.number);
   ++left_;
-  options_.tell(fmt::format("{} left after {} of {} trials; nothing is kept", entry->session.id,
+  options_.tell(fmt::format("{} left after {} of {} trials; nothing is kept", id,
                             entry->session.answers.size(), entry->session.plan.size()));
 }
 
@@ -372,8 +520,8 @@ std::string Desk::save(const std::string& token,
     const Clip& clip = options_.clips.at(trial.demonstration).in(encoding).at(trial.pinch);
     return ShownFile{clip.name(), clip.sha256()};
   };
-  const auto file = answer_file(entry->session, plan_options(options_.config), shown, free_text,
-                                options_.utc_now(), withdrawal_hash(code));
+  const auto file = answer_file(entry->session, plan_options(options_.config), shown_, shown,
+                                free_text, options_.utc_now(), withdrawal_hash(code));
   try {
     save_answers(answer_path(options_.answers, id), file);
   } catch (const std::exception& error) {
@@ -400,7 +548,10 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
   if (found == media_.end()) {
     return nullptr;
   }
-  const auto& [files, side] = found->second;
+  const auto& [files, side, participant] = found->second;
+  if (const auto place = places_.find(participant); place != places_.end()) {
+    place->second.seen = parse_utc(options_.utc_now());
+  }
   const bool is_there = encoding == Encoding::mp4 || files->webm;
   return is_there ? &files->in(encoding).at(side) : nullptr;
 }
@@ -410,8 +561,8 @@ Overview Desk::overview() {
   Overview overview;
   {
     const std::scoped_lock lock(mutex_);
-    for (const auto& [id, entry] : entries_) {
-      all.push_back(entry);
+    for (const auto& [id, place] : places_) {
+      all.push_back(place.entry);
     }
     overview.finished = finished_;
     overview.left = left_;

@@ -8,6 +8,7 @@
 //   ANSWERS/.running/<participant>.json   participants who have not finished
 //   ANSWERS/.running/study.json           seed and configuration
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,7 @@
 #include "study/clips.h"
 #include "study/config.h"
 #include "study/session.h"
+#include "study/shown.h"
 #include "study/study_file.h"
 
 namespace pinchlab::study {
@@ -33,6 +35,8 @@ struct DeskOptions {
   std::filesystem::path answers;      ///< folder, made if missing
   std::optional<std::uint64_t> seed;  ///< none: the folder's own, or a random one
   std::size_t most_open = 1000;       ///< participants at a time
+  std::size_t most_unanswered = 500;  ///< of one address, participants who have not answered yet
+  std::chrono::seconds longest_idle{24 * 3600};  ///< without a sign, before a place is released
   std::function<std::string()> utc_now;
   std::function<void(const std::string&)> tell;  ///< who started, finished, left
 };
@@ -73,14 +77,24 @@ class Desk {
 
   /// A new participant's token. Refused: 403 for a link that is unknown or used, 409 where the
   /// study is full, 503 where too many are running or the disk does not take it.
-  std::string start(const std::string& link, const std::string& user_agent);
+  ///
+  /// A link is used up when its first clip is shown: until then opening it again begins anew, so
+  /// that a start whose reply was lost costs nobody the link.
+  ///
+  /// Where places are short, the newcomer takes that of somebody who has not answered anything: the
+  /// oldest one of the address that has most of them and more than the newcomer's own will have, or
+  /// else one that was not seen for five minutes. So many starts from one address fill no study.
+  std::string start(const std::string& link, const std::string& user_agent,
+                    const std::string& address = "");
 
   // All of these refuse (401) a token that is not one of a running session.
   Progress progress(const std::string& token);
   Progress resume(const std::string& token);  ///< after a reload
   void show(const std::string& token, std::size_t index);
   void answer(const std::string& token, const SentAnswer& sent);
-  void leave(const std::string& token);  ///< keeps nothing
+
+  /// Keeps nothing. Refused (409) if the answers have been saved: they stay.
+  void leave(const std::string& token);
 
   /// Saves the answers and returns the withdrawal code. Sent again, it saves nothing more and
   /// returns the same code, also after a restart. Refused (507) if the disk does not take them:
@@ -92,35 +106,58 @@ class Desk {
 
   Overview overview();
 
+  /// Ends a participant's session for the researcher and keeps nothing of it; the place goes to
+  /// the next who comes. Refused (404) if nobody with that id is running.
+  void release(const std::string& id);
+
  private:
   struct Entry {
     std::mutex mutex;
     Session session;
     bool is_gone = false;
   };
+  // What the desk knows of an entry without waiting for it.
+  struct Place {
+    std::shared_ptr<Entry> entry;
+    std::string address;      // where the participant started; never on the disk
+    std::uint64_t order = 0;  // of starting
+    std::chrono::sys_seconds seen;
+    bool is_shown = false;  // the first clip, at least
+    bool has_answered = false;
+  };
   struct Media {
     const PairFiles* files;
     Side side;
+    std::string participant;
   };
 
   void read_finished();
   void read_running();
-  void add(const std::shared_ptr<Entry>& entry);
+  void add(const std::shared_ptr<Entry>& entry, const std::string& address);
+  void note(const Session& session);
   void remove(const Entry& entry);
   void drop_idle();
+  void drop(const std::shared_ptr<Entry>& entry, const std::string& why,
+            bool only_without_answers = false);
+  void forget(const std::string& id) const;
+  void sweep() const;
+  std::shared_ptr<Entry> who_makes_room(const std::string& link, const std::string& address);
+  void use_up_link(const std::string& token);
   std::uint64_t number_for(const std::string& link);
   std::string link_of(std::uint64_t number) const;
   std::shared_ptr<Entry> find(const std::string& token);
   void change(const std::string& token, const std::function<void(Session&)>& apply);
-  std::string saved_code(const std::string& id, const std::string& secret) const;
+  [[nodiscard]] std::string saved_code(const std::string& id, const std::string& secret) const;
   Progress progress_of(const Session& session) const;
   [[nodiscard]] std::filesystem::path session_path(const std::string& id) const;
 
   DeskOptions options_;
   std::optional<FolderLock> lock_;
-  std::mutex mutex_;  // of all below; never held while waiting for an entry's
-  StudyFile study_;   // its seed never changes
-  std::map<std::string, std::shared_ptr<Entry>> entries_;
+  std::mutex mutex_;                     // of all below; never held while waiting for an entry's
+  nlohmann::json shown_;                 // what_is_shown(); never changes
+  StudyFile study_;                      // its seed never changes
+  std::map<std::string, Place> places_;  // by participant, who is running
+  std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;
   std::set<std::uint64_t> taken_;  // numbers of running and finished participants
   std::size_t finished_ = 0, left_ = 0;

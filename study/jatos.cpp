@@ -18,6 +18,7 @@
 #include "study/page_assets.h"
 #include "study/secrets.h"
 #include "study/session.h"
+#include "study/shown.h"
 #include "study/zip.h"
 
 namespace pinchlab::study {
@@ -156,6 +157,7 @@ struct Key {  // NOLINT(bugprone-exception-escape)
   std::string study;
   std::uint64_t seed = 0;
   PlanOptions options;
+  json shown;  // what_is_shown()
   json files, plans;
 };
 
@@ -173,7 +175,7 @@ std::vector<std::string> read_names(JsonObject& object, const std::string& key) 
 Key read_key(const fs::path& path) {
   const json document = read_json_file(path, largest_key);
   JsonObject object(document, path.string(), "");
-  object.choice("format", {"pinchlab-jatos-key 1"});
+  object.choice("format", {"pinchlab-jatos-key 2"});
   Key key;
   key.study = object.name("study");
   key.seed = static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
@@ -184,6 +186,7 @@ Key read_key(const fs::path& path) {
   key.options.repetitions = static_cast<int>(options.whole("repetitions", 1, 50));
   key.options.both_orders = options.flag("both_orders");
   options.finish();
+  key.shown = object.need("shown");
   key.files = object.need("files");
   key.plans = object.array("plans", 1000000);
   object.finish();
@@ -241,8 +244,8 @@ Result read_result(const std::string& line, const std::string& place, const Key&
           key.files.at(trial.demonstration).at(to_string(encoding)).at(to_string(trial.pinch));
       return ShownFile{file.at("name"), file.at("sha256")};
     };
-    return {session.id, answer_file(session, key.options, shown, parse_free_text(free_text),
-                                    saved_utc, code_hash)};
+    return {session.id, answer_file(session, key.options, key.shown, shown,
+                                    parse_free_text(free_text), saved_utc, code_hash)};
   } catch (const std::exception& error) {
     throw InputError(place, error.what());
   }
@@ -307,7 +310,7 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
       files[name]["webm"] = file_entry(*pair.webm);
     }
   }
-  const ordered_json key = {{"format", "pinchlab-jatos-key 1"},
+  const ordered_json key = {{"format", "pinchlab-jatos-key 2"},
                             {"study", uuid},
                             {"seed", seed},
                             {"options",
@@ -316,6 +319,7 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                               {"attention_checks", options.attention_checks},
                               {"repetitions", options.repetitions},
                               {"both_orders", options.both_orders}}},
+                            {"shown", what_is_shown(config, clips)},
                             {"files", files},
                             {"plans", plans}};
   // The key first: an archive without one would be worthless.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "study/page_assets.h"
@@ -41,7 +43,10 @@ std::string html_page(std::string_view path, const Config& config, std::string_v
   html = replaced(html, "{{language}}", html_escaped(config.language));
   html = replaced(html, "{{backend}}", std::string(backend));
   html = replaced(html, "{{scripts}}", std::string(scripts));
-  return replaced(html, "{{title}}", html_escaped(config.texts.at("title")));
+  for (const char* text : {"title", "loading", "connection_lost"}) {
+    html = replaced(html, fmt::format("{{{{{}}}}}", text), html_escaped(config.texts.at(text)));
+  }
+  return html;
 }
 
 bool has_page() {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -71,21 +72,34 @@ Square shuffled_square(Random& labels, Random& rows, std::size_t n) {
   return square;
 }
 
+// For odd n each demonstration follows every other equally often only in the square and its mirror
+// together (Williams 1949).
+Square mirrored(Square square) {
+  for (auto& row : square) {
+    std::ranges::reverse(row);
+  }
+  return square;
+}
+
 bool repeats_at_once(const Square& before, const Square& after) {
   for (std::size_t i = 0; i < before.size(); ++i) {
-    if (before[i].back() == after[i].front()) {
+    const bool repeats = before[i].back() == after[i].front();
+    const bool repeats_in_mirror = before[i].front() == after[i].back();
+    if (repeats || (before.size() % 2 == 1 && repeats_in_mirror)) {
       return true;
     }
   }
   return false;
 }
 
-// The squares of all rounds of a block. A square that would show somebody the same demonstration
-// twice running is drawn again; about one in three passes, and the square of the round before
-// always would.
+// The squares of all rounds of a block; of a pair of blocks for odd n. A square that would show
+// somebody the same demonstration twice running is drawn again; about one in three passes for
+// even n, and the square of the round before always would.
 std::vector<Square> squares(std::uint64_t seed, std::uint64_t block, int rounds, std::size_t n) {
-  Random labels(seed, Purpose::labels, block);
-  Random rows(seed, Purpose::rows, block);
+  const bool is_odd = n % 2 == 1;
+  const std::uint64_t drawn_for = is_odd ? block / 2 : block;
+  Random labels(seed, Purpose::labels, drawn_for);
+  Random rows(seed, Purpose::rows, drawn_for);
   std::vector<Square> result;
   for (int round = 0; round < rounds; ++round) {
     Square square = shuffled_square(labels, rows, n);
@@ -94,7 +108,86 @@ std::vector<Square> squares(std::uint64_t seed, std::uint64_t block, int rounds,
     }
     result.push_back(std::move(square));
   }
+  if (is_odd && block % 2 == 1) {
+    std::ranges::transform(result, result.begin(), mirrored);
+  }
   return result;
+}
+
+// Which side of the method under test comes how often and how often running, in one session.
+class SidesSoFar {
+ public:
+  // False: a fourth time running, and nothing is noted.
+  bool add(bool is_right) {
+    run_ = count_ > 0 && is_right == last_ ? run_ + 1 : 1;
+    last_ = is_right;
+    ++count_;
+    right_ += is_right ? 1 : 0;
+    return run_ <= longest_run;
+  }
+  // As near to half as the number allows.
+  [[nodiscard]] bool is_balanced() const { return std::abs(2 * right_ - count_) <= count_ % 2; }
+
+ private:
+  static constexpr int longest_run = 3;
+  int run_ = 0, count_ = 0, right_ = 0;
+  bool last_ = false;
+};
+
+// Orders of one participant: orders[round][position] is a demonstration.
+using Orders = std::vector<std::vector<std::size_t>>;
+
+Orders orders_of(std::uint64_t seed, std::uint64_t number, int rounds, std::size_t n) {
+  Orders orders;
+  for (const Square& square : squares(seed, number / n, rounds, n)) {
+    orders.push_back(square[number % n]);
+  }
+  return orders;
+}
+
+// Sides of a pair of participants: sides[round][demonstration], true where the first of the two
+// sees the method under test on the right; the second sees it on the other side. Coins are thrown
+// for a round (for two with both orders, the second with the sides swapped) until both have each
+// side equally often and no side more than three times running. Turned round, sides that pass pass
+// too, so that each side is a fair coin still.
+std::vector<std::vector<bool>> sides_of_pair(std::uint64_t seed, std::uint64_t pair, int rounds,
+                                             const PlanOptions& options) {
+  const std::size_t n = options.demonstrations.size();
+  const Orders orders[] = {orders_of(seed, 2 * pair, rounds, n),
+                           orders_of(seed, 2 * pair + 1, rounds, n)};
+  const int step = options.both_orders ? 2 : 1;
+  constexpr int most_throws = 10000;  // a beginning that allows no end is begun anew
+  for (std::uint64_t attempt = 0;; ++attempt) {
+    Random coins(seed, Purpose::sides, pair, attempt);
+    std::vector<std::vector<bool>> sides;
+    SidesSoFar so_far[2];
+    for (int throws = 0; throws < most_throws && static_cast<int>(sides.size()) < rounds;
+         ++throws) {
+      std::vector<bool> round(n);
+      std::generate(round.begin(), round.end(), [&] { return coins.coin(); });
+      SidesSoFar next[] = {so_far[0], so_far[1]};
+      bool passes = true;
+      for (int i = 0; i < step; ++i) {
+        for (const int who : {0, 1}) {
+          for (const std::size_t demonstration :
+               orders[who][sides.size() + static_cast<std::size_t>(i)]) {
+            passes = next[who].add(round[demonstration] != (who != i)) && passes;
+          }
+        }
+      }
+      if (passes && next[0].is_balanced()) {
+        std::ranges::copy(next, so_far);
+        sides.push_back(round);
+        if (options.both_orders) {
+          round.flip();
+          sides.push_back(round);
+        }
+      }
+    }
+    if (static_cast<int>(sides.size()) == rounds) {
+      return sides;
+    }
+  }
 }
 
 Side side_of(bool is_right) {
@@ -105,20 +198,15 @@ std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
                                       const PlanOptions& options) {
   const std::size_t n = options.demonstrations.size();
   const int rounds = answers_per_demonstration(options);
-  const std::vector<Square> orders = squares(seed, number / n, rounds, n);
+  const Orders orders = orders_of(seed, number, rounds, n);
+  const std::vector<std::vector<bool>> sides = sides_of_pair(seed, number / 2, rounds, options);
   const bool is_second_of_pair = number % 2 == 1;
   std::vector<PlannedTrial> trials;
-  for (int round = 0; round < rounds; ++round) {
-    // With both orders, every second round repeats the coins of the one before, swapped.
-    const int coins_of = options.both_orders ? round - round % 2 : round;
-    const bool is_swapped = options.both_orders && round % 2 == 1;
-    Random coins(seed, Purpose::sides, number / 2, static_cast<std::uint64_t>(coins_of));
-    std::vector<bool> is_right(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      is_right[i] = coins.coin() != (is_second_of_pair != is_swapped);
-    }
-    for (const std::size_t i : orders[static_cast<std::size_t>(round)][number % n]) {
-      trials.push_back({TrialKind::main, options.demonstrations[i], side_of(is_right[i]), round});
+  for (std::size_t round = 0; round < sides.size(); ++round) {
+    for (const std::size_t i : orders[round]) {
+      const bool is_right = sides[round][i] != is_second_of_pair;
+      trials.push_back(
+          {TrialKind::main, options.demonstrations[i], side_of(is_right), static_cast<int>(round)});
     }
   }
   return trials;

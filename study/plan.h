@@ -45,9 +45,12 @@ int answers_per_demonstration(const PlanOptions& options);
 /// With n demonstrations and in every round:
 /// - participants 2k and 2k + 1 see each demonstration once with pinch left and once right;
 /// - participants nk to nk + n - 1 see each demonstration once in every position (a Williams
-///   square, Australian Journal of Scientific Research A 2 (1949) 149; for even n each also
-///   follows every other once), its labels and rows shuffled anew for every k;
-/// - a participant's order is uniform over all n! orders, and each side is a fair coin;
+///   square, Australian Journal of Scientific Research A 2 (1949) 149; for odd n and odd k the
+///   mirrored square of k - 1), its labels and rows shuffled anew; so each follows every other
+///   equally often, for odd n among 2n participants;
+/// - a participant's order is uniform over all n! orders, and each side is a fair coin, yet
+/// - each participant sees the method under test on both sides equally often, or once more on one
+///   where the number is odd, and never more than three times running on one side;
 /// - no demonstration is shown twice running (unless there is only one).
 /// Attention checks are spread over the main trials, never first; each pair of participants sees
 /// their right answer on both sides. Training trials come first, with fair sides.

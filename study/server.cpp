@@ -2,13 +2,14 @@
 #include "study/server.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
 #include "base/strict_json.h"
+#include "study/http_server.h"
 #include "study/page_assets.h"
 #include "study/rate_limit.h"
 #include "study/secrets.h"
@@ -17,17 +18,13 @@
 namespace pinchlab::study {
 namespace {
 
-using httplib::Request;
-using httplib::Response;
 using nlohmann::json;
 
-constexpr std::size_t largest_request = 1U << 18U;  // bytes
 constexpr std::size_t deepest_json = 8;
-constexpr std::size_t threads = 192;  // a browser keeps a few connections open
 constexpr double requests_per_second = 500, requests_at_once = 5000;  // of one address
 
 // No inline code, nothing from elsewhere, no frames; clips are played from memory (blob:).
-const httplib::Headers common_headers = {
+const std::vector<std::pair<std::string, std::string>> common_headers = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
      "media-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
@@ -39,19 +36,21 @@ const httplib::Headers common_headers = {
     {"Permissions-Policy", "camera=(), geolocation=(), microphone=()"},
     {"Cache-Control", "no-store"}};
 
-void reply(Response& response, const json& body, int status = 200) {
-  response.status = status;
-  response.set_content(body.dump(-1, ' ', false, json::error_handler_t::replace),
-                       "application/json");
+HttpReply reply(const json& body, int status = 200) {
+  HttpReply result;
+  result.status = status;
+  result.type = "application/json";
+  result.body = body.dump(-1, ' ', false, json::error_handler_t::replace);
+  return result;
 }
 
-void refuse(Response& response, int status, const std::string& reason) {
-  reply(response, {{"error", reason}}, status);
+HttpReply refusal(int status, const std::string& reason) {
+  return reply({{"error", reason}}, status);
 }
 
 // A body of JSON that is small, flat and without doubled keys.
-json parse_body(const Request& request) {
-  const std::string type = request.get_header_value("Content-Type");
+json parse_body(const HttpRequest& request) {
+  const std::string type = request.header("content-type");
   if (type != "application/json" && !type.starts_with("application/json;")) {
     throw Refused(415, "the body must be application/json");
   }
@@ -73,8 +72,8 @@ void check_keys(const json& body, const std::set<std::string>& known) {
   }
 }
 
-std::string token_of(const Request& request) {
-  const std::string header = request.get_header_value("Authorization");
+std::string token_of(const HttpRequest& request) {
+  const std::string header = request.header("authorization");
   constexpr std::string_view scheme = "Bearer ";
   if (!header.starts_with(scheme)) {
     throw Refused(401, "no session");
@@ -94,77 +93,53 @@ json progress_json(const Progress& progress) {
   return {{"trials", trials}, {"next", progress.next}};
 }
 
-// The library takes ranges as they come; this makes them what RFC 9110, 14.1.2 says. False: there
-// is no such part of `size` bytes.
-bool clamp_range(const Request& request, std::uint64_t size) {
-  // The library's own object, not constant; it offers no other way to it.
-  auto& ranges = const_cast<Request&>(request).ranges;
-  if (ranges.empty()) {
-    return true;
-  }
-  const auto last = static_cast<ssize_t>(size) - 1;
-  auto& [begin, end] = ranges.front();
-  if (ranges.size() > 1 || begin > last || (begin < 0 && end <= 0)) {
-    ranges.clear();
-    return false;
-  }
-  if (begin < 0) {
-    begin = std::max<ssize_t>(0, last + 1 - end);
-    end = last;
-  }
-  end = end < 0 ? last : std::min(end, last);
-  return true;
-}
-
 }  // namespace
 
 struct Server::Implementation {
-  Implementation(Desk& desk_, const ServerOptions& options) : desk(desk_) {
-    http.new_task_queue = [] { return new httplib::ThreadPool(threads); };
-    http.set_tcp_nodelay(true);
-    http.set_keep_alive_max_count(1000);
-    http.set_keep_alive_timeout(2);
-    http.set_read_timeout(5);
-    http.set_write_timeout(10);
-    http.set_payload_max_length(largest_request);
-    http.set_default_headers(common_headers);
-    http.set_exception_handler(
-        [](const Request&, Response& response, const std::exception_ptr& error) {
-          answer_exception(response, error);
-        });
-    http.set_error_handler([](const Request&, Response& response) {
-      if (response.body.empty()) {
-        refuse(response, response.status, "refused");
-      }
-    });
-    http.set_pre_routing_handler(
-        [this](const Request& request, Response& response) { return before(request, response); });
+  using Route = std::function<HttpReply(const HttpRequest&)>;
+
+  Implementation(Desk& desk_, const ServerOptions& options_)
+      : desk(desk_),
+        options(options_),
+        http(options.host, options.port, options.limits,
+             [this](const HttpRequest& request) { return serve(request); }) {
     add_page();
-    add_media();
     add_interface();
-    bind(options);
   }
 
-  static void answer_exception(Response& response, const std::exception_ptr& error) {
+  HttpReply serve(const HttpRequest& request) {
+    HttpReply result = answer(request);
+    result.headers.insert(result.headers.end(), common_headers.begin(), common_headers.end());
+    return result;
+  }
+
+  HttpReply answer(const HttpRequest& request) {
     try {
-      std::rethrow_exception(error);
+      if (!is_our_host(request.header("host"), options.names)) {
+        throw Refused(421, "this server has another name; see --name");
+      }
+      if (!rate.allows(request.address, RateLimit::Clock::now())) {
+        HttpReply busy = refusal(429, "too many requests");
+        busy.headers.emplace_back("Retry-After", "1");
+        return busy;
+      }
+      if (request.path.starts_with("/media/")) {
+        return media(request);
+      }
+      const std::string method = request.method == "HEAD" ? "GET" : request.method;
+      const auto route = routes.find({method, request.path});
+      if (route == routes.end()) {
+        const bool is_path =
+            routes.contains({"GET", request.path}) || routes.contains({"POST", request.path});
+        throw is_path ? Refused(405, "not with this method")
+                      : Refused(404, "there is no such page");
+      }
+      return route->second(request);
     } catch (const Refused& refused) {
-      refuse(response, refused.status, refused.what());
+      return refusal(refused.status, refused.what());
     } catch (const std::exception&) {
-      refuse(response, 500, "the server has a problem");
+      return refusal(500, "the server has a problem");
     }
-  }
-
-  httplib::Server::HandlerResponse before(const Request& request, Response& response) {
-    if (!rate.allows(request.remote_addr, RateLimit::Clock::now())) {
-      response.set_header("Retry-After", "1");
-      refuse(response, 429, "too many requests");
-      return httplib::Server::HandlerResponse::Handled;
-    }
-    if (!request.path.starts_with("/media/")) {
-      const_cast<Request&>(request).ranges.clear();  // only clips come in parts
-    }
-    return httplib::Server::HandlerResponse::Unhandled;
   }
 
   void add_page() {
@@ -173,72 +148,78 @@ struct Server::Implementation {
       if (path.ends_with(".html") || path.starts_with("/texts/")) {
         continue;
       }
-      http.Get(path, [&asset](const Request&, Response& response) {
-        response.set_content(asset.bytes.data(), asset.bytes.size(), std::string(asset.type));
-      });
+      routes[{"GET", path}] = [&asset](const HttpRequest&) {
+        HttpReply result;
+        result.type = asset.type;
+        result.body = asset.bytes;
+        return result;
+      };
     }
     for (const auto& [path, file] :
          {std::pair{"/", "index.html"}, {"/researcher", "researcher.html"}}) {
-      http.Get(path, [this, name = file](const Request&, Response& response) {
-        response.set_content(html_page(name, desk.config(), "server", ""),
-                             "text/html; charset=utf-8");
-      });
+      routes[{"GET", path}] = [this, name = file](const HttpRequest&) {
+        HttpReply result;
+        result.type = "text/html; charset=utf-8";
+        result.body = html_page(name, desk.config(), "server", "");
+        return result;
+      };
     }
   }
 
-  void add_media() {
-    http.Get(R"(/media/([0-9a-f]{32})\.(mp4|webm))", [this](const Request& request,
-                                                            Response& response) {
-      const Encoding encoding = request.matches[2] == "mp4" ? Encoding::mp4 : Encoding::webm;
-      const Clip* clip = desk.clip(request.matches[1], encoding);
-      if (clip == nullptr) {
-        throw Refused(404, "there is no such file");
+  // /media/<32 hexadecimal digits>.<mp4 or webm>, whole or in part.
+  HttpReply media(const HttpRequest& request) {
+    if (request.method != "GET" && request.method != "HEAD") {
+      throw Refused(405, "not with this method");
+    }
+    const std::string name = request.path.substr(std::string_view("/media/").size());
+    const std::size_t dot = name.find('.');
+    const std::string ending = dot == std::string::npos ? "" : name.substr(dot + 1);
+    const Encoding encoding = ending == "mp4" ? Encoding::mp4 : Encoding::webm;
+    const Clip* clip =
+        ending == to_string(encoding) ? desk.clip(name.substr(0, dot), encoding) : nullptr;
+    if (clip == nullptr) {
+      throw Refused(404, "there is no such file");
+    }
+    const std::uint64_t size = clip->served_size();
+    HttpReply result;
+    ByteRange part(0, size - 1);
+    if (const std::string range = request.header("range"); !range.empty()) {
+      const auto wanted = byte_range(range, size);
+      if (!wanted) {
+        result = refusal(416, "there is no such part");
+        result.headers.emplace_back("Content-Range", fmt::format("bytes */{}", size));
+        return result;
       }
-      if (!clamp_range(request, clip->served_size())) {
-        response.set_header("Content-Range", fmt::format("bytes */{}", clip->served_size()));
-        throw Refused(416, "there is no such part");
-      }
-      response.set_header("Accept-Ranges", "bytes");
-      response.set_content_provider(
-          clip->served_size(), encoding == Encoding::mp4 ? "video/mp4" : "video/webm",
-          [clip](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-            const std::string bytes = clip->read(offset, std::min<std::size_t>(length, 1U << 18U));
-            return !bytes.empty() && sink.write(bytes.data(), bytes.size());
-          });
-    });
+      part = *wanted;
+      result.status = 206;
+      result.headers.emplace_back("Content-Range",
+                                  fmt::format("bytes {}-{}/{}", part.first, part.second, size));
+    }
+    result.type = std::string("video/") + to_string(encoding);
+    result.headers.emplace_back("Accept-Ranges", "bytes");
+    result.length = part.second - part.first + 1;
+    result.read = [clip, first = part.first](std::uint64_t offset, std::size_t length) {
+      return clip->read(first + offset, length);
+    };
+    return result;
   }
 
   void add_interface() {
-    http.Get("/api/study", [this](const Request&, Response& response) {
+    routes[{"GET", "/api/study"}] = [this](const HttpRequest&) {
       const Config& config = desk.config();
-      reply(response, {{"language", config.language},
-                       {"texts", config.texts},
-                       {"needs_link", config.one_time_links}});
-    });
-    http.Post("/api/start", [this](const Request& request, Response& response) {
-      const json body = parse_body(request);
-      check_keys(body, {"consent", "link"});
-      if (body.value("consent", json()) != true) {
-        throw Refused(422, "without consent nothing begins");
-      }
-      const json link = body.value("link", json(""));
-      if (!link.is_string()) {
-        throw Refused(422, "the link must be a string");
-      }
-      const std::string token =
-          desk.start(link.get<std::string>(), request.get_header_value("User-Agent"));
-      json started = progress_json(desk.progress(token));
-      started["token"] = token;
-      reply(response, started);
-    });
-    http.Get("/api/session", [this](const Request& request, Response& response) {
-      reply(response, progress_json(desk.progress(token_of(request))));
-    });
-    http.Post("/api/resume", [this](const Request& request, Response& response) {
+      return reply({{"language", config.language},
+                    {"texts", config.texts},
+                    {"needs_link", config.one_time_links}});
+    };
+    routes[{"POST", "/api/start"}] = [this](const HttpRequest& request) { return start(request); };
+    routes[{"GET", "/api/session"}] = [this](const HttpRequest& request) {
+      return reply(progress_json(desk.progress(token_of(request))));
+    };
+    routes[{"POST", "/api/resume"}] = [this](const HttpRequest& request) {
       check_keys(parse_body(request), {});
-      reply(response, progress_json(desk.resume(token_of(request))));
-    });
-    http.Post("/api/show", [this](const Request& request, Response& response) {
+      return reply(progress_json(desk.resume(token_of(request))));
+    };
+    routes[{"POST", "/api/show"}] = [this](const HttpRequest& request) {
       const json body = parse_body(request);
       check_keys(body, {"index"});
       const json index = body.value("index", json());
@@ -246,27 +227,59 @@ struct Server::Implementation {
         throw Refused(422, "index must be a whole number");
       }
       desk.show(token_of(request), index.get<std::size_t>());
-      reply(response, {{"done", true}});
-    });
-    http.Post("/api/answer", [this](const Request& request, Response& response) {
+      return reply({{"done", true}});
+    };
+    routes[{"POST", "/api/answer"}] = [this](const HttpRequest& request) {
       desk.answer(token_of(request), parse_answer(parse_body(request)));
-      reply(response, {{"done", true}});
-    });
-    http.Post("/api/save", [this](const Request& request, Response& response) {
+      return reply({{"done", true}});
+    };
+    routes[{"POST", "/api/save"}] = [this](const HttpRequest& request) {
       const std::string code = desk.save(token_of(request), parse_free_text(parse_body(request)));
-      reply(response, {{"done", true}, {"code", code}});
-    });
-    http.Post("/api/leave", [this](const Request& request, Response& response) {
+      return reply({{"done", true}, {"code", code}});
+    };
+    routes[{"POST", "/api/leave"}] = [this](const HttpRequest& request) {
       check_keys(parse_body(request), {});
       desk.leave(token_of(request));
-      reply(response, {{"done", true}});
-    });
-    http.Get("/api/overview", [this](const Request& request, Response& response) {
-      if (!equal_in_constant_time(token_of(request), researcher_token)) {
-        throw Refused(401, "this needs the token that was printed at start");
+      return reply({{"done", true}});
+    };
+    routes[{"GET", "/api/overview"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      return reply(overview_json(desk.overview()));
+    };
+    routes[{"POST", "/api/release"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      const json body = parse_body(request);
+      check_keys(body, {"participant"});
+      const json participant = body.value("participant", json());
+      if (!participant.is_string()) {
+        throw Refused(422, "participant must be a string");
       }
-      reply(response, overview_json(desk.overview()));
-    });
+      desk.release(participant.get<std::string>());
+      return reply({{"done", true}});
+    };
+  }
+
+  void check_researcher(const HttpRequest& request) const {
+    if (!equal_in_constant_time(token_of(request), researcher_token)) {
+      throw Refused(401, "this needs the token that was printed at start");
+    }
+  }
+
+  HttpReply start(const HttpRequest& request) {
+    const json body = parse_body(request);
+    check_keys(body, {"consent", "link"});
+    if (body.value("consent", json()) != true) {
+      throw Refused(422, "without consent nothing begins");
+    }
+    const json link = body.value("link", json(""));
+    if (!link.is_string()) {
+      throw Refused(422, "the link must be a string");
+    }
+    const std::string token =
+        desk.start(link.get<std::string>(), request.header("user-agent"), request.address);
+    json started = progress_json(desk.progress(token));
+    started["token"] = token;
+    return reply(started);
   }
 
   static json overview_json(const Overview& overview) {
@@ -282,28 +295,12 @@ struct Server::Implementation {
     return {{"running", running}, {"finished", overview.finished}, {"left", overview.left}};
   }
 
-  void bind(const ServerOptions& options) {
-    int port = options.port;
-    if (port == 0) {
-      port = http.bind_to_any_port(options.host);
-    } else if (!http.bind_to_port(options.host, port)) {
-      port = -1;
-    }
-    if (port < 0) {
-      throw std::runtime_error(
-          fmt::format("{}:{} cannot be listened on; is another server running? Use another --port "
-                      "or --host",
-                      options.host, options.port));
-    }
-    const bool is_ipv6 = options.host.find(':') != std::string::npos;
-    address = fmt::format("http://{}:{}", is_ipv6 ? "[" + options.host + "]" : options.host, port);
-  }
-
   Desk& desk;
-  std::string address;
+  ServerOptions options;
   std::string researcher_token = random_hex(16);
   RateLimit rate{requests_per_second, requests_at_once};
-  httplib::Server http;
+  std::map<std::pair<std::string, std::string>, Route> routes;  // by method and path
+  HttpServer http;
 };
 
 Server::Server(Desk& desk, const ServerOptions& options)
@@ -311,8 +308,11 @@ Server::Server(Desk& desk, const ServerOptions& options)
 
 Server::~Server() = default;
 
-const std::string& Server::address() const {
-  return implementation_->address;
+std::string Server::address() const {
+  const std::string host = openable_host(implementation_->options.host);
+  const bool is_ipv6 = host.find(':') != std::string::npos;
+  return fmt::format("http://{}:{}", is_ipv6 ? "[" + host + "]" : host,
+                     implementation_->http.port());
 }
 
 const std::string& Server::researcher_token() const {
@@ -320,7 +320,7 @@ const std::string& Server::researcher_token() const {
 }
 
 void Server::run() {
-  implementation_->http.listen_after_bind();
+  implementation_->http.run();
 }
 
 void Server::stop() {

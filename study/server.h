@@ -4,14 +4,19 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "study/desk.h"
+#include "study/http_server.h"
 
 namespace pinchlab::study {
 
 struct ServerOptions {
   std::string host = "127.0.0.1";
   int port = 0;  ///< 0: any that is free
+  /// Names that participants open besides addresses and this computer's own (behind a proxy).
+  std::vector<std::string> names;
+  HttpLimits limits;
 };
 
 /// A server that is bound, so that its address can be told before it runs.
@@ -23,7 +28,8 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  [[nodiscard]] const std::string& address() const;  ///< "http://127.0.0.1:8080"
+  /// "http://127.0.0.1:8080": an address that can be opened, also where all are listened on.
+  [[nodiscard]] std::string address() const;
   /// What the researcher's view asks for; random, new for every server.
   [[nodiscard]] const std::string& researcher_token() const;
 

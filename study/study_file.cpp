@@ -10,6 +10,7 @@
 #include "base/json_object.h"
 #include "base/strict_json.h"
 #include "study/secrets.h"
+#include "study/shown.h"
 
 namespace pinchlab::study {
 namespace {
@@ -47,19 +48,24 @@ std::uint64_t random_seed() {
   return seed;
 }
 
-StudyFile open_study_file(const fs::path& answers, const Config& config,
+StudyFile open_study_file(const fs::path& answers, const Config& config, const json& shown,
                           std::optional<std::uint64_t> seed) {
   const fs::path path = study_path(answers);
   StudyFile study;
   if (!fs::exists(path)) {
     study.seed = seed.value_or(random_seed());
     study.link_secret = random_hex(32);
-    write_study_file(answers, config, study);
+    write_study_file(answers, config, shown, study);
     return study;
   }
   const json file = read_json_file(path, largest_file);
   JsonObject object(file, path.string(), "");
-  object.choice("format", {"pinchlab-running 1"});
+  if (object.choice("format", {"pinchlab-running 1", "pinchlab-running 2"}) ==
+      "pinchlab-running 1") {
+    object.fail("format",
+                "does not say what was asked and shown, as version 1 did not; end the study with "
+                "the program that began it, or use another --answers");
+  }
   study.seed = static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
   study.link_secret = object.text("link_secret", 64);
   for (const json& number : object.array("used_links", most_links)) {
@@ -80,15 +86,20 @@ StudyFile open_study_file(const fs::path& answers, const Config& config,
                     "another --answers",
                     answers.string()));
   }
+  if (const json& before = object.need("shown"); before != shown) {
+    throw std::runtime_error(
+        fmt::format("{}: {} of the study in this folder changed; use what it began with, or "
+                    "another --answers",
+                    answers.string(), difference(before, shown)));
+  }
   return study;
 }
 
-void write_study_file(const fs::path& answers, const Config& config, const StudyFile& study) {
-  const json file = {{"format", "pinchlab-running 1"},
-                     {"seed", study.seed},
-                     {"link_secret", study.link_secret},
-                     {"used_links", study.used_links},
-                     {"plan", fingerprint(config)}};
+void write_study_file(const fs::path& answers, const Config& config, const json& shown,
+                      const StudyFile& study) {
+  const json file = {{"format", "pinchlab-running 2"},   {"seed", study.seed},
+                     {"link_secret", study.link_secret}, {"used_links", study.used_links},
+                     {"plan", fingerprint(config)},      {"shown", shown}};
   write_durably(study_path(answers), file.dump(2) + "\n");
 }
 

@@ -25,11 +25,12 @@ std::filesystem::path running_folder(const std::filesystem::path& answers);
 std::uint64_t random_seed();
 
 /// Reads the file, or makes it with `seed` (random if none). Throws std::runtime_error with the
-/// cure if the study there has another seed or would show something else.
+/// cure if the study there has another seed or plan, or asks or shows something else than `shown`
+/// (what_is_shown()).
 StudyFile open_study_file(const std::filesystem::path& answers, const Config& config,
-                          std::optional<std::uint64_t> seed);
+                          const nlohmann::json& shown, std::optional<std::uint64_t> seed);
 
 void write_study_file(const std::filesystem::path& answers, const Config& config,
-                      const StudyFile& study);
+                      const nlohmann::json& shown, const StudyFile& study);
 
 }  // namespace pinchlab::study

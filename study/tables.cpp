@@ -21,6 +21,15 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
+// A text that a spreadsheet would take for a formula gets an apostrophe before it, which
+// spreadsheets do not show; numbers stay as they are.
+std::string harmless(const std::string& text) {
+  const bool is_number = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+  const bool is_formula =
+      !is_number && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return (is_formula ? "'" : "") + text;
+}
+
 std::string value_of(const json& object, const char* key) {
   if (!object.contains(key)) {
     return "";
@@ -89,7 +98,7 @@ const std::vector<Column> columns = {
 std::string row(const std::vector<std::string>& values) {
   std::string text;
   for (const std::string& value : values) {
-    text += (text.empty() ? "" : ",") + csv_cell(value);
+    text += (text.empty() ? "" : ",") + csv_cell(harmless(value));
   }
   return text + "\n";
 }
@@ -156,9 +165,10 @@ std::string answers_csv(const fs::path& folder) {
     names.emplace_back(column.name);
   }
   std::string csv = row(names);
+  analysis::SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
     const json file = read_json_file(path, largest_file);
-    analysis::parse_answer_file(file, path.string());
+    same_study.check(analysis::parse_answer_file(file, path.string()), path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
       values.reserve(columns.size());

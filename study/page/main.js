@@ -10,12 +10,13 @@ const notice = document.getElementById('notice');
 const { connect } = await import(document.documentElement.dataset.backend);
 
 let texts = null;
-const backend = connect((trouble) => {
-  const text = trouble ? texts?.[trouble instanceof NotKept ? 'not_kept' : 'connection_lost'] ?? '…' : '';
+const tell = (trouble) => {
+  // Before the texts have come, the page itself brings the one that is needed.
+  const text = trouble instanceof NotKept ? texts.not_kept : trouble ? notice.dataset.lost : '';
   if (notice.textContent !== text) notice.textContent = text;
-});
+};
+const backend = connect(tell);
 ({ texts } = await backend.study());
-stage.textContent = texts.loading;
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
@@ -34,28 +35,31 @@ function page(show) {
 
 try {
   const session = await begin();
-  const { encoding, urls } = await preload(stage, texts, session);
+  const clips = await preload(stage, texts, session, (isLost) => tell(isLost ? new Error('lost') : null));
   stage.replaceChildren();
   const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
 
   const leave = async () => {
-    await backend.leave();
+    const { code } = await backend.leave() ?? {};
     jsPsych.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
-    goodbye(stage, texts);
+    if (code) thanks(stage, texts, code);  // saved already, in another window
+    else goodbye(stage, texts);
   };
+
+  const countedFrom = (index) => session.trials.slice(index).filter(({ practice }) => !practice).length;
 
   const trial = (index) => ({
     type: PairTrial,
-    url: urls[index],
     texts,
-    remaining: session.trials.length - index,
+    remaining: countedFrom(index),
     practice: session.trials[index].practice,
     exit: () => exitButton(texts, leave),
+    clip: (onShare) => clips.url(index, onShare),
     before: () => backend.show(index),
-    after: (data) => backend.answer({ index, encoding, ...data }),
+    after: (data) => backend.answer({ index, encoding: clips.encoding, ...data }),
     failed: (error) => failed(stage, texts, error),
-    on_finish: () => URL.revokeObjectURL(urls[index]),
+    on_finish: () => clips.release(index),
   });
 
   let freeText = {};

@@ -103,16 +103,31 @@ export function information(stage, texts, backend) {
   });
 }
 
+// A button that asks once before it does what it says.
+function askingButton(texts, name, ids, onConfirm) {
+  const dialog = make('dialog', { 'aria-labelledby': `${name}-heading` },
+    make('h1', { id: `${name}-heading` }, texts[`${name}_heading`]), make('p', {}, texts[`${name}_body`]),
+    make('div', { class: 'row' },
+      make('button', { type: 'button', id: ids.cancel, onclick: () => dialog.close() }, texts[`${name}_cancel`]),
+      make('button', { type: 'button', id: ids.confirm, class: 'quiet', onclick() { dialog.close(); onConfirm(); } }, texts[`${name}_confirm`])));
+  const button = make('button', { type: 'button', id: ids.button, class: 'quiet', onclick: () => dialog.showModal() },
+    texts[ids.label]);
+  return make('span', { class: name }, button, dialog);
+}
+
 /** After a reload. Resolves to true to go on, false to start anew. */
 export function askResume(stage, texts) {
   return new Promise((resolve) => {
     sheet(stage, texts.resume_heading, make('p', {}, texts.resume_body), make('div', { class: 'row' },
       make('button', { type: 'button', id: 'continue', onclick() { fullScreen(); resolve(true); } }, texts.resume_continue),
-      make('button', { type: 'button', id: 'anew', class: 'quiet', onclick: () => resolve(false) }, texts.resume_new)));
+      askingButton(texts, 'anew', { button: 'anew', confirm: 'anew-confirm', cancel: 'anew-cancel', label: 'resume_new' },
+        () => resolve(false))));
   });
 }
 
-async function download(url, onProgress) {
+// Fetches a clip, and again until it is whole. `onProgress` gets the share that is there, `onTrouble` whether the server
+// is lost.
+async function download(url, onProgress, onTrouble) {
   for (let attempt = 1; ; ++attempt) {
     try {
       const response = await fetch(url, { cache: 'no-store' });
@@ -124,6 +139,7 @@ async function download(url, onProgress) {
       for (const reader = response.body.getReader(); ;) {
         const { done, value } = await reader.read();
         if (done) break;
+        onTrouble(false);
         parts.push(value);
         loaded += value.length;
         onProgress(total > 0 ? loaded / total : 0);
@@ -131,7 +147,8 @@ async function download(url, onProgress) {
       if (total > 0 && loaded !== total) throw new Error('cut short');
       return new Blob(parts, { type: response.headers.get('Content-Type') });
     } catch (error) {
-      if (error instanceof SessionGone || attempt === 20) throw error;
+      if (error instanceof SessionGone) throw error;
+      onTrouble(true);
       await new Promise((again) => setTimeout(again, Math.min(500 * attempt, 5000)));
     }
   }
@@ -144,38 +161,79 @@ function playableEncoding(trials) {
   return video.canPlayType('video/webm; codecs="vp9"') && trials.every(({ webm }) => webm) ? 'webm' : null;
 }
 
-/** Fetches the clips of all trials that are left. Resolves to { encoding, urls }. */
-export async function preload(stage, texts, session) {
-  const left = session.trials.slice(session.next);
-  const encoding = playableEncoding(left);
+/**
+ * The clips of a session's trials. A few are fetched ahead, one after the other; a clip that was seen is given back, so
+ * that the longest study needs the memory of a few clips.
+ */
+export class Clips {
+  static ahead = 3;
+
+  constructor(session, encoding, onTrouble) {
+    this.trials = session.trials;
+    this.encoding = encoding;
+    this.onTrouble = onTrouble;
+    this.urls = new Map();  // of trials, by index: promises
+    this.shares = new Map();  // that have come, 0 to 1
+    this.last = Promise.resolve();  // the download that was begun last
+    this.onProgress = () => {};
+  }
+
+  /** Begins to fetch the clips of trial `index` and those after it. */
+  want(index) {
+    for (let i = index; i < Math.min(index + Clips.ahead, this.trials.length); ++i) {
+      if (this.urls.has(i)) continue;
+      const url = this.last.then(async () => URL.createObjectURL(await download(this.trials[i][this.encoding], (share) => {
+        this.shares.set(i, share);
+        this.onProgress();
+      }, this.onTrouble)));
+      this.last = url.catch(() => {});  // told by whoever needs it
+      this.urls.set(i, url);
+    }
+  }
+
+  /** The address of a clip, once it is there; `onShare` hears how much is, until then. */
+  async url(index, onShare) {
+    this.want(index);
+    this.onProgress = () => onShare(this.shares.get(index) ?? 0);
+    this.onProgress();
+    try {
+      return await this.urls.get(index);
+    } finally {
+      this.onProgress = () => {};
+    }
+  }
+
+  async release(index) {
+    const url = this.urls.get(index);
+    this.urls.delete(index);
+    if (url) URL.revokeObjectURL(await url);
+  }
+}
+
+/** Fetches the clips of the first trials that are left. Resolves to Clips. `onTrouble` hears whether the server is lost. */
+export async function preload(stage, texts, session, onTrouble) {
+  const encoding = playableEncoding(session.trials.slice(session.next));
   if (!encoding) {
     sheet(stage, texts.preload_heading, make('p', { class: 'wrong' }, texts.no_video));
     return new Promise(() => {});
   }
+  const clips = new Clips(session, encoding, onTrouble);
+  const first = [...session.trials.keys()].slice(session.next, session.next + Clips.ahead);
   const bar = make('progress', { max: 1, value: 0, 'aria-label': texts.preload_heading });
   const words = make('p', { role: 'status' });
+  const show = (share) => {
+    bar.value = share;
+    words.textContent = texts.preload_progress.replace('{percent}', Math.floor(100 * share));
+  };
+  show(0);
   sheet(stage, texts.preload_heading, bar, words);
-  const urls = session.trials.map(() => null);
-  for (const [i, trial] of left.entries()) {
-    const blob = await download(trial[encoding], (share) => {
-      bar.value = (i + share) / left.length;
-      words.textContent = texts.preload_progress.replace('{percent}', Math.floor(100 * bar.value));
-    });
-    urls[session.next + i] = URL.createObjectURL(blob);
-  }
-  return { encoding, urls };
+  for (const [i, index] of first.entries()) await clips.url(index, (share) => show((i + share) / first.length));
+  return clips;
 }
 
 /** The exit button, which asks once. `onLeave` ends the study. */
-export function exitButton(texts, onLeave) {
-  const dialog = make('dialog', { 'aria-labelledby': 'exit-heading' },
-    make('h1', { id: 'exit-heading' }, texts.exit_heading), make('p', {}, texts.exit_body),
-    make('div', { class: 'row' },
-      make('button', { type: 'button', id: 'stay', onclick: () => dialog.close() }, texts.exit_cancel),
-      make('button', { type: 'button', id: 'leave', class: 'quiet', onclick() { dialog.close(); onLeave(); } }, texts.exit_confirm)));
-  const button = make('button', { type: 'button', id: 'exit', class: 'quiet', onclick: () => dialog.showModal() }, texts.exit);
-  return make('span', { class: 'exit' }, button, dialog);
-}
+export const exitButton = (texts, onLeave) =>
+  askingButton(texts, 'exit', { button: 'exit', confirm: 'leave', cancel: 'stay', label: 'exit' }, onLeave);
 
 /** The two optional texts. */
 export function questions(stage, texts, onLeave) {

@@ -6,14 +6,16 @@ import { make } from './pages.js';
 
 const { ParameterType } = jsPsychModule;
 
+let lastSize = null;  // of a clip as it was shown, so that what stands under the next does not jump
+
 export class PairTrial {
   static info = {
     name: 'pair-trial',
     version: '1.0.0',
     parameters: {
-      url: { type: ParameterType.STRING },  // of the clip
+      clip: { type: ParameterType.FUNCTION },  // gets a listener of the share that has come; resolves to the address
       texts: { type: ParameterType.COMPLEX },
-      remaining: { type: ParameterType.INT },  // trials, with this one
+      remaining: { type: ParameterType.INT },  // trials that count, with this one
       practice: { type: ParameterType.BOOL, default: false },
       exit: { type: ParameterType.FUNCTION },  // returns the exit button
       before: { type: ParameterType.FUNCTION },  // awaited before the clip plays
@@ -37,10 +39,12 @@ export class PairTrial {
 
   async run(display, trial) {
     const view = build(display, trial);
+    const url = await trial.clip((share) => view.tell(trial.texts.preload_progress.replace('{percent}', Math.floor(100 * share)), share));
+    view.tell(trial.texts.watch_first, 0);
     await trial.before();
-    const watch = new Watch(view.video);
+    const watch = new Watch(view.video, (share) => view.tell(trial.texts.watch_first, share));
     const unfit = keepFitting(view);
-    view.video.src = trial.url;
+    view.video.src = url;
     play(view, trial.texts, watch);
     await watch.firstLoop;
     const { choice, input, seconds } = await choose(view, trial.texts);
@@ -58,34 +62,49 @@ function build(display, { texts, practice, remaining, exit }) {
     loop: true, muted: true, playsinline: true, preload: 'auto', disablepictureinpicture: true, disableremoteplayback: true,
     'aria-label': texts.clips_label,
   });
+  if (lastSize) Object.assign(video.style, lastSize);
   video.muted = true;  // the attribute alone does not count for elements that a script makes
-  const choices = make('div', { class: 'choices' }, make('p', { class: 'wait' }, texts.watch_first));
+  const words = make('span');
+  const bar = make('progress', { max: 1, value: 0, 'aria-label': texts.watch_first });
+  const choices = make('div', { class: 'choices' }, make('p', { class: 'wait' }, words, bar));
+  if (!lastSize) choices.style.visibility = 'hidden';
+  const tell = (text, share) => {
+    if (words.textContent !== text) words.textContent = text;
+    bar.value = share;
+  };
   const spoken = make('p', { class: 'spoken', role: 'status' });
-  const left = make('p', { id: 'remaining' }, remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining));
-  if (practice) left.append(make('span', { class: 'hint' }, texts.practice));
+  // One line in every trial, so that all clips have the same size.
+  const left = make('p', { id: 'remaining' }, practice ? texts.practice
+    : remaining === 1 ? texts.remaining_last : texts.remaining.replace('{count}', remaining));
   // The style puts how many are left, the question and the exit above the clips; the order here is that of the Tab key.
   const top = [heading, left, exit()];
   display.replaceChildren(make('section', { class: 'trial' }, heading, make('div', { class: 'clips' }, video), choices, spoken, ...top.slice(1)));
   heading.focus();
-  return { video, choices, spoken, top };
+  return { video, choices, spoken, top, tell };
 }
 
 // One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
 function keepFitting({ video, choices, top }) {
+  const notice = document.getElementById('notice');
   const fit = () => {
     if (!video.videoWidth) return;  // what stands under the clips would jump
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
     const heightOf = (element) => element.getBoundingClientRect().height;
-    const others = Math.max(...top.map(heightOf)) + heightOf(choices);
+    const others = Math.max(...top.map(heightOf)) + heightOf(choices) + heightOf(notice);
     const scale = Math.min(1, innerWidth / width, (innerHeight - others - 8) / height);
-    video.style.width = `${width * scale}px`;
-    video.style.height = `${height * scale}px`;
-    choices.style.maxWidth = `${Math.max(width * scale, 560)}px`;
+    lastSize = { width: `${width * scale}px`, height: `${height * scale}px` };
+    Object.assign(video.style, lastSize);
     choices.style.visibility = 'visible';
+    choices.style.width = `${width * scale}px`;  // so that each button is in the middle under its clip
   };
   video.addEventListener('loadedmetadata', fit);
   addEventListener('resize', fit);
-  return () => removeEventListener('resize', fit);
+  const onNotice = new ResizeObserver(fit);
+  onNotice.observe(notice);
+  return () => {
+    removeEventListener('resize', fit);
+    onNotice.disconnect();
+  };
 }
 
 // Autoplay without sound is allowed nearly everywhere; where it is not, a button starts the clip.
@@ -98,17 +117,29 @@ function play({ video, choices }, texts, watch) {
     const button = make('button', { type: 'button', id: 'play', onclick() { button.replaceWith(wait); begin(); } }, texts.play);
     wait.replaceWith(button);
   });
-  // Media keys and the like must not stop it.
+  const isWanted = () => !watch.isStopped && !video.ended && video.currentSrc && !document.hidden;
+  // Media keys and the like must not stop it; a hidden page does, since nobody sees it play.
   video.addEventListener('pause', () => {
-    if (!watch.isStopped && !video.ended && video.currentSrc) begin();
+    if (isWanted()) begin();
   });
+  watch.onHidden = () => {
+    if (document.hidden) video.pause();
+    else if (isWanted()) begin();
+  };
   begin();
 }
 
-// What happens while a clip plays. `loop` fires no event: the end of a loop shows in time going back.
+// What happens while a clip plays. `loop` fires no event: the end of a loop shows in time going back. A loop counts if
+// it was really shown: time between two frames that came too far apart (the page was hidden, the computer busy) is none.
 class Watch {
-  constructor(video) {
+  static longestStep = 0.5;  // s of the clip from one frame that was shown to the next; timeupdate comes four times a second
+  static wholeLoop = 0.9;  // share of a loop that must have been shown
+
+  constructor(video, onProgress) {
     this.video = video;
+    this.onProgress = onProgress;  // of the first loop, 0 to 1
+    this.onHidden = () => {};
+    this.shown = 0;  // s of this loop
     this.loops = 0;
     this.focusLost = 0;
     this.errors = [];
@@ -123,6 +154,7 @@ class Watch {
     this.onAway = () => {
       const isAway = document.hidden || !document.hasFocus();
       if (document.hidden) this.isInterrupted = true;  // a hidden page is given no frames
+      this.onHidden();
       if (isAway && !this.isAway) ++this.focusLost;
       this.isAway = isAway;
     };
@@ -144,11 +176,19 @@ class Watch {
   // A frame of the clip's second `time` is on the screen at `at` ms, or null where the browser does not tell.
   saw(time, at) {
     if (this.isStopped) return;
-    if (this.last && time < this.last.time) {
-      ++this.loops;
-      this.loopEnded();
+    const { duration } = this.video;
+    const isLoopEnd = this.last && time < this.last.time;
+    const step = this.last ? time - this.last.time + (isLoopEnd ? duration : 0) : 0;  // s of the clip
+    if (step <= Watch.longestStep) this.shown += step;
+    if (this.loops === 0) this.onProgress(Math.min(1, this.shown / duration));
+    if (isLoopEnd) {
+      if (this.shown >= Watch.wholeLoop * duration) {
+        ++this.loops;
+        this.loopEnded();
+      }
+      this.shown = 0;
       // How much longer it took than the clip's own time from the one frame to the other.
-      const gap = (at - this.last.at) / 1000 - (this.video.duration - this.last.time + time);
+      const gap = (at - this.last.at) / 1000 - step;
       if (at !== null && !this.isInterrupted) this.loopGaps.push(gap);
       this.isInterrupted = false;
     }

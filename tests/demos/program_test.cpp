@@ -208,6 +208,53 @@ TEST(Simulate, WritesOneRowASegmentAndFrame) {
   }
 }
 
+TEST(Simulate, GivesUpAfterTheTimeLimit) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(
+      folder, {"simulate", "01-small.json", "--out", "x.csv", "--time-limit", "0.000001"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(
+      run.err,
+      "01-small.json: method pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s of "
+      "--time-limit; fewer steps a frame or fewer bodies are faster\n");
+  EXPECT_FALSE(fs::exists(folder / "x.csv"));
+  EXPECT_EQ(
+      run_program(folder, {"simulate", "01-small.json", "--out", "x.csv", "--time-limit", "3600"})
+          .exit_code,
+      0);
+}
+
+// sim/README.md, "Limits": a body of some hundred sizes a step is not to be trusted.
+TEST(Program, TellsWhatIsNotKept) {
+  const fs::path folder = scratch_folder();
+  nlohmann::json scene = small_scene();
+  scene["bodies"].push_back({{"name", "bullet"},
+                             {"kind", "free"},
+                             {"radius_m", 0.2},
+                             {"mass_kg", 1},
+                             {"position_m", {-200, 3}},
+                             {"velocity_m_s", {10000, 0}}});
+  scene["steps_per_frame"] = 1;
+  std::ofstream(folder / "01-fast.json") << scene;
+  const std::string said = "method pinch: cable 'rope' was stretched by ";
+  const RunResult simulated = run_program(folder, {"simulate", "01-fast.json", "--out", "x.csv"});
+  EXPECT_EQ(simulated.exit_code, 0);
+  EXPECT_NE(simulated.err.find("01-fast.json: note: " + said), std::string::npos) << simulated.err;
+  const RunResult still = run_program(
+      folder, {"still", "01-fast.json", "--time", "1", "--out", "x.png", "--size", "64x64"});
+  EXPECT_EQ(still.exit_code, 0);
+  EXPECT_NE(still.err.find("01-fast.json: note: " + said), std::string::npos) << still.err;
+  for (const char* made : {"1 made, 0 up to date", "0 made, 1 up to date"}) {
+    const RunResult rendered =
+        run_program(folder, {"render", "01-fast.json", "--method", "pinch", "--size", "64x64"});
+    EXPECT_EQ(rendered.exit_code, 0);
+    EXPECT_NE(rendered.err.find("clips/01-fast.pinch.mp4: note: " + said), std::string::npos)
+        << rendered.err;
+    EXPECT_NE(rendered.err.find(made), std::string::npos) << rendered.err;
+  }
+}
+
 TEST(Simulate, UntilAndTiming) {
   const fs::path folder = folder_with_scene();
   const auto rows = [&](const std::vector<std::string>& more) {

@@ -175,6 +175,7 @@ TEST(Video, H264IsMadeForPlayersAndStimuli) {
   };
   EXPECT_LT(find("moov"), find("mdat")) << "faststart";
   EXPECT_LT(find("colr"), find("mdat")) << "tagged in the container too";
+  EXPECT_EQ(find("btrt"), std::ssize(bytes)) << "no bit rates, which would tell a pair apart";
 
   // A key frame a second, and luma close in every frame.
   VideoReader reader(folder.file("clip.mp4"));

@@ -8,8 +8,10 @@
 
 #include <regex>
 #include <sstream>
+#include <thread>
 
 #include "analysis/answers_table.h"
+#include "base/input_error.h"
 #include "study/answers.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
@@ -204,10 +206,150 @@ TEST(Desk, LimitsAndLinks) {
   EXPECT_EQ(refused([&] { desk.start("guess", ""); }), 403);
   const std::string token = desk.start(links[1], "");
   EXPECT_EQ(desk.overview().running.front().number, 1U);
+  desk.show(token, 0);
   EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403);
   desk.leave(token);
   EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403) << "used is used";
   desk.start(links[0], "");
+}
+
+TEST(Desk, AStartThatFailedCostsNobodyTheLink) {
+  const fs::path folder = scratch_folder();
+  const auto options = [&] {
+    DeskOptions result = desk_options(folder);
+    result.config.participant_limit = 2;
+    result.config.one_time_links = true;
+    return result;
+  };
+  std::string link, second;
+  {
+    Desk desk(options());
+    link = desk.links()[0];
+    fs::rename(folder / "answers", folder / "away");
+    EXPECT_EQ(refused([&] { desk.start(link, ""); }), 503);
+    fs::rename(folder / "away", folder / "answers");
+    const std::string first = desk.start(link, "");  // the reply is lost
+    second = desk.start(link, "");
+    EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+    EXPECT_EQ(desk.overview().running.size(), 1U);
+  }
+  Desk desk(options());  // killed between the start and its reply
+  const std::string third = desk.start(link, "");
+  EXPECT_EQ(refused([&] { desk.progress(second); }), 401);
+  desk.show(third, 0);
+  EXPECT_EQ(refused([&] { desk.start(link, ""); }), 403) << "a clip was seen";
+  desk.leave(third);
+  EXPECT_EQ(refused([&] { desk.start(link, ""); }), 403) << "used is used";
+}
+
+std::vector<std::string> partial_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() == ".partial") {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  return names;
+}
+
+TEST(Desk, WhatAKilledServerLeftHalfWrittenIsNotKept) {
+  const fs::path folder = scratch_folder();
+  std::string token;
+  const auto leave_partials = [&] {
+    const std::string name = token.substr(0, 16) + ".json.partial";
+    write_text(folder / "answers" / name, R"({"free_text":{"thoughts":"what I wrote)");
+    write_text(folder / "answers" / ".running" / name, "{");
+  };
+  {
+    Desk desk(desk_options(folder));
+    token = desk.start("", "");
+    leave_partials();
+  }
+  write_text(folder / "answers" / "notes.partial", "the researcher's own");
+  Desk desk(desk_options(folder));
+  EXPECT_EQ(partial_files(folder), std::vector<std::string>{"notes.partial"}) << "at start";
+  leave_partials();
+  desk.leave(token);
+  EXPECT_EQ(partial_files(folder), std::vector<std::string>{"notes.partial"}) << "on leaving";
+}
+
+// Whoever is told "left" has left, and whoever has saved is told so.
+TEST(Desk, SavingAndLeavingAtOnceTellsTheTruth) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  int both = 0;
+  for (int i = 0; i < 60; ++i) {
+    const std::string token = desk.start("", "");
+    answer_all(desk, token);
+    int save = 0, leave = 0;
+    {
+      std::jthread saver([&] { save = refused([&] { desk.save(token, {}); }); });
+      std::jthread leaver([&] { leave = refused([&] { desk.leave(token); }); });
+    }
+    const bool is_kept = fs::exists(answer_path(folder / "answers", token.substr(0, 16)));
+    EXPECT_EQ(save, is_kept ? 0 : 401);
+    EXPECT_EQ(leave, is_kept ? 409 : 0);
+    both += save == 0 && leave == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(both, 0);
+  const std::string token = desk.start("", "");
+  answer_all(desk, token);
+  desk.save(token, {});
+  EXPECT_EQ(refused([&] { desk.leave(token); }), 409) << "in another window, later";
+}
+
+TEST(Desk, PlacesAreReleased) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  options.config.participant_limit = 1;
+  options.longest_idle = std::chrono::minutes(30);
+  Desk desk(std::move(options));
+  const auto answer_one = [&](const std::string& token) {
+    desk.show(token, 0);
+    desk.answer(token, parse_answer(answer_body(0)));
+  };
+  const std::string first = desk.start("", "");
+  answer_one(first);
+  *now = "2026-11-20T12:29:59.000Z";
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  *now = "2026-11-20T12:30:00.000Z";
+  const std::string second = desk.start("", "");
+  EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+  answer_one(second);
+  EXPECT_EQ(refused([&] { desk.release("0123456789abcdef"); }), 404);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  desk.release(second.substr(0, 16));
+  EXPECT_EQ(refused([&] { desk.progress(second); }), 401);
+  desk.start("", "");
+}
+
+TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  options.config.participant_limit = 16;
+  options.most_unanswered = 20;
+  Desk desk(std::move(options));
+  const std::string answered = desk.start("", "", "crowd");
+  desk.show(answered, 0);
+  desk.answer(answered, parse_answer(answer_body(0)));
+  const std::string honest = desk.start("", "", "home");
+  int started = 0;
+  for (int i = 0; i < 1000; ++i) {
+    started += refused([&] { desk.start("", "", "crowd"); }) == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(started, 14) << "no address takes its own places anew";
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(refused([&] { desk.start("", "", "address " + std::to_string(i)); }), 0);
+  }
+  EXPECT_EQ(refused([&] { desk.start("", "", "crowd"); }), 409);
+  EXPECT_EQ(desk.progress(answered).next, 1U) << "who has answered stays";
+  EXPECT_EQ(desk.progress(honest).next, 0U);
+  *now = "2026-11-20T12:05:00.000Z";
+  EXPECT_EQ(refused([&] { desk.start("", "", "crowd"); }), 0) << "those not seen for five minutes";
 }
 
 TEST(Desk, TokensOfOthersOpenNothing) {
@@ -235,6 +377,52 @@ TEST(Desk, AnotherStudyInTheFolderIsRefused) {
   Desk desk(std::move(same));
   EXPECT_EQ(desk.seed(), 7U);
   EXPECT_THROW(Desk{desk_options(folder)}, std::runtime_error) << "two servers at a time";
+}
+
+// Answers to another question, or to other clips, do not come into the same folder.
+TEST(Desk, WhatIsAskedAndShownStaysTheSame) {
+  const fs::path folder = scratch_folder();
+  {
+    Desk desk(desk_options(folder));
+    const std::string token = desk.start("", "");
+    answer_all(desk, token);
+    desk.save(token, {});
+  }
+  const auto told = [&](const char* key, const char* text) {
+    DeskOptions options = desk_options(folder);
+    if (std::string(key) == "language") {
+      options.config.language = text;
+    } else {
+      options.config.texts[key] = text;
+    }
+    try {
+      Desk desk(std::move(options));
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(told("question", "Which looks worst?").find("the question"), std::string::npos);
+  EXPECT_NE(told("consent", "Yes.").find("the consent text"), std::string::npos);
+  EXPECT_NE(told("left_label", "This").find("a text of the page"), std::string::npos);
+  EXPECT_NE(told("language", "sv").find("the language"), std::string::npos);
+  EXPECT_EQ(told("language", "en"), "");
+  // Also where only the answers are left of the study.
+  fs::remove_all(folder / "answers" / ".running");
+  EXPECT_NE(told("question", "Which looks worst?").find("another --answers"), std::string::npos);
+  fs::remove_all(folder / "answers" / ".running");
+  fs::remove_all(folder / "clips");
+  write_clips(folder / "clips", demonstrations, 100001);
+  EXPECT_NE(told("language", "en").find("another --answers"), std::string::npos);
+  // And where two folders are analysed or exported together.
+  const fs::path file = answer_files(folder / "answers").front();
+  json other = json::parse(read_whole(file));
+  EXPECT_EQ(other["study"]["question"], small_config().texts["question"]);
+  other["participant"] = "somebody-else";
+  other["study"]["question"] = "Which looks worst?";
+  write_text(folder / "answers" / "somebody-else.json", other.dump());
+  EXPECT_THROW(analysis::read_answers({folder / "answers"}, {}), InputError);
+  EXPECT_THROW(answers_csv(folder / "answers"), InputError);
 }
 
 TEST(Desk, UnwritableFolderIsToldAndNothingIsLost) {
@@ -303,6 +491,26 @@ TEST(Export, PsychDs) {
   EXPECT_TRUE(fs::exists(folder / "dataset" / "README.md"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
   EXPECT_THROW(write_psych_ds(folder / "answers", folder / "dataset"), std::runtime_error);
+}
+
+TEST(Export, FormulasAreHarmless) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const std::string token = desk.start("", "");
+  answer_all(desk, token);
+  desk.save(token, {});
+  const fs::path path = answer_files(folder / "answers").front();
+  json file = json::parse(read_whole(path));
+  file["trials"][0]["clip"] = "=HYPERLINK(\"http://evil.example\")";
+  file["trials"][1]["clip"] = "@SUM(A1)";
+  file["trials"][2]["clip"] = "-1+cmd|' /C calc'!A0";
+  file["trials"][2]["loop_gap_median_s"] = -0.001;
+  write_text(path, file.dump());
+  const std::string csv = answers_csv(folder / "answers");
+  EXPECT_NE(csv.find(",\"'=HYPERLINK(\"\"http://evil.example\"\")\","), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",'@SUM(A1),"), std::string::npos);
+  EXPECT_NE(csv.find(",'-1+cmd|"), std::string::npos);
+  EXPECT_NE(csv.find(",-0.001,"), std::string::npos) << "a number is none";
 }
 
 TEST(Clips, AllAreServedInOneSize) {

@@ -62,7 +62,7 @@ TEST(Plan, OrdersAndSidesAreUniform) {
     ++sides[side];
   }
   EXPECT_GT(p_uniform(orders, 24), 1e-4);
-  EXPECT_GT(p_uniform(sides, 16), 1e-4);
+  EXPECT_GT(p_uniform(sides, 6), 1e-4) << "two of four, in every way";
   EXPECT_GT(p_uniform(positions, 16), 1e-4);
 }
 
@@ -111,6 +111,51 @@ TEST(Plan, ForEvenNumbersEachFollowsEveryOtherOnceABlock) {
       }
     }
     EXPECT_EQ(pairs.size(), 56U);
+  }
+}
+
+TEST(Plan, ForOddNumbersEachFollowsEveryOtherTwiceInABlockAndItsMirror) {
+  for (const std::size_t n : {3U, 5U, 7U}) {
+    PlanOptions options = eight();
+    options.demonstrations.resize(n);
+    for (std::uint64_t block = 0; block < 10; block += 2) {
+      std::map<std::pair<std::string, std::string>, int> pairs;
+      for (std::uint64_t i = 0; i < 2 * n; ++i) {
+        const auto order = order_of(make_plan(1, block * n + i, options));
+        for (std::size_t j = 1; j < order.size(); ++j) {
+          ++pairs[{order[j - 1], order[j]}];
+        }
+      }
+      EXPECT_EQ(pairs.size(), n * (n - 1));
+      for (const auto& [pair, count] : pairs) {
+        EXPECT_EQ(count, 2) << pair.first << " before " << pair.second;
+      }
+    }
+  }
+}
+
+// Nobody can learn to press one side.
+TEST(Plan, SidesAreBalancedWithinEveryParticipant) {
+  for (const std::size_t n : {1U, 2U, 3U, 5U, 8U}) {
+    for (const int repetitions : {1, 2, 5}) {
+      for (const bool both_orders : {false, true}) {
+        PlanOptions options = eight();
+        options.demonstrations.resize(n);
+        options.repetitions = repetitions;
+        options.both_orders = both_orders;
+        for (std::uint64_t number = 0; number < 100; ++number) {
+          const auto plan = make_plan(number / 10, number, options);
+          int right = 0, run = 0;
+          for (std::size_t i = 0; i < plan.size(); ++i) {
+            right += plan[i].pinch == Side::right ? 1 : 0;
+            run = i > 0 && plan[i].pinch == plan[i - 1].pinch ? run + 1 : 1;
+            ASSERT_LE(run, 3) << n << " demonstrations, participant " << number;
+          }
+          const int trials = static_cast<int>(plan.size());
+          ASSERT_LE(std::abs(2 * right - trials), trials % 2) << n << ", participant " << number;
+        }
+      }
+    }
   }
 }
 

@@ -5,18 +5,21 @@
 #include "base/sha256.h"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
-#include <httplib.h>
-#include <sys/wait.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <barrier>
 #include <csignal>
 #include <random>
 #include <thread>
 
 #include "analysis/answer_file.h"
 #include "study/answers.h"
+#include "study/connections.h"
 #include "study/page_assets.h"
+#include "tests/study/http_client.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -27,12 +30,10 @@ using nlohmann::json;
 
 class RunningServer {
  public:
-  explicit RunningServer(const fs::path& folder)
-      : desk(desk_options(folder)), server(desk, {}), thread_([this] { server.run(); }) {
-    httplib::Client client(server.address());
-    while (!client.Get("/api/study")) {
-      std::this_thread::yield();
-    }
+  explicit RunningServer(const fs::path& folder, const ServerOptions& options = {})
+      : desk(desk_options(folder)), server(desk, options), thread_([this] { server.run(); }) {
+    HttpClient client(server.address());
+    EXPECT_TRUE(client.get("/api/study"));
   }
   ~RunningServer() {
     server.stop();
@@ -46,27 +47,9 @@ class RunningServer {
   std::thread thread_;
 };
 
-httplib::Headers bearer(const std::string& token) {
-  return {{"Authorization", "Bearer " + token}};
-}
-
-// One request; again where the server says that it is busy or the connection was not taken.
-httplib::Result post(httplib::Client& client, const std::string& path, const json& body,
-                     const std::string& token = "") {
-  for (int attempt = 0; attempt < 50; ++attempt) {
-    auto result = client.Post(path, token.empty() ? httplib::Headers() : bearer(token), body.dump(),
-                              "application/json");
-    if (result && result->status != 429) {
-      return result;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  return client.Post(path, bearer(token), body.dump(), "application/json");
-}
-
 // A whole session up to saving. Returns the token.
-std::string take_part(httplib::Client& client, bool fetches_media) {
-  const auto started = post(client, "/api/start", {{"consent", true}});
+std::string take_part(HttpClient& client, bool fetches_media) {
+  const auto started = client.post("/api/start", {{"consent", true}});
   if (!started || started->status != 200) {
     ADD_FAILURE() << "start";
     return "";
@@ -75,11 +58,11 @@ std::string take_part(httplib::Client& client, bool fetches_media) {
   const std::string token = session["token"];
   for (std::size_t i = 0; i < session["trials"].size(); ++i) {
     if (fetches_media) {
-      const auto media = client.Get(session["trials"][i]["mp4"].get<std::string>());
+      const auto media = client.get(session["trials"][i]["mp4"].get<std::string>());
       EXPECT_TRUE(media && media->status == 200 && media->body.size() > 100000);
     }
-    EXPECT_EQ(post(client, "/api/show", {{"index", i}}, token)->status, 200);
-    EXPECT_EQ(post(client, "/api/answer", answer_body(i), token)->status, 200);
+    EXPECT_EQ(client.post("/api/show", {{"index", i}}, token)->status, 200);
+    EXPECT_EQ(client.post("/api/answer", answer_body(i), token)->status, 200);
   }
   return token;
 }
@@ -92,12 +75,9 @@ TEST(Server, AHundredParticipantsAtOnce) {
   people.reserve(100);
   for (int i = 0; i < 100; ++i) {
     people.emplace_back([&] {
-      httplib::Client client(running.server.address());
-      client.set_keep_alive(true);
-      client.set_read_timeout(60);
-      client.set_connection_timeout(60);
+      HttpClient client(running.server.address());
       const std::string token = take_part(client, true);
-      const auto result = post(client, "/api/save", {{"free_text", json::object()}}, token);
+      const auto result = client.post("/api/save", {{"free_text", json::object()}}, token);
       saved += result && result->status == 200 ? 1 : 0;
     });
   }
@@ -119,46 +99,71 @@ TEST(Server, AHundredParticipantsAtOnce) {
 
 TEST(Server, PartsOfClips) {
   RunningServer running(scratch_folder());
-  httplib::Client client(running.server.address());
-  const json session = json::parse(post(client, "/api/start", {{"consent", true}})->body);
+  HttpClient client(running.server.address());
+  const json session = json::parse(client.post("/api/start", {{"consent", true}})->body);
   const std::string path = session["trials"][0]["mp4"];
-  const std::string whole = client.Get(path)->body;
-  const auto part = [&](const std::string& range) {
-    return client.Get(path, httplib::Headers{{"Range", range}});
-  };
+  const std::string whole = client.get(path)->body;
+  const auto part = [&](const std::string& range) { return client.get(path, {{"Range", range}}); };
   EXPECT_EQ(part("bytes=0-9")->body, whole.substr(0, 10));
   EXPECT_EQ(part("bytes=0-9")->status, 206);
   EXPECT_EQ(part("bytes=5-")->body, whole.substr(5));
   EXPECT_EQ(part("bytes=-7")->body, whole.substr(whole.size() - 7));
   EXPECT_EQ(part("bytes=100-99999999999")->body, whole.substr(100));
-  EXPECT_EQ(part("bytes=100-99999999999")->get_header_value("Content-Range"),
+  EXPECT_EQ(part("bytes=100-99999999999")->header("content-range"),
             "bytes 100-" + std::to_string(whole.size() - 1) + "/" + std::to_string(whole.size()));
   for (const char* bad : {"bytes=99999999-", "bytes=5-2", "bytes=0-1,3-4", "bytes=-0", "bytes=x"}) {
     EXPECT_EQ(part(bad)->status, 416) << bad;
   }
 }
 
-// Sends bytes as they are and returns the status of the answer, 0 if there is none.
-int raw_status(const std::string& address, const std::string& bytes) {
-  const int port = std::stoi(address.substr(address.rfind(':') + 1));
-  const int connection = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in to = {};
-  to.sin_family = AF_INET;
-  to.sin_port = htons(static_cast<std::uint16_t>(port));
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  std::string reply;
-  if (::connect(connection, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
-    ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    const timeval patience = {10, 0};
-    ::setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    char buffer[4096];
-    ssize_t got = 0;
-    while (reply.size() <= 12 && (got = ::recv(connection, buffer, sizeof buffer, 0)) > 0) {
-      reply.append(buffer, static_cast<std::size_t>(got));
-    }
+// Sends bytes as they are.
+class RawConnection {
+ public:
+  explicit RawConnection(const std::string& address)
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in to = {};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(port_of(address));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
   }
-  ::close(connection);
-  return reply.size() > 12 ? std::atoi(reply.c_str() + 9) : 0;
+  ~RawConnection() { ::close(socket_); }
+  RawConnection(const RawConnection&) = delete;
+  RawConnection& operator=(const RawConnection&) = delete;
+
+  void send(const std::string& bytes) const {
+    ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  }
+  // The status of the answer, 0 if there is none.
+  [[nodiscard]] int status() const {
+    const timeval patience = {60, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    std::array<char, 4096> buffer{};
+    std::string reply;
+    ssize_t got = 0;
+    while (reply.size() <= 12 && (got = ::recv(socket_, buffer.data(), buffer.size(), 0)) > 0) {
+      reply.append(buffer.data(), static_cast<std::size_t>(got));
+    }
+    return reply.size() > 12 ? std::atoi(reply.c_str() + 9) : 0;
+  }
+  // The server has closed it. What it said before is read and forgotten.
+  static bool has_ended(const std::unique_ptr<RawConnection>& connection) {
+    std::array<char, 4096> buffer{};
+    ssize_t got = 0;
+    while ((got = ::recv(connection->socket_, buffer.data(), buffer.size(), MSG_DONTWAIT)) > 0) {
+    }
+    return got == 0 || errno != EAGAIN;
+  }
+
+ private:
+  int socket_;
+};
+
+// The status of the answer to `bytes`, 0 if there is none.
+int raw_status(const std::string& address, const std::string& bytes) {
+  const RawConnection connection(address);
+  connection.send(bytes);
+  return connection.status();
 }
 
 std::string state_of(const fs::path& folder) {
@@ -176,7 +181,7 @@ std::vector<std::string> malformed_requests(const std::string& token) {
   const auto add = [&](const std::string& line, const std::string& headers = "",
                        const std::string& body = "") {
     requests.push_back(
-        line + " HTTP/1.1\r\nHost: x\r\nConnection: close\r\n" + headers +
+        line + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n" + headers +
         (body.empty() ? "" : "Content-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" +
         body);
   };
@@ -231,17 +236,33 @@ std::vector<std::string> malformed_requests(const std::string& token) {
   add("POST /api/start", type, "{\"consent\":true,\"link\":\"" + std::string(300000, 'x') + "\"}");
   add("GET /" + std::string(9000, 'a'));
   add("GET /", "X: " + std::string(9000, 'a') + "\r\n");
+  const std::string start = "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\n" + type;
+  const std::string consent = "{\"consent\":true}";
+  // Bodies whose end two readers could take to be in two places.
+  requests.push_back(start + "Transfer-Encoding: chunked\r\n\r\n10\r\n" + consent +
+                     "\r\n0\r\n\r\n");
+  requests.push_back(start + "Transfer-Encoding: gzip\r\nContent-Length: 16\r\n\r\n" + consent);
+  requests.push_back(start + "Content-Length: 16\r\nContent-Length: 16\r\n\r\n" + consent);
+  requests.push_back(start + "Content-Length: 16\r\nContent-Length: 2\r\n\r\n" + consent);
+  requests.push_back(start + "Content-Length: 16, 16\r\n\r\n" + consent);
+  requests.push_back(start + "Content-Length: +16\r\n\r\n" + consent);
+  requests.push_back(start + "Content-Length: 16\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
+  requests.push_back(start + "Content-Length: 16\r\nHost: 127.0.0.1\r\n\r\n" + consent);
+  requests.emplace_back("GET / HTTP/1.1\r\n\r\n");
+  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example", "",
+                           "127.0.0.1:x", "[::1", "[evil]"}) {
+    requests.push_back("GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n");
+  }
   requests.emplace_back("NONSENSE\r\n\r\n");
-  requests.emplace_back("GET / HTTP/9.9\r\n\r\n");
   return requests;
 }
 
 TEST(Server, MalformedRequestsChangeNothing) {
   const fs::path folder = scratch_folder();
   RunningServer running(folder);
-  httplib::Client client(running.server.address());
+  HttpClient client(running.server.address());
   const std::string token =
-      json::parse(post(client, "/api/start", {{"consent", true}})->body)["token"];
+      json::parse(client.post("/api/start", {{"consent", true}})->body)["token"];
   const std::string before = state_of(folder);
   const auto requests = malformed_requests(token);
   ASSERT_GE(requests.size(), 50U);
@@ -251,53 +272,141 @@ TEST(Server, MalformedRequestsChangeNothing) {
     EXPECT_LT(status, 500) << request.substr(0, 300);
     ASSERT_EQ(state_of(folder), before) << request.substr(0, 300);
   }
-  EXPECT_EQ(client.Get("/api/session", bearer(token))->status, 200)
+  EXPECT_EQ(client.get("/api/session", bearer(token))->status, 200)
       << "and the server still serves";
+}
+
+// The answer to a header alone: the server must not wait for a body that it will not take.
+TEST(Server, WhatIsTooLongIsRefusedBeforeItIsRead) {
+  RunningServer running(scratch_folder());
+  const std::string head = "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+  const std::string& address = running.server.address();
+  EXPECT_EQ(raw_status(address, head + "Content-Length: 400000000\r\n\r\n"), 413);
+  EXPECT_EQ(raw_status(address, head + "Transfer-Encoding: chunked\r\n\r\n"), 411);
+  EXPECT_EQ(raw_status(address, head + "Content-Length: 5\r\nContent-Length: 5\r\n\r\n"), 400);
+  EXPECT_EQ(raw_status(address, head + "X: " + std::string(8192, 'a')), 431) << "without an end";
+}
+
+// Connections that send nothing, or a byte now and then, take nobody's place.
+TEST(Server, SlowConnectionsHoldUpNobodyAndEnd) {
+  const fs::path folder = scratch_folder();
+  ServerOptions options;
+  options.limits.header_time = options.limits.body_time = std::chrono::seconds(2);
+  options.limits.connections_of_address = 40;
+  RunningServer running(folder, options);
+  const std::string get = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ";
+  const std::string post =
+      "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n";
+  std::vector<std::unique_ptr<RawConnection>> slow;
+  for (int i = 0; i < 100; ++i) {
+    slow.push_back(std::make_unique<RawConnection>(running.server.address()));
+    slow.back()->send(i % 3 == 0 ? "" : i % 3 == 1 ? get : post);
+  }
+  HttpClient client(running.server.address());
+  EXPECT_EQ(client.get("/api/study")->status, 200);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 300 && !std::ranges::all_of(slow, &RawConnection::has_ended); ++i) {
+    for (const auto& connection : slow) {
+      connection->send("x");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  EXPECT_TRUE(std::ranges::all_of(slow, &RawConnection::has_ended));
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+}
+
+TEST(Server, FourHundredFetchesAtOnceAreAllServed) {
+  RunningServer running(scratch_folder());
+  HttpClient client(running.server.address());
+  const json session = json::parse(client.post("/api/start", {{"consent", true}})->body);
+  const std::string path = session["trials"][0]["mp4"];
+  const std::string whole = client.get(path)->body;
+  std::atomic<int> good = 0;
+  std::barrier begin(400);
+  std::vector<std::jthread> people;
+  people.reserve(400);
+  for (int i = 0; i < 400; ++i) {
+    people.emplace_back([&] {
+      HttpClient browser(running.server.address());
+      begin.arrive_and_wait();
+      const auto answer = browser.get(path);
+      good += answer && answer->body == whole ? 1 : 0;
+    });
+  }
+  people.clear();
+  EXPECT_EQ(good, 400);
+}
+
+TEST(Connections, TheLongestWaitingMakesRoom) {
+  Connections connections(5, 3);
+  for (const Connections::Id id : {1U, 2U, 3U}) {
+    EXPECT_TRUE(connections.add(id, "a").is_admitted);
+  }
+  connections.works(1);
+  auto admission = connections.add(4, "a");
+  EXPECT_EQ(admission.closed, 2U) << "1 has a request";
+  EXPECT_EQ(connections.size(), 3U);
+  connections.waits(1);
+  EXPECT_EQ(connections.add(5, "a").closed, 3U) << "the time of 1 began anew";
+  EXPECT_FALSE(connections.add(6, "b").closed);
+  EXPECT_FALSE(connections.add(7, "b").closed);
+  admission = connections.add(8, "c");
+  EXPECT_EQ(admission.closed, 4U) << "of the address that has most";
+  EXPECT_TRUE(admission.is_admitted);
+  for (const Connections::Id id : {1U, 5U, 6U, 7U, 8U}) {
+    connections.works(id);
+  }
+  EXPECT_FALSE(connections.add(9, "d").is_admitted) << "nobody's work is cut off";
+  connections.remove(6);
+  connections.remove(6);
+  EXPECT_TRUE(connections.add(10, "d").is_admitted);
+  EXPECT_EQ(connections.size(), 5U);
+}
+
+TEST(Http, Hosts) {
+  for (const char* host : {"127.0.0.1", "127.0.0.1:8080", "192.168.1.7:80", "localhost",
+                           "LocalHost:8080", "[::1]", "[::1]:8080", "study.example.org:443"}) {
+    EXPECT_TRUE(is_our_host(host, {"Study.example.org"})) << host;
+  }
+  for (const char* host : {"", "evil.example", "study.example.org.evil", "127.0.0.1:99999",
+                           "127.0.0.1:", "1.2.3", "[::1]x", "[::1]:", "[]", "localhost:80:80"}) {
+    EXPECT_FALSE(is_our_host(host, {"study.example.org"})) << host;
+  }
+}
+
+TEST(Http, AnAddressForAllIsToldAsOneThatCanBeOpened) {
+  EXPECT_EQ(openable_host("127.0.0.1"), "127.0.0.1");
+  EXPECT_EQ(openable_host("::1"), "::1");
+  for (const char* all : {"0.0.0.0", "::"}) {
+    Desk desk(desk_options(scratch_folder()));
+    ServerOptions options;
+    options.host = all;
+    Server server(desk, options);
+    std::thread thread([&] { server.run(); });
+    EXPECT_EQ(server.address().find(all), std::string::npos) << server.address();
+    EXPECT_EQ(raw_status(server.address(), "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), 200);
+    server.stop();
+    thread.join();
+  }
 }
 
 TEST(Server, HeadersOfEveryReply) {
   RunningServer running(scratch_folder());
-  httplib::Client client(running.server.address());
+  HttpClient client(running.server.address());
   for (const char* path :
        {"/", "/main.js", "/researcher", "/api/study", "/api/session", "/nothing"}) {
-    const auto reply = client.Get(path);
+    const auto reply = client.get(path);
     ASSERT_TRUE(reply) << path;
-    const std::string policy = reply->get_header_value("Content-Security-Policy");
+    const std::string policy = reply->header("content-security-policy");
     EXPECT_NE(policy.find("default-src 'none'"), std::string::npos) << path;
     EXPECT_EQ(policy.find("unsafe"), std::string::npos) << path;
-    EXPECT_EQ(reply->get_header_value("Cache-Control"), "no-store") << path;
-    EXPECT_FALSE(reply->has_header("Access-Control-Allow-Origin")) << path;
-    EXPECT_FALSE(reply->has_header("Server")) << path;
+    EXPECT_EQ(reply->header("cache-control"), "no-store") << path;
+    EXPECT_FALSE(reply->has("access-control-allow-origin")) << path;
+    EXPECT_FALSE(reply->has("server")) << path;
   }
-  const auto overview = client.Get("/api/overview", bearer(running.server.researcher_token()));
+  const auto overview = client.get("/api/overview", bearer(running.server.researcher_token()));
   EXPECT_EQ(overview->status, 200);
-  EXPECT_EQ(client.Get("/api/overview", bearer(std::string(32, '0')))->status, 401);
-}
-
-// The program itself, as it is run; killed it takes nothing with it but itself.
-pid_t start_program(const fs::path& folder) {
-  const pid_t process = ::fork();
-  if (process == 0) {
-    const int out = ::open((folder / "out.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::dup2(out, STDOUT_FILENO);
-    ::execl(PINCHLAB_PROGRAM, "pinchlab", "study", "serve", "--clips", (folder / "clips").c_str(),
-            "--answers", (folder / "answers").c_str(), "--config", (folder / "study.json").c_str(),
-            "--port", "0", "--no-webm", nullptr);
-    ::_exit(127);
-  }
-  return process;
-}
-
-std::string address_of(const fs::path& folder) {
-  for (int i = 0; i < 3000; ++i) {
-    const std::string out = fs::exists(folder / "out.txt") ? read_whole(folder / "out.txt") : "";
-    const std::size_t at = out.find("http://");
-    if (out.find("Ctrl-C ends") != std::string::npos) {
-      return out.substr(at, out.find("/\n", at) - at);
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return "";
+  EXPECT_EQ(client.get("/api/overview", bearer(std::string(32, '0')))->status, 401);
 }
 
 struct Participant {
@@ -310,9 +419,8 @@ void save_all(const std::string& address, std::vector<Participant>& people) {
   threads.reserve(people.size());
   for (Participant& person : people) {
     threads.emplace_back([&] {
-      httplib::Client client(address);
-      const auto result =
-          client.Post("/api/save", bearer(person.token), R"({"free_text":{}})", "application/json");
+      HttpClient client(address);
+      const auto result = client.post("/api/save", {{"free_text", json::object()}}, person.token);
       if (result && result->status == 200) {
         person.code = json::parse(result->body)["code"];
       }
@@ -335,23 +443,22 @@ TEST(Server, KilledAtAHundredRandomMomentsWhileSaving) {
   std::set<std::string> confirmed;
   std::size_t told = 0, cut_off = 0;
   for (int kill = 0; kill < 100; ++kill) {
-    fs::remove(folder / "out.txt");
-    const pid_t process = start_program(folder);
-    const std::string address = address_of(folder);
+    ServerProcess server(PINCHLAB_PROGRAM, folder);
+    const std::string address = server.address();
     ASSERT_NE(address, "");
     std::vector<Participant> people(4);
     for (Participant& person : people) {
-      httplib::Client client(address);
+      HttpClient client(address);
       person.token = take_part(client, false);
     }
     const auto delay = std::chrono::microseconds(random() % 12000);
     std::thread killer([&] {
       std::this_thread::sleep_for(delay);
-      ::kill(process, SIGKILL);
+      ::kill(server.id(), SIGKILL);
     });
     save_all(address, people);
     killer.join();
-    ::waitpid(process, nullptr, 0);
+    server.kill();
     for (const Participant& person : people) {
       (person.code.empty() ? cut_off : told) += 1;
       if (!person.code.empty()) {

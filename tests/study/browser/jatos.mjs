@@ -106,6 +106,7 @@ test('who leaves gives the plan back; who starts anew too; then the study is ful
     await consent(page);
     await page.reload();
     await page.click('#anew');
+    await page.click('#anew-confirm');
     await page.waitForSelector('#start');
     await consent(page);
     await answerRest(page);

@@ -50,6 +50,24 @@ test('a reload asks, and goes on at the same trial', () => withBrowser(async (co
   await server.kill();
 }));
 
+test('loading shows how much has come, and a lost server', () => withBrowser(async (context) => {
+  const server = await serve(scratch());
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  let isLost = true;
+  await page.route('**/media/**', (route) => (isLost ? route.abort() : route.continue()));
+  await page.check('#consent');
+  await page.click('#start');
+  await page.waitForFunction(() => /connection/.test(document.querySelector('#notice').textContent));
+  assert.match(await page.textContent('#stage'), /0 % loaded/);
+  await assertAccessible(page, 'loading without a server');
+  await picture(page, '20-loading-lost');
+  isLost = false;
+  await page.waitForSelector('video');
+  assert.equal(await page.textContent('#notice'), '');
+  await server.kill();
+}));
+
 test('starting anew after a reload keeps nothing of before', () => withBrowser(async (context) => {
   const server = await serve(scratch());
   const page = await open(context, server.address);
@@ -58,6 +76,12 @@ test('starting anew after a reload keeps nothing of before', () => withBrowser(a
   const [before] = openSessions(server);
   await page.reload();
   await page.click('#anew');
+  await assertAccessible(page, 'start anew');
+  await picture(page, '19-anew');
+  await page.click('#anew-cancel');
+  assert.deepEqual(openSessions(server), [before], 'asked, and nothing was removed');
+  await page.click('#anew');
+  await page.click('#anew-confirm');
   await page.waitForSelector('#start');
   assert.deepEqual(openSessions(server), []);
   await consent(page);

@@ -212,13 +212,16 @@ test('a browser without H.264 plays the other encoding; practice comes first', (
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
-  assert.match(await page.textContent('#remaining .hint'), /practice/);
+  assert.match(await page.textContent('#remaining'), /practice/);
+  const sizes = new Set();
   for (let i = 0; i <= demonstrations.length; ++i) {
     await page.waitForSelector('#left');
     assert.deepEqual(await page.$eval('video', (video) => [video.videoWidth, video.videoHeight]), [640, 320]);
-    assert.equal(await page.locator('#remaining .hint').count(), i === 0 ? 1 : 0);
+    sizes.add(await page.$eval('video', (video) => `${video.getBoundingClientRect().width} x ${video.getBoundingClientRect().height}`));
+    if (i > 0) assert.equal(await page.textContent('#remaining'), i === 3 ? 'The last one' : `${4 - i} left to answer`, 'practice is not counted');
     await answer(page);
   }
+  assert.equal(sizes.size, 1, 'practice has the size of the rest');
   await page.click('#next');
   await page.click('#save');
   await page.waitForSelector('#code');
@@ -226,4 +229,114 @@ test('a browser without H.264 plays the other encoding; practice comes first', (
   assert.deepEqual(file.trials.map(({ kind }) => kind), ['training', 'main', 'main', 'main']);
   for (const { clip } of file.trials) assert.match(clip, /\.webm$/);
   assert.deepEqual(page.problems, []);
+}));
+
+// Hides the page, or shows it again, as far as a page can know.
+const hide = (page, isHidden) => page.evaluate((value) => {
+  Object.defineProperty(document, 'hidden', { configurable: true, get: () => value });
+  document.dispatchEvent(new Event('visibilitychange'));
+}, isHidden);
+
+test('what is not seen does not count: a hidden page waits, and a jump is no loop', () => withStudy({}, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.2);
+  await hide(page, true);
+  const at = await page.$eval('video', (video) => video.currentTime);
+  await page.waitForTimeout(4000);  // two loops
+  assert.equal(await page.$eval('video', (video) => video.paused), true);
+  assert.ok(await page.$eval('video', (video) => video.currentTime) - at < 0.5, 'it did not play');
+  assert.equal(await page.locator('#left').count(), 0);
+  await hide(page, false);
+  await page.waitForFunction(() => !document.querySelector('video').paused);
+  const share = () => page.$eval('.wait progress', (bar) => bar.value);
+  const before = await share();
+  await page.$eval('video', (video) => { video.currentTime = video.duration - 0.2; });
+  await page.waitForFunction(() => document.querySelector('video').currentTime < 1);
+  assert.equal(await page.locator('#left').count(), 0, 'the end of a loop that was jumped over');
+  assert.ok(before > 0 && before < 1, `the first loop's progress: ${before}`);
+  await page.waitForSelector('#left');
+  await answer(page);
+  assert.deepEqual(page.problems, []);
+}));
+
+for (const [width, height] of [[1920, 1080], [1366, 768], [1280, 720]]) {
+  for (const language of ['en', 'sv']) {
+    test(`the page at ${width} x ${height}, ${language}`, () => withStudy(
+      { config: { language }, context: { viewport: { width, height } } }, async (server, context) => {
+        const page = await open(context, server.address);
+        const name = `look-${width}-${language}`;
+        await page.waitForSelector('#start');
+        await picture(page, `${name}-information`);
+        await consent(page);
+        await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.5);
+        await picture(page, `${name}-first-loop`);
+        await page.waitForSelector('#left');
+        await picture(page, `${name}-choice`);
+        const boxes = await page.evaluate(() => Object.fromEntries(['#left', '#right', '.arrows', 'video', 'h1'].map((selector) => {
+          const { left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
+          return [selector, { left, right, top, bottom, middle: (left + right) / 2 }];
+        })));
+        const { video } = boxes;
+        const quarter = (video.right - video.left) / 4;
+        assert.ok(Math.abs(boxes['#left'].middle - video.left - quarter) < 1, 'the left button is under the left clip');
+        assert.ok(Math.abs(boxes['#right'].middle - video.right + quarter) < 1, 'the right button is under the right clip');
+        assert.ok(boxes['#left'].right < boxes['.arrows'].left && boxes['.arrows'].right < boxes['#right'].left, 'nothing lies over another');
+        assert.ok(boxes.h1.bottom <= video.top && boxes['#left'].top >= video.bottom && boxes['#left'].bottom <= height, 'all is on the screen');
+        await server.kill();
+        await page.click('#left');
+        await page.waitForFunction(() => document.querySelector('#notice').textContent !== '');
+        await picture(page, `${name}-lost`);
+        const { notice, question, bottom } = await page.evaluate(() => ({
+          notice: document.querySelector('#notice').getBoundingClientRect().bottom,
+          question: document.querySelector('h1').getBoundingClientRect().top,
+          bottom: document.querySelector('.choices').getBoundingClientRect().bottom,
+        }));
+        assert.ok(notice <= question, 'the banner is off the question');
+        assert.ok(bottom <= height, 'and nothing is pushed off the screen');
+      }));
+  }
+}
+
+test('a few clips are fetched ahead, not all', () => withStudy({ config: { repetitions: 4 } }, async (server, context) => {
+  const page = await open(context, server.address);
+  const fetched = new Set();
+  page.on('request', (request) => { if (request.url().includes('/media/')) fetched.add(request.url()); });
+  await page.waitForSelector('#start');
+  await consent(page);
+  await page.waitForSelector('#left');
+  assert.ok(fetched.size <= 3, `${fetched.size} of 12 clips`);
+  for (let i = 0; i < 12; ++i) {
+    await page.waitForSelector('#left');
+    assert.ok(fetched.size <= i + 3, `${fetched.size} clips in trial ${i}`);
+    await answer(page);
+  }
+  assert.equal(fetched.size, 12);
+  await page.waitForSelector('#next');
+  assert.deepEqual(page.problems, []);
+}));
+
+test('who has saved in another window is told so, not that nothing is kept', () => withStudy({}, async (server, context) => {
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  for (let i = 0; i < demonstrations.length; ++i) {
+    await page.waitForSelector('#left');
+    await answer(page);
+  }
+  await page.waitForSelector('#next');
+  // The other window saves just before this one leaves.
+  const code = await page.evaluate(async () => {
+    const { token } = JSON.parse(localStorage.getItem('study'));
+    const reply = await fetch('api/save', {
+      method: 'POST', headers: { 'Content-Type': 'application/json', Authorization: `Bearer ${token}` }, body: '{"free_text":{}}',
+    });
+    return (await reply.json()).code;
+  });
+  await page.click('#exit');
+  await page.click('#leave');
+  await page.waitForSelector('#code');
+  assert.equal(await page.textContent('#code'), code);
+  assert.equal(answersIn(server).length, 1);
 }));

@@ -57,7 +57,7 @@ class AnswerFiles {
     }
     if (builder_.excluded(file.participant)) return;
     check_plan(file, name);
-    check_clips(file, name);
+    same_study_.check(file, name);
     builder_.begin_source(name);
     builder_.expect_answers_per_demonstration(file.answers_per_demonstration, name);
     builder_.note_session_records();
@@ -81,18 +81,6 @@ class AnswerFiles {
                       "{}; leave the participant out with --exclude{}",
                       file.participant, count, demonstration, file.answers_per_demonstration,
                       fewer ? ", or pass --allow-missing" : ""));
-    }
-  }
-
-  // Clips are frozen stimuli: answers to different clips are not answers to the same question.
-  void check_clips(const AnswerFile& file, const std::string& name) {
-    for (const auto& [clip, hash] : file.clips_sha256) {
-      const auto [before, is_new] = clips_.emplace(clip, std::pair(hash, name));
-      if (is_new || before->second.first == hash) continue;
-      throw InputError(
-          name, fmt::format("clip `{}` of `{}` is not the one of {} (other SHA-256); analyse the "
-                            "participants who saw the same clips in one run",
-                            clip.second, clip.first, before->second.second));
     }
   }
 
@@ -121,8 +109,7 @@ class AnswerFiles {
   TableBuilder& builder_;
   bool allow_missing_;
   std::map<std::string, std::string> file_of_;  // participant -> file
-  // (demonstration, variant) -> hash, file
-  std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> clips_;
+  SameStudy same_study_;
 };
 
 void check_no_input_twice(const std::vector<fs::path>& inputs) {

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/promises.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/cable/cable.h"
+
+namespace pinchlab {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+/// Nothing but gravity and elastic cables gives energy to the scene.
+bool is_undriven(const Scene& scene) {
+  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+    return body.driven_angular_velocity.has_value() || body.torque != 0.0;
+  });
+}
+
+/// J, of gravity and of stretched cables.
+double potential_energy(const Scene& scene, const World& world) {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (can_move(scene.bodies[b])) {
+      energy -= scene.bodies[b].mass * scene.gravity.dot(world.position[b]);
+    }
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const double stiffness = scene.cables[c].axial_stiffness;
+    if (stiffness == infinity) continue;
+    const CableState& cable = world.cables[c];
+    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+      const Segment& segment = cable.segments[i];
+      const double stretch = segment.length - segment.rest_length;
+      if (segment.rest_length > 0.0 && stretch > 0.0) {
+        energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
+      }
+    }
+  }
+  return energy;
+}
+
+/// "12 %", "0.3 %", "4.12e+05 %".
+std::string percent(double share) {
+  return fmt::format("{:.3g} %", 100.0 * share);
+}
+
+std::string name_of_side(const Scene& scene, int side) {
+  return side < 0 ? fmt::format("wall {}", -1 - side)
+                  : fmt::format("body '{}'", scene.bodies[at(side)].name);
+}
+
+}  // namespace
+
+Promises::Promises(const Scene& scene, const World& world)
+    : velocity_(world.velocity), angular_(world.angular_velocity) {
+  const bool direct = world.configuration.solver == Solver::direct;
+  watches_spans_ = direct;
+  watches_gaps_ = direct && world.configuration.method == Method::pinch;
+  watches_energy_ = direct && is_undriven(scene);
+  if (!watches_energy_) return;
+  potential_ = potential_energy(scene, world);
+  double kinetic = 0.0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.kind == BodyKind::fixed) continue;
+    kinetic += 0.5 * disc_inertia(body) * angular_[b] * angular_[b];
+    if (!can_move(body)) continue;
+    kinetic += 0.5 * body.mass * velocity_[b].squaredNorm();
+    at_play_ += body.mass * scene.gravity.norm() * body.radius;
+  }
+  start_energy_ = kinetic + potential_;
+  at_play_ = std::max(at_play_, kinetic);
+}
+
+void Promises::note_value(Promise promise, double value, double limit, std::int64_t step, int item,
+                          int other) {
+  Worst& now = now_[static_cast<std::size_t>(promise)];
+  if (value <= limit || (now.steps_broken > 0 && value <= now.value)) return;  // NaN is noted
+  now = {value, step, step, 1, item, other};
+}
+
+// Per cable, what its spans have too much, and what it has in all.
+void Promises::note_cables(const Scene& scene, const World& world) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    double length = 0.0, excess = 0.0;
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      length += cable.links[i].radius * cable.links[i].wrap;
+      if (i < first_segment(cable)) continue;
+      const Segment& segment = cable.segments[i];
+      length += segment.rest_length;
+      if (!segment.pinched) excess += std::max(segment.length - segment.rest_length, 0.0);
+    }
+    note_value(Promise::length, std::abs(length - cable.length) / cable.length, limits_.length,
+               world.step, static_cast<int>(c), -1);
+    if (!watches_spans_ || scene.cables[c].axial_stiffness < infinity) continue;
+    note_value(Promise::strain, excess / cable.length, limits_.strain, world.step,
+               static_cast<int>(c), -1);
+  }
+}
+
+void Promises::note_contacts(const Scene& scene, const World& world) {
+  for (const Contact& contact : world.contacts) {
+    const double depth = contact.target - contact.gap;
+    if (!(depth > 0.0)) continue;
+    double size = contact.target;
+    if (!(size > 0.0)) {
+      size = scene.bodies[at(contact.a)].radius;
+      if (contact.b >= 0) size = std::min(size, scene.bodies[at(contact.b)].radius);
+    }
+    note_value(Promise::squeeze, depth / size, limits_.squeeze, world.step, contact.a,
+               contact.b >= 0 ? contact.b : -1 - contact.wall);
+  }
+}
+
+// E = m v- . v+ / 2 + potential, at the step's start: v- and v+ are half a step before and after
+// it. A leapfrog keeps this exactly where forces are linear, and an impact can only lower it.
+void Promises::note_energy(const Scene& scene, const World& world) {
+  double kinetic = 0.0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    if (body.kind == BodyKind::fixed) continue;
+    kinetic += 0.5 * disc_inertia(body) * angular_[b] * world.angular_velocity[b];
+    if (can_move(body)) kinetic += 0.5 * body.mass * velocity_[b].dot(world.velocity[b]);
+  }
+  at_play_ = std::max(at_play_, kinetic);
+  const bool has_passed_start = world.step > 1;  // the first step has but half a kick before it
+  if (at_play_ > 0.0 && has_passed_start) {
+    note_value(Promise::energy, (kinetic + potential_ - start_energy_) / at_play_, limits_.energy,
+               world.step, -1, -1);
+  }
+  potential_ = potential_energy(scene, world);
+  velocity_ = world.velocity;
+  angular_ = world.angular_velocity;
+}
+
+void Promises::note(const Scene& scene, const World& world) {
+  now_.fill({});
+  note_cables(scene, world);
+  if (watches_gaps_) note_contacts(scene, world);
+  if (watches_energy_) note_energy(scene, world);
+  if (world.diagnostics.fallbacks > fallbacks_) {
+    note_value(Promise::settled, 1.0, 0.0, world.step, -1, -1);
+    fallbacks_ = world.diagnostics.fallbacks;
+  }
+  for (std::size_t i = 0; i < worst_.size(); ++i) {
+    if (now_[i].steps_broken == 0) continue;
+    Worst& worst = worst_[i];
+    const std::int64_t first = worst.steps_broken == 0 ? world.step : worst.first_step;
+    const std::int64_t steps = worst.steps_broken + 1;
+    if (worst.steps_broken == 0 || !(now_[i].value <= worst.value)) worst = now_[i];
+    worst.first_step = first;
+    worst.steps_broken = steps;
+  }
+}
+
+std::vector<std::string> Promises::broken(const Scene& scene, const World& world) const {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < worst_.size(); ++i) {
+    const Worst& w = worst_[i];
+    if (w.steps_broken == 0) continue;
+    std::string what;
+    switch (static_cast<Promise>(i)) {
+      case Promise::strain:
+        what =
+            fmt::format("cable '{}' was stretched by {} of its length (limit {})",
+                        scene.cables[at(w.item)].name, percent(w.value), percent(limits_.strain));
+        break;
+      case Promise::squeeze:
+        what = fmt::format(
+            "body '{}' and {} came too near by {} of the cable between them, or of "
+            "the smaller radius (limit {})",
+            scene.bodies[at(w.item)].name, name_of_side(scene, w.other), percent(w.value),
+            percent(limits_.squeeze));
+        break;
+      case Promise::length:
+        what =
+            fmt::format("cable '{}' lost or gained {} of its length (limit {})",
+                        scene.cables[at(w.item)].name, percent(w.value), percent(limits_.length));
+        break;
+      case Promise::energy:
+        what = fmt::format(
+            "the scene gained {} of the energy at play, and nothing drives it "
+            "(limit {})",
+            percent(w.value), percent(limits_.energy));
+        break;
+      default:
+        what = "the solver did not settle and took its fallback";
+    }
+    lines.push_back(fmt::format(
+        "{}: first in step {} (t = {:.6g} s), in {} of {} steps{}", what, w.first_step,
+        static_cast<double>(w.first_step) * world.step_length, w.steps_broken, world.step,
+        w.step == w.first_step ? ""
+                               : fmt::format(", most at t = {:.6g} s",
+                                             static_cast<double>(w.step) * world.step_length)));
+  }
+  return lines;
+}
+
+}  // namespace pinchlab

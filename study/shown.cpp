@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/shown.h"
+
+#include "base/sha256.h"
+
+namespace pinchlab::study {
+
+using nlohmann::json;
+
+json what_is_shown(const Config& config, const Clips& clips) {
+  json consent = json::object();
+  for (const char* key : {"information_heading", "information_body", "information_rights",
+                          "information_questions", "consent"}) {
+    consent[key] = config.texts.at(key);
+  }
+  json files = json::object();
+  for (const auto& [name, pair] : clips) {
+    files[name] = {pair.mp4.left->sha256(), pair.mp4.right->sha256()};
+  }
+  return {{"language", config.language},
+          {"question", config.texts.at("question")},
+          {"consent_sha256", sha256(consent.dump())},
+          {"texts_sha256", sha256(json(config.texts).dump())},
+          {"clips_sha256", sha256(files.dump())}};
+}
+
+std::string difference(const json& one, const json& other) {
+  const std::pair<const char*, const char*> parts[] = {{"language", "the language"},
+                                                       {"question", "the question"},
+                                                       {"consent_sha256", "the consent text"},
+                                                       {"clips_sha256", "the clips"},
+                                                       {"texts_sha256", "a text of the page"}};
+  std::string words;
+  for (const auto& [key, what] : parts) {
+    const bool is_other = one.value(key, json()) != other.value(key, json());
+    // A text that has its own name is not told twice.
+    if (is_other && (words.empty() || std::string(key) != "texts_sha256")) {
+      words += (words.empty() ? "" : ", ") + std::string(what);
+    }
+  }
+  return words;
+}
+
+}  // namespace pinchlab::study

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The watch over what is promised: silent where all is well, exact where something is not.
+#include "sim/promises.h"
+
+#include "tests/sim/random_scene.h"
+
+namespace pinchlab::testing {
+namespace {
+
+/// Two loads on a wheel, run for `steps`; what is then wrong is for a test to bring in.
+struct Watched {
+  explicit Watched(Scene s, const Configuration& configuration = {}, int steps = 10)
+      : scene(std::move(s)), world(make_world(scene, configuration)), promises(scene, world) {
+    for (int i = 0; i < steps; ++i) go();
+  }
+  void go() {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    promises.note(scene, world);
+  }
+  [[nodiscard]] std::vector<std::string> broken() const { return promises.broken(scene, world); }
+
+  Scene scene;
+  World world;
+  Workspace work;
+  Promises promises;
+};
+
+Scene loads() {
+  return load_chain(1, 3.0, 2.0, 1.0);
+}
+
+/// A roller that rests on a wrapped wheel between the two loads' cable.
+Scene roller_on_wheel() {
+  Scene scene = load_chain(1, 2.0, 2.0, 1.0);
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, 0.85, 0.25, 1.0));
+  return scene;
+}
+
+void expect_one(const std::vector<std::string>& lines, const std::string& begin) {
+  ASSERT_EQ(lines.size(), 1u) << fmt::format("{}", fmt::join(lines, "\n"));
+  EXPECT_TRUE(lines[0].starts_with(begin)) << lines[0];
+}
+
+TEST(Promises, AreSilentWhereAllIsWell) {
+  for (const int pulleys : {1, 21}) {
+    Watched watched(load_chain(pulleys, 3.0, 2.0, 1.0), {}, 240);
+    EXPECT_EQ(watched.broken(), std::vector<std::string>());
+  }
+  Watched slipping(load_chain(3, 3.0, 2.0, 1.0, 0.05), {}, 240);
+  EXPECT_EQ(slipping.broken(), std::vector<std::string>());
+  Watched pinched(roller_on_wheel(), {}, 240);
+  EXPECT_EQ(pinched.broken(), std::vector<std::string>());
+}
+
+TEST(Promises, DoNotChangeTheWorld) {
+  const Scene scene = random_scene(6);
+  World alone = make_world(scene, Method::pinch);
+  run(scene, alone, 300);
+  const Watched watched(scene, {}, 300);
+  EXPECT_EQ(alone.position, watched.world.position);
+  EXPECT_EQ(alone.angle, watched.world.angle);
+}
+
+TEST(Promises, NameTheCableThatIsStretched) {
+  Watched watched(loads());
+  const double too_much = 0.02 * watched.world.cables[0].length;
+  watched.world.cables[0].segments[1].length += too_much;
+  watched.promises.note(watched.scene, watched.world);
+  expect_one(
+      watched.broken(),
+      "cable 'cable' was stretched by 2 % of its length (limit 0.1 %): first in step 10 (t = "
+      "0.0416667 s), in 1 of 10 steps");
+  watched.world.cables[0].segments[1].length -= too_much;
+  watched.world.stamp = 0;  // changed by hand
+  watched.go();
+  EXPECT_EQ(watched.broken().size(), 1u);
+}
+
+TEST(Promises, TellTheFirstAndTheWorst) {
+  Watched watched(loads());
+  Segment& segment = watched.world.cables[0].segments[1];
+  const double length = segment.length;
+  for (const double strain : {0.01, 0.05, 0.0, 0.03}) {
+    ++watched.world.step;
+    segment.length = length + strain * watched.world.cables[0].length;
+    watched.promises.note(watched.scene, watched.world);
+  }
+  expect_one(
+      watched.broken(),
+      "cable 'cable' was stretched by 5 % of its length (limit 0.1 %): first in step 11 (t = "
+      "0.0458333 s), in 3 of 14 steps, most at t = 0.05 s");
+}
+
+TEST(Promises, NameTheCableThatLosesLength) {
+  Watched watched(loads());
+  watched.world.cables[0].length *= 1.01;
+  watched.promises.note(watched.scene, watched.world);
+  expect_one(watched.broken(),
+             "cable 'cable' lost or gained 0.99 % of its length (limit 0.0001 %)");
+}
+
+TEST(Promises, NameTheBodiesThatSqueezeACable) {
+  Watched watched(roller_on_wheel(), {}, 60);
+  ASSERT_EQ(watched.world.contacts.size(), 1u);
+  watched.world.contacts[0].gap -= 0.5 * watched.world.contacts[0].target;
+  watched.promises.note(watched.scene, watched.world);
+  expect_one(watched.broken(), "body 'pulley 0' and body 'roller' came too near by 50 %");
+  // Without contact rows, bodies are free to.
+  Watched free(roller_on_wheel(), Method::pinch_no_contact, 60);
+  for (Contact& contact : free.world.contacts) contact.gap -= 1.0;
+  free.promises.note(free.scene, free.world);
+  EXPECT_EQ(free.broken(), std::vector<std::string>());
+}
+
+TEST(Promises, NoticeEnergyFromNowhere) {
+  const auto broken_after_a_kick = [](const Scene& scene) {
+    Watched watched(scene, {}, 60);
+    for (Vec2& velocity : watched.world.velocity) velocity *= 1.5;
+    watched.world.angular_velocity[2] *= 1.5;
+    watched.world.stamp = 0;  // changed by hand
+    watched.go();
+    watched.go();
+    return watched.broken();
+  };
+  expect_one(broken_after_a_kick(loads()), "the scene gained ");
+  Scene driven = loads();
+  driven.bodies[2].torque = 1e-9;
+  EXPECT_EQ(broken_after_a_kick(driven), std::vector<std::string>());
+}
+
+TEST(Promises, CountFallbacks) {
+  Watched watched(loads());
+  watched.world.diagnostics.fallbacks += 2;  // in two parts of one step
+  watched.promises.note(watched.scene, watched.world);
+  watched.go();
+  expect_one(watched.broken(), "the solver did not settle and took its fallback: first in step 10");
+}
+
+TEST(Promises, NoticeWhatIsNotFinite) {
+  Watched watched(loads());
+  watched.world.cables[0].segments[1].length = std::nan("");
+  watched.promises.note(watched.scene, watched.world);
+  expect_one(watched.broken(), "cable 'cable' was stretched by nan %");
+}
+
+// Sweeps promise little, elastic cables may stretch.
+TEST(Promises, DependOnWhatIsSimulated) {
+  Scene elastic = loads();
+  elastic.cables[0].axial_stiffness = 100.0;
+  Watched watched(elastic, {}, 240);
+  EXPECT_GT(
+      watched.world.cables[0].segments[1].length - watched.world.cables[0].segments[1].rest_length,
+      0.1);
+  EXPECT_EQ(watched.broken(), std::vector<std::string>());
+  Watched thesis(load_chain(21, 100.0, 1.0, 1.0), thesis_configuration(), 240);
+  EXPECT_EQ(thesis.broken(), std::vector<std::string>());
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
