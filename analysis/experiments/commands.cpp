@@ -10,6 +10,7 @@
 #include "analysis/experiments/accuracy.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/features.h"
+#include "analysis/experiments/instructions.h"
 #include "analysis/experiments/pinch_detection.h"
 #include "analysis/experiments/render_cost.h"
 #include "analysis/experiments/stability/stability.h"
@@ -103,6 +104,44 @@ void add_render(CLI::App& bench) {
   });
 }
 
+struct Counting {
+  Options options;
+  int scene = -1, steps = 0;
+};
+
+void add_instructions(CLI::App& bench) {
+  auto counting = std::make_shared<Counting>();
+  CLI::App* command = bench.add_subcommand(
+      "instructions", "What a step executes, counted by valgrind: steady where clocks are not");
+  command->add_option("--out", counting->options.out, "Folder for table and page [results]")
+      ->type_name("DIR");
+  // What the program asks of itself under valgrind.
+  command->add_option("--scene", counting->scene)->group("");
+  command->add_option("--steps", counting->steps)->group("");
+  command->callback([counting] {
+    if (counting->scene >= 0) {
+      if (!step_scene(counting->scene, counting->steps)) {
+        throw CLI::ValidationError("--scene", "there is no such scene");
+      }
+      return;
+    }
+    counting->options.command =
+        "pinchlab bench instructions --out " + counting->options.out.string();
+    run_instructions(counting->options);
+  });
+}
+
+/// Not everybody has valgrind: all the rest is measured without it.
+void count_if_possible(const Options& options) {
+  if (!can_count_instructions()) {
+    fmt::print(stderr, "instructions are not counted: there is no valgrind\n");
+    return;
+  }
+  Options own = options;
+  own.command = "pinchlab bench instructions --out " + options.out.string();
+  run_instructions(own);
+}
+
 void add_all(CLI::App& bench) {
   auto options = std::make_shared<Options>();
   CLI::App* command = bench.add_subcommand("all", "All experiments, one after another");
@@ -114,6 +153,7 @@ void add_all(CLI::App& bench) {
                                      typed(*options, experiment.has_loads));
       experiment.run(*options);
     }
+    count_if_possible(*options);
     RenderRun render;
     render.out = options->out;
     if (options->quick) render.frames = 60;
@@ -130,6 +170,7 @@ void add_bench_commands(CLI::App& app) {
                         ->require_subcommand(1);
   for (const Experiment& experiment : experiments) add_experiment(*bench, experiment);
   add_render(*bench);
+  add_instructions(*bench);
   add_all(*bench);
   bench->footer(
       "Each writes raw tables (CSV), figures (SVG and PDF, by gnuplot) and a page that says in "

@@ -71,8 +71,7 @@ GrowthResult grow(const std::string& what, const std::vector<int>& sizes,
                   const std::function<double(int)>& seconds) {
   GrowthResult result{what, sizes, {}, 0.0};
   for (const int size : sizes) result.seconds.push_back(seconds(size));
-  result.exponent =
-      growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
+  result.exponent = growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
   return result;
 }
 

@@ -11,7 +11,8 @@ namespace pinchlab {
 
 namespace {
 
-/// Below this wrap (rad) a link is gone. Far above round-off, far below what a frame could show.
+/// Below this wrap (rad, so the same for scenes of any size) a link is gone. Far above round-off,
+/// far below what a frame could show.
 constexpr double gone = -1e-9;
 
 std::ptrdiff_t offset(std::size_t i) {

@@ -10,13 +10,18 @@ namespace pinchlab {
 
 struct Workspace;
 
+/// Whether a link's circle lies about its body's centre.
+inline bool is_central(const Link& link) {
+  return link.offset.x() == 0.0 && link.offset.y() == 0.0;
+}
+
 /// Centre of a link's circle where that is off its body's centre (m).
 Vec2 offset_centre(const World& world, const Link& link);
 
 /// Centre of the circle that the cable touches at a link (m).
 inline Vec2 link_centre(const World& world, const Link& link) {
   if (link.body < 0) return link.offset;
-  if (!link.offset.isZero(0.0)) return offset_centre(world, link);
+  if (!is_central(link)) return offset_centre(world, link);
   return world.position[static_cast<std::size_t>(link.body)];
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The common tangent of two circles in closed form (model.md, "Geometry in closed form").
+// The common tangent of two circles in closed form.
 
 #include <cmath>
 #include <numbers>

@@ -35,8 +35,8 @@ enum class RowKind : std::int8_t {
 /// bodies that do not change.
 struct RowBodies {
   int a = 0, b = 0;
-  Eigen::Vector3d ja, jb;  // m/s of row a m/s, or rad/s, of body
-  Eigen::Vector3d ra, rb;  // mobility * J^T: m/s, or rad/s, of body a N s of impulse
+  Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = ja;  // m/s of row a m/s, or rad/s, of body
+  Eigen::Vector3d ra = ja, rb = ja;  // mobility * J^T: m/s, or rad/s, of body a N s of impulse
 };
 
 /// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=

@@ -29,10 +29,14 @@ int place_of(const Parts& parts, const PartSystem& system, int body) {
   return local >= 0 ? local : system.ground();
 }
 
+bool has_fixed_lever(const Link& link) {
+  return link.body < 0 || is_central(link);
+}
+
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
 /// cross(c - p left(e), e) = cross(c, e) + p with the circle's centre at c from the body's.
 double lever(const World& world, const Link& link, const Vec2& e) {
-  if (link.body < 0 || link.offset.isZero(0.0)) return link.signed_radius();
+  if (has_fixed_lever(link)) return link.signed_radius();
   return link.signed_radius() + cross(link_centre(world, link) - at(world.position, link.body), e);
 }
 
@@ -107,12 +111,6 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   bodies.jb = {u.x(), u.y(), 0.0};
   const double overlap = from.radius + to.radius - distance;
   row.bias = -(overlap - std::max(segment.rest_length, 0.0)) / world.step_length;
-}
-
-/// Whether a segment's row can only have changed where the segment has moved: not so for a circle
-/// off its body's centre, whose lever turns with the body.
-bool is_central(const Link& link) {
-  return link.body < 0 || link.offset.isZero(0.0);
 }
 
 /// Of two bodies, or of a body and a wall, the greater: who asks for a rebound gets it.
@@ -235,7 +233,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       RowBodies& bodies = at(s.bodies, number);
       set_segment_values(world, segment, row);
       const bool on_centre_line = plain && segment.pinched;
-      const bool stands = again && !segment.moved && is_central(from) && is_central(to);
+      // The lever of a circle off its body's centre turns with the body, moved or not.
+      const bool stands = again && !segment.moved && has_fixed_lever(from) && has_fixed_lever(to);
       if (!stands || on_centre_line) {
         s.rows_stand = false;
         set_segment_bodies(world, from, to, segment, bodies);

@@ -54,7 +54,8 @@ struct SolveScratch {
   std::vector<Term> impulse_terms;              // of unknowns
   std::vector<EquationTerm> equation_terms;     // of rows
   std::vector<BodyTerm> columns;                // unordered; columns_of_body lists them by body
-  std::vector<BodyTerm> equations;
+  std::vector<BodyTerm> equations;              // one unknown after another
+  std::vector<int> last_equation;               // of each body of the part: its last term, or -1
   Lists<BodyTerm> columns_of_body;
   std::vector<int> fill;
   std::vector<int> least_column, least_equation;  // least unknown that moves, or sees, each body

@@ -75,17 +75,17 @@ void express(PartSystem& s, SolveScratch& set) {
   }
 }
 
-/// Adds vector * coefficient to the list's entry for (unknown, body), which if it exists is among
-/// the entries from `begin` on.
-void accumulate(std::vector<BodyTerm>& list, std::size_t begin, int unknown, int body,
-                const Eigen::Vector3d& vector, double coefficient) {
-  for (std::size_t k = begin; k < list.size(); ++k) {
-    if (list[k].unknown == unknown && list[k].body == body) {
-      list[k].vector += coefficient * vector;
-      return;
-    }
+/// Adds coefficient * j to what the equation of `unknown` sees of a body. The terms of one equation
+/// follow one another, from `begin` on: the place of the body's last term tells whether it has one.
+void add_to_equation(SolveScratch& set, std::size_t begin, int unknown, int body,
+                     const Eigen::Vector3d& j, double coefficient) {
+  int& place = at(set.last_equation, body);
+  if (place >= static_cast<int>(begin)) {
+    at(set.equations, place).vector += coefficient * j;
+    return;
   }
-  list.push_back({unknown, body, coefficient * vector});
+  place = static_cast<int>(set.equations.size());
+  set.equations.push_back({unknown, body, coefficient * j});
 }
 
 /// Effects of unknowns on bodies, listed by body, and what each equation sees of the bodies.
@@ -93,6 +93,7 @@ void gather_body_terms(const PartSystem& s, SolveScratch& set) {
   const std::size_t bodies = s.mobility.size();
   set.columns.clear();
   set.equations.clear();
+  set.last_equation.assign(bodies, -1);
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const RowBodies& row = s.bodies[r];
     for (int k = set.impulse_begin[r]; k < set.impulse_end[r]; ++k) {
@@ -111,9 +112,7 @@ void gather_body_terms(const PartSystem& s, SolveScratch& set) {
       begin = set.equations.size();
     }
     for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
-      if (at(s.mobile, body)) {
-        accumulate(set.equations, begin, unknown, body, j, term.coefficient);
-      }
+      if (at(s.mobile, body)) add_to_equation(set, begin, unknown, body, j, term.coefficient);
     }
   }
 

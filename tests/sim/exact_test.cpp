@@ -38,7 +38,7 @@ TEST(Exact, AtwoodMachine) {
 }
 
 // 1000 kg against 999 kg over light pulleys, ratio 1e4, at one step a frame: sweeps fail here by a
-// factor of 1000 (model.md).
+// factor of 1000.
 TEST(Exact, ChainOfPulleysAtOneStepAFrame) {
   for (const int pulleys : {1, 5, 21, 81}) {
     Scene scene = load_chain(pulleys, 1000.0, 999.0, 0.1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes whose geometry cannot be are refused, with place and cure.
 
+#include <limits>
 #include <numbers>
 
 #include "sim/scene_error.h"
@@ -38,6 +39,51 @@ TEST(MakeWorld, RefusesABodyInAWall) {
   Scene scene = drum_scene();
   scene.walls.push_back({Vec2(-1.0, 0.4), Vec2(1.0, 0.4), 0.5, 0.0});
   expect_refused(scene, "/bodies/0", "overlaps wall 0 by 100 mm");
+}
+
+// A scene that a program makes has passed no reader.
+TEST(MakeWorld, RefusesFiguresThatCannotBe) {
+  const auto refused = [](const std::string& place, const std::string& words, auto spoil) {
+    Scene scene = drum_scene();
+    spoil(scene);
+    expect_refused(scene, place, words);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refused("/bodies/0", "mass", [](Scene& s) { s.bodies[0].mass = -1.0; });
+  refused("/bodies/0", "mass", [nan](Scene& s) { s.bodies[0].mass = nan; });
+  refused("/bodies/0", "radius", [](Scene& s) { s.bodies[0].radius = 0.0; });
+  refused("/bodies/0", "inertia", [](Scene& s) { s.bodies[0].inertia = -0.1; });
+  refused("/bodies/0", "finite", [nan](Scene& s) { s.bodies[0].position.x() = nan; });
+  refused("/cables/0", "half width", [](Scene& s) { s.cables[0].half_width = 0.0; });
+  refused("/cables/0", "not in the scene", [](Scene& s) { s.cables[0].wraps[0].body = 1; });
+  refused("/cables/0", "not in the scene", [](Scene& s) { s.cables[0].end.body = 7; });
+  refused("/cables/0", "orientation", [](Scene& s) { s.cables[0].wraps[0].orientation = 0; });
+  refused("/walls/0", "length", [](Scene& s) {
+    s.walls.push_back({Vec2(3.0, 3.0), Vec2(3.0, 3.0), 0.5, 0.0});
+  });
+}
+
+TEST(MakeWorld, AFixedDrivenBodyTurnsFromTheStart) {
+  Scene scene = drum_scene();
+  scene.bodies[0].kind = BodyKind::fixed;
+  scene.bodies[0].driven_angular_velocity = 2.0;
+  EXPECT_EQ(make_world(scene, Method::pinch).angular_velocity[0], 2.0);
+}
+
+// What is allowed to overlap is a share of the scene, so that small ones are judged as strictly.
+TEST(MakeWorld, JudgesScenesOfAnySizeAlike) {
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    for (const double overlap : {1e-12, 1e-3}) {
+      Scene scene;
+      scene.bodies.push_back(body("a", BodyKind::free, 0.0, 0.0, size, 1.0));
+      scene.bodies.push_back(body("b", BodyKind::free, (2.0 - overlap) * size, 0.0, size, 1.0));
+      if (overlap < 1e-9) {
+        EXPECT_NO_THROW(make_world(scene, Method::pinch)) << size;
+      } else {
+        EXPECT_THROW(make_world(scene, Method::pinch), SceneError) << size;
+      }
+    }
+  }
 }
 
 TEST(MakeWorld, RefusesACableThroughABody) {
