@@ -17,6 +17,7 @@
 #include "analysis/experiments/commands.h"
 #include "analysis/power.h"
 #include "analysis/report.h"
+#include "analysis/threshold_report.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 #include "demos/batch.h"
@@ -221,6 +222,18 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
   return columns;
 }
 
+// "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
+analysis::Rate rate_of(const char* flag, const std::string& text, double most_fixed,
+                       double most_free) {
+  if (text == "free") return {true, 0.0, most_free};
+  const auto value = parse_number(text);
+  if (!value || *value < 0.0 || *value > most_fixed) {
+    throw CLI::ValidationError(
+        flag, fmt::format("`{}` is neither `free` nor a number from 0 to {}", text, most_fixed));
+  }
+  return {false, *value, most_free};
+}
+
 void add_analyse(CLI::App& app) {
   struct Arguments {
     std::vector<std::filesystem::path> inputs;
@@ -230,6 +243,8 @@ void add_analyse(CLI::App& app) {
     bool no_figures = false;
     analysis::ReadOptions read;
     analysis::AnalysisOptions analyse;
+    analysis::PsychometricModel model;
+    std::string guess = "0.5 of correct answers, 0 of choices", lapse = "free";
   };
   auto args = std::make_shared<Arguments>();
   CLI::App* command =
@@ -239,13 +254,17 @@ void add_analyse(CLI::App& app) {
       "participant, demonstration, choice and, if known, group, side, position, reaction_time_s, "
       "kind,\n"
       "or as a CSV table of counts with the columns demonstration, pinch, cable.\n"
+      "With a column `level` (graded stimuli) and `correct` (0 or 1; a count beside `trials`) or "
+      "`choice`\n"
+      "psychometric functions are fitted: thresholds and slopes with intervals.\n"
       "Written to --out: report.html, report.md, report.json, CSV tables, figures as SVG and "
       "PDF.\n\n"
       "  pinchlab analyse answers/ --out report\n"
       "  pinchlab analyse analysis/data/thesis-table-5.3.csv --out report\n"
       "  pinchlab analyse other.csv --map-column participant=subject --map-column "
       "demonstration=scene \\\n"
-      "      --map-column choice=picked --pinch-value ours --cable-value theirs --out report");
+      "      --map-column choice=picked --pinch-value ours --cable-value theirs --out report\n"
+      "  pinchlab analyse squeeze.csv --function weibull --guess 0.5 --out report");
   command->add_option("answers", args->inputs, "Answer files (.json), folders of them, CSV files")
       ->required();
   command->add_option("--out", args->out, "Folder to write the report to (made if need be)")
@@ -288,8 +307,31 @@ void add_analyse(CLI::App& app) {
                     "Accept participants with answers missing");
   command->add_flag("--ignore-other-columns", args->read.ignore_other_columns,
                     "Accept CSV columns that are not known");
+  const std::map<std::string, analysis::Shape> shapes{{"logistic", analysis::Shape::logistic},
+                                                      {"normal", analysis::Shape::normal},
+                                                      {"weibull", analysis::Shape::weibull}};
+  command
+      ->add_option_function<std::string>(
+          "--function",
+          [args, shapes](const std::string& name) { args->model.shape = shapes.at(name); },
+          "Psychometric function of graded stimuli: logistic, normal or weibull [logistic]")
+      ->type_name("F")
+      ->check(CLI::IsMember(shapes));
+  CLI::Option* guess = command->add_option(
+      "--guess", args->guess, "Rate of hits by guessing, 0 to 0.9, or `free`: estimated up to 0.5");
+  command
+      ->add_option("--lapse", args->lapse,
+                   "Rate of misses by inattention, 0 to 0.5, or `free`: estimated up to 0.1")
+      ->capture_default_str();
+  guess->capture_default_str();
+  command
+      ->add_option("--threshold-at", args->model.threshold_at,
+                   "Share of the function's height at the threshold")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 0.99));
   command->add_flag("--no-figures", args->no_figures, "Do without figures (and without gnuplot)");
-  command->callback([args] {
+  const CLI::Option* resamples = command->get_option("--bootstrap");
+  command->callback([args, guess, resamples] {
     args->read.columns = column_map(args->mapped);
     if (args->separator != "tab" && args->separator.size() != 1) {
       throw CLI::ValidationError("--separator", "must be one character or `tab`");
@@ -305,6 +347,26 @@ void add_analyse(CLI::App& app) {
     }
     args->analyse.pinch_label = args->read.pinch_value;
     args->analyse.cable_label = args->read.cable_value;
+    if (std::any_of(args->inputs.begin(), args->inputs.end(),
+                    [&](const auto& input) { return analysis::has_levels(input, args->read); })) {
+      const analysis::LevelsTable levels = analysis::read_levels(args->inputs, args->read);
+      args->model.guess = rate_of("--guess",
+                                  guess->count() > 0 ? args->guess
+                                  : levels.correct   ? "0.5"
+                                                     : "0",
+                                  0.9, 0.5);
+      args->model.lapse = rate_of("--lapse", args->lapse, 0.5, 0.1);
+      // A resample fits every participant again; 399 are enough for percentiles.
+      const analysis::ThresholdReport report = analysis::analyse_thresholds(
+          levels, args->model,
+          {args->analyse.alpha, resamples->count() > 0 ? args->analyse.bootstrap : 399,
+           args->analyse.seed});
+      const std::vector<std::string> written =
+          analysis::write_threshold_report(report, levels, args->out, !args->no_figures);
+      fmt::print("{}\n\nWritten to {}: {}\n", analysis::threshold_words(report, levels),
+                 args->out.string(), fmt::join(written, ", "));
+      return;
+    }
     const analysis::AnswersTable table = analysis::read_answers(args->inputs, args->read);
     const analysis::Report report = analysis::analyse_table(table, args->analyse);
     const std::vector<std::string> written =

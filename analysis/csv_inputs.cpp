@@ -254,7 +254,8 @@ class RowReader {
 
 bool is_input_column(const std::string& name) {
   const auto named = [&](const ColumnName& column) { return name == column.name; };
-  return std::any_of(tidy_columns.begin(), tidy_columns.end(), named) ||
+  const bool graded = name == "level" || name == "correct" || name == "trials";
+  return graded || std::any_of(tidy_columns.begin(), tidy_columns.end(), named) ||
          std::any_of(count_columns.begin(), count_columns.end(), named);
 }
 

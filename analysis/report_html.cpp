@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "analysis/document.h"
+#include "analysis/pages.h"
 
 namespace pinchlab::analysis {
 
@@ -118,7 +118,10 @@ class Printer {
 
 std::string report_html(const Report& report, const AnswersTable& table,
                         const std::vector<Figure>& figures) {
-  const Document document = make_document(report, table);
+  return html_page(make_document(report, table), figures);
+}
+
+std::string html_page(const Document& document, const std::vector<Figure>& figures) {
   Printer printer(figures);
   printer.text = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include "analysis/document.h"
+#include "analysis/pages.h"
 
 namespace pinchlab::analysis {
 
@@ -70,7 +70,10 @@ class Printer {
 
 std::string report_markdown(const Report& report, const AnswersTable& table,
                             const std::vector<Figure>& figures) {
-  const Document document = make_document(report, table);
+  return markdown_page(make_document(report, table), figures);
+}
+
+std::string markdown_page(const Document& document, const std::vector<Figure>& figures) {
   Printer printer(figures);
   printer.text = fmt::format("# {}\n", escape(document.title));
   for (const Block& block : document.blocks) std::visit(printer, block);

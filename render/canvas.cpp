@@ -34,8 +34,8 @@ const void* buffer_place(std::size_t bytes) {
 
 struct Canvas::State {
   int width, height;
-  GlContext context;
-  Gl gl = load_gl();
+  std::unique_ptr<GlContext> context = make_gl_context();
+  Gl gl = load_gl(*context);
   Programs programs{gl};
   Font font;
   std::map<std::pair<std::string, int>, LabelImage> labels;  // by text and size in 1/64 px
@@ -208,7 +208,7 @@ struct Canvas::State {
   }
 
   void draw(std::span<const Picture* const> pictures) {
-    context.make_current();
+    context->make_current();
     constexpr std::size_t enough_labels = 500;
     if (labels.size() > enough_labels) forget_labels();
     mesh.clear();

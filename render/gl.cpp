@@ -5,17 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "render/gl_context.h"
-
 namespace pinchlab {
 
 namespace {
-
-template <typename Pointer>
-void load(Pointer& pointer, const char* name) {
-  pointer = reinterpret_cast<Pointer>(GlContext::function(name));
-  if (pointer == nullptr) throw std::runtime_error(std::string("OpenGL function missing: ") + name);
-}
 
 constexpr const char* vertex_source = R"(#version 330 core
 uniform vec2 frame_size;
@@ -122,8 +114,14 @@ GLuint link(const Gl& gl, const char* fragment_body) {
 
 }  // namespace
 
-Gl load_gl() {
+Gl load_gl(const GlContext& context) {
   Gl gl{};
+  const auto load = [&context]<typename Pointer>(Pointer& pointer, const char* name) {
+    pointer = reinterpret_cast<Pointer>(context.function(name));
+    if (pointer == nullptr) {
+      throw std::runtime_error(std::string("OpenGL function missing: ") + name);
+    }
+  };
   load(gl.AttachShader, "glAttachShader");
   load(gl.BindBuffer, "glBindBuffer");
   load(gl.BindFramebuffer, "glBindFramebuffer");

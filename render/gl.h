@@ -6,6 +6,7 @@
 
 #include <array>
 
+#include "render/gl_context.h"
 #include "render/mesh.h"
 
 namespace pinchlab {
@@ -58,7 +59,7 @@ struct Gl {
 };
 
 /// Throws std::runtime_error that names the first missing function.
-Gl load_gl();
+Gl load_gl(const GlContext& context);
 
 /// The shader programs. All take the one vertex layout of mesh.h and the uniform `frame_size`, px.
 class Programs {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// An off-screen OpenGL 3.3 core context. Another platform (EGL) replaces osmesa_context.cpp and
-// nothing else.
+// An off-screen OpenGL 3.3 core context, from OSMesa or from EGL without a surface.
 
 #include <memory>
 
@@ -11,21 +10,23 @@ namespace pinchlab {
 /// size.
 class GlContext {
  public:
-  GlContext();  ///< Throws std::runtime_error if the driver has no OpenGL 3.3 core context.
-  ~GlContext();
-  GlContext(const GlContext&) = delete;
-  GlContext& operator=(const GlContext&) = delete;
+  virtual ~GlContext() = default;
 
   /// Makes the context this thread's current one; cheap if it is.
-  void make_current();
+  virtual void make_current() = 0;
 
   /// Address of an OpenGL function, or null.
   using Function = void (*)();
-  static Function function(const char* name);
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
+  virtual Function function(const char* name) const = 0;
 };
+
+/// A context of the kind that the environment variable PINCHLAB_GL names, "osmesa" or "egl", and
+/// current. Without it OSMesa's, or EGL's where the program was built without OSMesa. Both draw
+/// with Mesa's llvmpipe and give the same pixels. One kind a process. Throws std::runtime_error
+/// with the cure if there is none.
+std::unique_ptr<GlContext> make_gl_context();
+
+std::unique_ptr<GlContext> make_osmesa_context();  ///< not yet current
+std::unique_ptr<GlContext> make_egl_context();     ///< not yet current
 
 }  // namespace pinchlab

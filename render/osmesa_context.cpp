@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that knows OSMesa.
+// The only file that knows OSMesa, which Mesa has until 25.0.
 
 #include <GL/osmesa.h>
 
@@ -9,64 +9,50 @@
 
 #include "render/gl_context.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-// OSMesa keeps a few bytes a context for ever.
-extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
-  return "leak:libOSMesa";
-}
-#endif
-
 namespace pinchlab {
+namespace {
 
-struct GlContext::State {
-  OSMesaContext context = nullptr;
+class OsMesaContext : public GlContext {
+ public:
+  OsMesaContext() {
+    constexpr std::array<int, 9> attributes = {OSMESA_FORMAT,
+                                               OSMESA_RGBA,
+                                               OSMESA_PROFILE,
+                                               OSMESA_CORE_PROFILE,
+                                               OSMESA_CONTEXT_MAJOR_VERSION,
+                                               3,
+                                               OSMESA_CONTEXT_MINOR_VERSION,
+                                               3,
+                                               0};
+    context_ = OSMesaCreateContextAttribs(attributes.data(), nullptr);
+    if (context_ == nullptr) {
+      throw std::runtime_error(
+          "OSMesa cannot make an OpenGL 3.3 core context; install Debian's libosmesa6 (Mesa 22.3 "
+          "or newer)");
+    }
+  }
+  ~OsMesaContext() override { OSMesaDestroyContext(context_); }
+  OsMesaContext(const OsMesaContext&) = delete;
+  OsMesaContext& operator=(const OsMesaContext&) = delete;
+
+  void make_current() override {
+    if (OSMesaGetCurrentContext() == context_) return;
+    if (OSMesaMakeCurrent(context_, window_.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE) {
+      throw std::runtime_error("OSMesa cannot make its context current");
+    }
+  }
+  Function function(const char* name) const override { return OSMesaGetProcAddress(name); }
+
+ private:
+  OSMesaContext context_ = nullptr;
   std::array<unsigned char, 4>
-      window{};  // OSMesa wants a default framebuffer: one pixel, never drawn to
+      window_{};  // OSMesa wants a default framebuffer: one pixel, never drawn to
 };
 
-GlContext::GlContext() : state_(std::make_unique<State>()) {
-  // The driver's own threads cost more than they give at these sizes: whole clips run side by side
-  // instead.
-  setenv("LP_NUM_THREADS", "0", 0);
-  // Mesa 22.3 corrupts its memory where this is not what the processor has.
-  unsetenv("LP_NATIVE_VECTOR_WIDTH");
-  constexpr std::array<int, 9> attributes = {OSMESA_FORMAT,
-                                             OSMESA_RGBA,
-                                             OSMESA_PROFILE,
-                                             OSMESA_CORE_PROFILE,
-                                             OSMESA_CONTEXT_MAJOR_VERSION,
-                                             3,
-                                             OSMESA_CONTEXT_MINOR_VERSION,
-                                             3,
-                                             0};
-  state_->context = OSMesaCreateContextAttribs(attributes.data(), nullptr);
-  if (state_->context == nullptr) {
-    throw std::runtime_error(
-        "OSMesa cannot make an OpenGL 3.3 core context; install Debian's libosmesa6 (Mesa 22.3 or "
-        "newer)");
-  }
-  try {
-    make_current();
-  } catch (...) {
-    OSMesaDestroyContext(state_->context);
-    throw;
-  }
-}
+}  // namespace
 
-GlContext::~GlContext() {
-  OSMesaDestroyContext(state_->context);
-}
-
-void GlContext::make_current() {
-  if (OSMesaGetCurrentContext() == state_->context) return;
-  if (OSMesaMakeCurrent(state_->context, state_->window.data(), GL_UNSIGNED_BYTE, 1, 1) ==
-      GL_FALSE) {
-    throw std::runtime_error("OSMesa cannot make its context current");
-  }
-}
-
-GlContext::Function GlContext::function(const char* name) {
-  return OSMesaGetProcAddress(name);
+std::unique_ptr<GlContext> make_osmesa_context() {
+  return std::make_unique<OsMesaContext>();
 }
 
 }  // namespace pinchlab

@@ -26,8 +26,10 @@ BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.s
   }
 }
 
-// A segment's row is J = -dC/d(velocities) with C = L - l, dC/dt = e.(v_B - v_A) + p_B om_B - p_A
-// om_A; (J M^-1 J^T + compliance) impulse = C/h + dC/dt. Neighbours share one body.
+// A segment's row is J = -dC/d(velocities), with C = L - l and
+//   dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A
+//   (J M^-1 J^T + compliance) impulse = C/h + dC/dt
+// where e is the segment's direction and p a body's signed radius. Neighbours share one body.
 void BarePass::step() {
   const std::size_t count = rows.size();
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Archives for JATOS, and results that come back from it.
 #include "study/jatos.h"
-#include "base/read_file.h"
-#include "base/strict_json.h"
 
 #include <zlib.h>
 
@@ -10,6 +8,8 @@
 #include <set>
 
 #include "analysis/answer_file.h"
+#include "base/read_file.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
 #include "study/zip.h"
 #include "tests/study/support.h"
@@ -53,13 +53,17 @@ std::map<std::string, std::string> unzip(const fs::path& path) {
     const std::uint64_t name_length = number(zip, at + 28, 2);
     const std::string name = zip.substr(at + 46, name_length);
     const std::uint64_t local = number(zip, at + 42, 4);
-    EXPECT_EQ(zip.substr(local + 6, 24), zip.substr(at + 8, 24)) << "both heads of " << name;
-    const std::string bytes = inflated(
-        zip.substr(local + 30 + name_length, number(zip, at + 20, 4)), number(zip, at + 24, 4));
+    EXPECT_EQ(zip.substr(local, 4), "PK\x03\x04");
+    EXPECT_EQ(zip.substr(local + 30, name_length), name) << "both heads";
+    constexpr std::uint64_t new_year_1980 = (1U << 5U) | 1U;  // the earliest that there is
+    EXPECT_EQ(number(zip, at + 12, 4), new_year_1980 << 16U) << "a date tells something";
+    const std::uint64_t data = local + 30 + number(zip, local + 26, 2) + number(zip, local + 28, 2);
+    const std::string bytes =
+        inflated(zip.substr(data, number(zip, at + 20, 4)), number(zip, at + 24, 4));
     const uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
     EXPECT_EQ(crc, number(zip, at + 16, 4)) << name;
     entries[name] = bytes;
-    at += 46 + name_length;
+    at += 46 + name_length + number(zip, at + 30, 2) + number(zip, at + 32, 2);
   }
   return entries;
 }

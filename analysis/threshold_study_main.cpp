@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulates threshold studies of a known truth and tells how well it is recovered, for
+// analysis/results: pinchlab_threshold_study --out analysis/results
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "analysis/threshold_study.h"
+#include "base/partial_file.h"
+
+using namespace pinchlab::analysis;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Settings {
+  fs::path out;
+  int studies = 1000;
+  int resamples = 0;
+  std::uint64_t seed = 1;
+};
+
+struct Named {
+  const char* name;
+  ThresholdCondition condition;
+};
+
+const std::vector<Named> conditions{
+    {"logistic, one participant", {Shape::logistic, 1, 7, 40, {0.0, 1.2, 0.5, 0.02}, 0.0}},
+    {"normal, one participant", {Shape::normal, 1, 7, 100, {0.0, 1.2, 0.5, 0.02}, 0.0}},
+    {"Weibull, one participant", {Shape::weibull, 1, 9, 60, {0.1, 1.5, 0.5, 0.02}, 0.0}},
+    {"logistic, 12 participants", {Shape::logistic, 12, 7, 10, {0.0, 1.0, 0.5, 0.02}, 0.25}}};
+
+void run(const Settings& settings) {
+  std::string csv =
+      "condition,participants,levels,trials,bias,rms_error,ln_slope_bias,mean_spread,true_spread,"
+      "threshold_coverage,slope_coverage,bootstrap_threshold_coverage,misfit,not_estimable\n";
+  std::string page = fmt::format(
+      "# Thresholds of a known truth\n\n"
+      "Written by `pinchlab_threshold_study --out analysis/results --studies {} --resamples {} "
+      "--seed {}`.\n\n"
+      "{} simulated two-alternative studies a line: levels evenly spaced from -1 to 1 (Weibull: "
+      "the "
+      "logarithm of the level), guesses fixed at 0.5, lapses of 2 % that the fit has to find. Bias "
+      "and error are of the threshold. Coverage is the share of 95 % intervals that hold the "
+      "truth; "
+      "three standard errors of the simulation are {:.1f} percentage points.\n\n"
+      "| | levels × trials | bias | rms error | ln slope, bias | spread (truth) | threshold "
+      "covered "
+      "| slope covered | bootstrap covers threshold | fit rejected | not estimable |\n"
+      "|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+      settings.studies, settings.resamples, settings.seed, settings.studies,
+      300.0 * std::sqrt(0.05 * 0.95 / settings.studies));
+  for (const auto& [name, condition] : conditions) {
+    std::fprintf(stderr, "%s\n", name);
+    const Recovery r =
+        recovery(condition, settings.studies, {0.05, settings.resamples, settings.seed});
+    csv += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name,
+                       condition.participants, condition.levels, condition.trials, r.bias, r.error,
+                       r.slope_bias, r.mean_spread, condition.spread, r.threshold_coverage,
+                       r.slope_coverage, r.bootstrap_coverage, r.misfit, r.not_estimable);
+    const bool resampled = settings.resamples > 0;
+    page += fmt::format(
+        "| {} | {} × {} | {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} % | {:.1f} % | {} | {} | {} |\n",
+        name, condition.levels, condition.trials, r.bias, r.error, r.slope_bias,
+        condition.participants > 1 ? fmt::format("{:.3f} ({})", r.mean_spread, condition.spread)
+                                   : "–",
+        100.0 * r.threshold_coverage, 100.0 * r.slope_coverage,
+        resampled ? fmt::format("{:.1f} %", 100.0 * r.bootstrap_coverage) : "–",
+        resampled ? fmt::format("{:.1f} %", 100.0 * r.misfit) : "–", r.not_estimable);
+  }
+  pinchlab::StagingFolder staging(settings.out);
+  staging.write("threshold-recovery.csv", csv);
+  staging.write("threshold-recovery.md", page);
+  staging.keep();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    Settings settings;
+    CLI::App app{"Simulates threshold studies and tells how well their truth is recovered"};
+    app.add_option("--out", settings.out, "Folder for the page and its data")->required();
+    app.add_option("--studies", settings.studies, "Simulated studies a condition")
+        ->capture_default_str()
+        ->check(CLI::Range(100, 1000000));
+    app.add_option("--resamples", settings.resamples,
+                   "Bootstrap resamples a study (0: none, which is much faster)")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 10000));
+    app.add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : 2;
+    }
+    run(settings);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "pinchlab_threshold_study: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
