@@ -36,11 +36,13 @@ bool check_finite(const Scene& scene, World& world) {
 
 void measure_energy(const Scene& scene, World& world, const Workspace& work) {
   double energy = 0.0;
+  const double after = world.step == 0 ? 0.0 : 0.5;  // at time 0 velocities are at the positions'
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const BodyProperties& body = world.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
-    const Vec2 v = 0.5 * (work.velocity_before[b] + world.velocity[b]);
-    const double omega = 0.5 * (work.angular_velocity_before[b] + world.angular_velocity[b]);
+    const Vec2 v = (1.0 - after) * work.velocity_before[b] + after * world.velocity[b];
+    const double omega =
+        (1.0 - after) * work.angular_velocity_before[b] + after * world.angular_velocity[b];
     energy += 0.5 * disc_inertia(body) * omega * omega;
     if (body.kind == BodyKind::fixed_axle) continue;
     energy += 0.5 * body.mass * v.squaredNorm() - body.mass * scene.gravity.dot(world.position[b]);
@@ -69,11 +71,8 @@ void measure_cables(const Scene& scene, World& world) {
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
       length += segment.rest_length;
-      double stretch = segment.length - segment.rest_length;
-      if (scene.cables[c].axial_stiffness < infinity) {
-        stretch -= segment.tension * segment.rest_length / scene.cables[c].axial_stiffness;
-      }
-      if (!segment.pinched) d.largest_stretch = std::max(d.largest_stretch, stretch);
+      if (segment.pinched || scene.cables[c].axial_stiffness < infinity) continue;
+      d.largest_stretch = std::max(d.largest_stretch, segment.length - segment.rest_length);
     }
     d.cable_length_error = std::max(d.cable_length_error, std::abs(length - cable.length));
   }

@@ -82,7 +82,8 @@ constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 /// What the last step was like. Lengths in m, at the positions that the step ended with; they and
 /// the energy are not_measured unless Configuration::diagnostics asks for them.
 struct Diagnostics {
-  double largest_stretch = not_measured;  // m, of a segment beyond rest length and elastic strain
+  double largest_stretch = not_measured;  // m, of an inextensible cable's segment beyond its rest
+                                          // length
   double largest_gap_violation = not_measured;  // m, below a contact's target
   double energy = not_measured;  // J, kinetic + potential + elastic, at the step's start
   double cable_length_error = not_measured;  // m, sum of wraps and rest lengths against the

@@ -167,6 +167,23 @@ void remove_link(const World& world, CableState& cable, int link) {
   update_wraps_and_rest_lengths(world, cable);
 }
 
+namespace {
+
+/// Whether without link i a closed cable would lie on one body only: there would be no tangent.
+bool needed(const CableState& cable, std::size_t i) {
+  if (!cable.closed) return false;
+  int body = -1;
+  for (std::size_t k = 0; k < cable.links.size(); ++k) {
+    const Link& link = cable.links[k];
+    if (k == i || link.pinch_middle) continue;
+    if (body >= 0 && link.body != body) return false;
+    body = link.body;
+  }
+  return true;
+}
+
+}  // namespace
+
 void remove_links(World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
@@ -175,8 +192,7 @@ void remove_links(World& world, Workspace& work) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         const Link& link = cable.links[i];
-        const bool needed = cable.closed && cable.links.size() <= 2;
-        if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed) {
+        if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
           work.released.push_back({static_cast<int>(c), link.body});
           remove_link(world, cable, static_cast<int>(i));
           changed = true;
@@ -193,7 +209,6 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
   const Segment old = cable.segments[segment];
   const std::size_t from = tail_link(cable, segment);
-  const double start = head_material(cable, from, body_angle(world, cable.links[from]));
 
   Link link;
   link.body = body;
@@ -213,13 +228,19 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
     part->previous_tail = part->tail;
     part->previous_head = part->head;
   }
-  // Both parts get the same strain: rest lengths in the ratio of the lengths.
+  // Both parts get the same strain: rest lengths in the ratio of the lengths. The material to share
+  // is what lies between the neighbours' new tangents: they have turned, by much where the body is
+  // near.
   ++cable.changes;
   Link& added = cable.links[position];
+  const std::size_t to = leaving;  // a segment arrives at the link of its index
+  const double start = head_material(cable, from, body_angle(world, cable.links[from]));
+  const double end =
+      tail_material(cable, to, body_angle(world, cable.links[to])) + (to == 0 ? cable.length : 0.0);
   const double stored = link.radius * orientation * (alpha_head(cable, position) - first.alpha);
   const double free_length = first.length + second.length;
   const double share = free_length > 0.0 ? first.length / free_length : 0.5;
-  const double arrives = start + share * (old.rest_length - stored);
+  const double arrives = start + share * (end - start - stored);
   added.material = arrives - added.signed_radius() * (first.alpha - body_angle(world, added));
   update_wraps_and_rest_lengths(world, cable);
 }

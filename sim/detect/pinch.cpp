@@ -57,10 +57,12 @@ Contact* find_contact(World& world, int body, int other, int hint) {
 
 /// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
 /// than the cable's width it would press the span against the link's body, so it must keep that
-/// distance already before it hits the span.
+/// distance already before it hits the span. The body that holds the span's far end cannot hit it.
 bool over_adjacent_span(const World& world, const CableState& cable, std::size_t i, int other) {
+  const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
-  for (const int s : {static_cast<int>(i), after}) {
+  for (const auto& [s, far_end] : {std::pair(static_cast<int>(i), before), {after, after}}) {
+    if (holds_span(world, cable, cable.links[static_cast<std::size_t>(far_end)], other)) continue;
     const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
     const Vec2 x = world.position[static_cast<std::size_t>(other)] - segment.tail;
     const double along = segment.direction.dot(x);

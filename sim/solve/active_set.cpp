@@ -19,12 +19,17 @@ bool is_friction(const Row& row) {
   return row.friction >= 0;
 }
 
-/// Friction rows bear force only where their contact does.
+/// Friction rows bear force only where their contact does. A pinch without slip may push its bodies
+/// apart while it holds and let them together while it does not: infinite friction times no force.
+/// Then it holds.
 void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
   for (Friction& friction : s.frictions) {
     if (friction.repeats >= 0) continue;
     Row& row = at(s.rows, friction.row);
-    if (friction.normal >= 0) row.on = at(s.rows, friction.normal).on;
+    if (friction.normal >= 0) {
+      const Row& normal = at(s.rows, friction.normal);
+      row.on = normal.on || (normal.returned && friction.coefficient == infinity);
+    }
     bool slack = false;
     if (friction.run >= 0) {
       const Run& run = at(capstan.runs, friction.run);
@@ -62,16 +67,26 @@ Tolerances tolerances(const PartSystem& s, const SolveScratch& scratch) {
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
+/// Against its friction; but the other way where a row has slid that way in this step and was found
+/// to stick: then friction presses the bodies together by more than it takes to slide (Painleve).
+Slip direction_of_sliding(const Friction& friction, const Row& row, double bound, int solves) {
+  constexpr int patience = 4;
+  const Slip against = slip_of(row.impulse, bound);
+  if (friction.slid != against || solves < patience) return against;
+  return against == Slip::forward ? Slip::backward : Slip::forward;
+}
+
 void check_friction(const PartSystem& s, const Row& row, int number, double sliding,
-                    const Tolerances& tolerance, std::vector<Flip>& flips) {
+                    const Tolerances& tolerance, SolveScratch& set) {
   const Friction& friction = at(s.frictions, row.friction);
   if (!row.on || friction.frozen || friction.bound == infinity) return;
   const double bound = friction.bound * at(s.rows, friction.normal).impulse;
   if (row.slip == Slip::stick) {
     if (std::abs(row.impulse) <= bound + tolerance.impulse) return;
-    flips.push_back({number, false, true, slip_of(row.impulse, bound)});
+    const Slip slip = direction_of_sliding(friction, row, bound, set.solves);
+    set.flips.push_back({number, false, true, slip});
   } else if (sliding * static_cast<int>(row.slip) < -tolerance.speed && bound > tolerance.impulse) {
-    flips.push_back({number, false, true, Slip::stick});
+    set.flips.push_back({number, false, true, Slip::stick});
   }
 }
 
@@ -98,7 +113,7 @@ void check(const PartSystem& s, SolveScratch& set) {
     const int number = static_cast<int>(r);
     if (is_friction(row)) {
       const double sliding = row.speed + run_speed(s, set.capstan, row);
-      check_friction(s, row, number, sliding, tolerance, set.flips);
+      check_friction(s, row, number, sliding, tolerance, set);
     } else if (row.diagonal > 0.0 && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {
         set.flips.push_back({number, false, false, Slip::stick});
@@ -144,9 +159,11 @@ void apply(PartSystem& s, SolveScratch& set, const Flip& flip) {
     return;
   }
   Row& row = at(s.rows, flip.row);
+  if (row.kind == RowKind::normal && flip.on && row.flipped > 0) row.returned = true;
   row.flipped = set.solves;
   if (is_friction(row)) {
     row.slip = flip.slip;
+    if (flip.slip != Slip::stick) at(s.frictions, row.friction).slid = flip.slip;
   } else {
     row.on = flip.on;
   }

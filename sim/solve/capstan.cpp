@@ -335,12 +335,17 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
   slip_speeds(system, s);
   for (const Group& group : s.groups) {
     if (group.slack >= 0) {
+      // A member between bodies that cannot move gets taut like any other: the rest of the group
+      // gives way.
       double w = 0.0;
+      bool gives = false;
       for (int k = group.slack_begin; k < group.slack_end; ++k) {
-        w += s.slack_terms[index(k)].coefficient * rows[index(s.slack_terms[index(k)].index)].speed;
+        const Row& term = rows[index(s.slack_terms[index(k)].index)];
+        w += s.slack_terms[index(k)].coefficient * term.speed;
+        gives = gives || term.diagonal > 0.0;
       }
       const int row = s.members[index(group.slack)];
-      if (w < -speed_tolerance && rows[index(row)].diagonal > 0.0) {
+      if (w < -speed_tolerance && gives) {
         set.flips.push_back({row, false, true, Slip::stick});
       }
     }

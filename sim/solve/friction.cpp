@@ -12,8 +12,9 @@ namespace pinchlab {
 
 namespace {
 
-/// Beyond this exponent no double tells the ratio from infinity in a product with a tension.
-constexpr double largest_exponent = 600.0;
+/// Beyond this exponent no double tells the ratio from infinity in a sum with another tension. The
+/// product of those along a cable must not overflow.
+constexpr double largest_exponent = 40.0;
 
 /// With three rows the middle body of a pinch holds the cable like an arc of this much on it (rad).
 constexpr double middle_arc = 1.0;

@@ -50,6 +50,7 @@ struct Row {
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
+  bool returned = false;    // normal: has lost its force in this step and got it back
   double bias = 0.0;        // m/s
   double compliance = 0.0;  // 1/kg
   double diagonal = 0.0;    // 1/kg, J * mobility * J^T
@@ -71,6 +72,7 @@ struct Friction {
   bool in_group_equation = false;  // pinch_middle: its equation is part of its group's
   bool dropped = false;            // bears nothing in this step
   bool frozen = false;             // keeps its state for this step, whatever its bound
+  Slip slid = Slip::stick;         // the way it last slid in this step
 };
 
 /// What taut spans do to a body across themselves: h^2 times their stiffness, and that times their

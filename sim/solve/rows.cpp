@@ -50,8 +50,7 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
 }
 
 /// All of a segment's row but its bodies, as it is before a solve.
-void set_segment_values(const World& world, const Segment& segment, double stiffness, double kick,
-                        Row& row) {
+void set_segment_values(const World& world, const Segment& segment, Row& row) {
   row.kind = RowKind::segment;
   row.on = !segment.slack;
   row.slip = Slip::stick;
@@ -63,11 +62,40 @@ void set_segment_values(const World& world, const Segment& segment, double stiff
                           ? std::max(segment.rest_length, 0.0)
                           : segment.rest_length;
   row.bias = -(segment.length - rest) / world.step_length;
-  // T = EA C / l at the step's end: C + h dC/dt = T l / EA with impulse T * kick.
   row.compliance = 0.0;
-  if (stiffness < infinity && !segment.pinched) {
-    row.compliance = std::max(segment.rest_length, 0.0) / (stiffness * world.step_length * kick);
-  }
+}
+
+/// What a link's body adds to J v of a row that sees it by j, at the world's velocities (m/s).
+double speed_of(const World& world, const Link& link, const Eigen::Vector3d& j) {
+  if (link.body < 0) return 0.0;
+  const Vec2& v = at(world.velocity, link.body);
+  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, link.body);
+}
+
+// With C_n at the step's start, v- and v+ the velocities before and after the kick,
+//     T = EA / l (C_n + a h dC/dt(v+) - b h dC/dt(v-)).
+// a = b = 1/4 is the mean of C over the three steps about n, weighted 1, 2, 1: the trapezoidal
+// rule, of second order, stable for any stiffness, and undamped. a = 1, b = 0 is implicit Euler,
+// which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about three steps a
+// period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer it is: a - b =
+// 1 - 4/s.
+
+/// Makes the row of an inextensible segment that of an elastic one (`stiffness` is EA, N).
+void make_elastic(const World& world, const Link& from, const Link& to, const Segment& segment,
+                  double stiffness, double kick, const RowBodies& bodies, Row& row) {
+  const double h = world.step_length;
+  const double flexibility = std::max(segment.rest_length, 0.0) / stiffness;  // m/N
+  const bool sweeps =
+      world.configuration.solver == Solver::iterative;  // the thesis' implicit Euler
+  const double square = h * h * row.diagonal;           // s times flexibility
+  const double damped =
+      sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
+  const double b = 0.25 * (1.0 - damped), a = b + damped;
+  row.compliance = flexibility / (a * h * kick);
+  if (b == 0.0) return;
+  const double before = to.slip_speed - from.slip_speed - speed_of(world, from, bodies.ja) -
+                        speed_of(world, to, bodies.jb);  // dC/dt(v-), m/s
+  row.bias = row.bias / a + b / a * before;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
@@ -203,7 +231,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       }
       Row& row = at(s.rows, number);
       RowBodies& bodies = at(s.bodies, number);
-      set_segment_values(world, segment, stiffness, kick, row);
+      set_segment_values(world, segment, row);
       const bool on_centre_line = plain && segment.pinched;
       // The lever of a circle off its body's centre turns with the body, moved or not.
       const bool stands = again && !segment.moved && has_fixed_lever(from) && has_fixed_lever(to);
@@ -215,6 +243,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       const bool changed = !stands || on_centre_line || s.mobility_changed;
       at(s.changed, number) = changed;
       if (changed) weigh(s, bodies, row);
+      if (stiffness < infinity && !segment.pinched) {
+        make_elastic(world, from, to, segment, stiffness, kick, bodies, row);
+      }
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
         row.slip = to.slip;
