@@ -20,13 +20,13 @@ struct BatchOptions {
   Timing timing;
   Codec codec = Codec::h264;
   ThemeFile theme;
-  Playback playback;          ///< of the clips; not of posters and reports
-  bool burn_time = false;     ///< the time in a corner of each picture
+  Playback playback;                 ///< of the clips; not of posters and reports
+  bool burn_time = false;            ///< the time in a corner of each picture
   std::optional<double> time_limit;  ///< s of work on one method of a clip, then it has failed
-  int jobs = 0;               ///< worker processes; 0: one a core
-  bool singles = true;        ///< each method's clip by itself, and the poster
-  bool side_by_side = false;  ///< both left/right orders of each pair in one file
-  bool report = false;        ///< how each pair differs: figures, a strip of pictures, report.html
+  int jobs = 0;                      ///< worker processes; 0: one a core
+  bool singles = true;               ///< each method's clip by itself, and the poster
+  bool side_by_side = false;         ///< both left/right orders of each pair in one file
+  bool report = false;  ///< how each pair differs: figures, a strip of pictures, report.html
   bool checks = false;  ///< attention checks: the pinch clip beside itself upside down, both orders
 };
 

@@ -20,7 +20,7 @@ struct StillOptions {
   bool burn_time = false;              ///< the time in a corner of each picture
   ThemeFile theme;
   std::filesystem::path out;  ///< .png, .svg or .pdf; with a # in its name: a PNG for each frame
-  std::optional<double> time_limit;    ///< s of work on one method, after which it is given up
+  std::optional<double> time_limit;  ///< s of work on one method, after which it is given up
 };
 
 /// The frames that `times` name, in their order. Throws std::invalid_argument for what is no time

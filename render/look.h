@@ -12,6 +12,7 @@ namespace pinchlab {
 
 struct Paint {
   Colour fill, edge;
+  bool operator==(const Paint&) const = default;
 };
 
 /// Colours and sizes of a picture. The default is the palette of Okabe and Ito, told apart with any

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "render/cable_path.h"
-#include "sim/step.h"
 #include "sim/cable/tangent.h"
+#include "sim/step.h"
 
 namespace pinchlab {
 

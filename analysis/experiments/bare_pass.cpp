@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiments/bare_pass.h"
 
+#include <algorithm>
+
 #include "sim/cable/tangent.h"
 
 namespace pinchlab::experiments {
@@ -28,8 +30,9 @@ BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.s
 
 // A segment's row is J = -dC/d(velocities), with C = L - l and
 //   dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A
-//   (J M^-1 J^T + compliance) impulse = C/h + dC/dt
-// where e is the segment's direction and p a body's signed radius. Neighbours share one body.
+//   (J M^-1 J^T + compliance / a) impulse = C / (a h) + (1 - b/a) dC/dt
+// where e is the segment's direction and p a body's signed radius. Neighbours share one body. a = 1
+// and b = 0 without elasticity, else those of the simulator's rule (sim/solve/rows.cpp).
 void BarePass::step() {
   const std::size_t count = rows.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -40,11 +43,19 @@ void BarePass::step() {
     row.direction = tangent.direction;
     row.length = tangent.length;
     row.diagonal = a.inverse_mass + a.inverse_inertia * a.signed_radius * a.signed_radius +
-                   b.inverse_mass + b.inverse_inertia * b.signed_radius * b.signed_radius +
-                   compliance * row.rest_length;
-    row.impulse = (row.length - row.rest_length) / step_length +
-                  row.direction.dot(b.velocity - a.velocity) +
+                   b.inverse_mass + b.inverse_inertia * b.signed_radius * b.signed_radius;
+    double error = (row.length - row.rest_length) / step_length;
+    double rate = row.direction.dot(b.velocity - a.velocity) +
                   b.signed_radius * b.angular_velocity - a.signed_radius * a.angular_velocity;
+    if (compliance > 0.0) {
+      const double own = compliance * row.rest_length;  // 1/kg
+      const double damped = std::max(0.0, 1.0 - 4.0 * own / row.diagonal);
+      const double before = 0.25 * (1.0 - damped), after = before + damped;
+      row.diagonal += own / after;
+      error /= after;
+      rate *= 1.0 - before / after;
+    }
+    row.impulse = error + rate;
     if (i == 0) continue;
     Row& before = rows[i - 1];
     before.upper = -(a.inverse_mass * before.direction.dot(row.direction) +

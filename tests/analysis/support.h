@@ -106,6 +106,11 @@ inline nlohmann::json answer_document(const std::string& participant = "p-1") {
   document["participant"] = participant;
   document["withdrawal_code_sha256"] = std::string(64, 'a');
   document["clips_sha256"]["01-roll-over"]["pinch_left"] = std::string(64, '0');
+  document["study"] = {{"language", "en"},
+                       {"question", "Which of the two looks more real?"},
+                       {"consent_sha256", std::string(64, 'b')},
+                       {"texts_sha256", std::string(64, 'c')},
+                       {"clips_sha256", std::string(64, 'd')}};
   const auto trial = [&](int position, const char* kind, const char* demonstration,
                          const char* left, const char* right, const char* choice) {
     document["trials"].push_back({{"position", position},

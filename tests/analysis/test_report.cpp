@@ -131,7 +131,8 @@ void check_nulls(const json& value, const std::string& place) {
 
 TEST(ReportJson, DegenerateStudiesHaveReasonsAndNoNaN) {
   const std::string head = "participant,demonstration,choice\n";
-  for (const std::string& rows : std::vector<std::string>{
+  for (const std::string& rows :
+       std::vector<std::string>{
            "a,1,pinch\n",                                      // one answer
            "a,1,pinch\na,2,cable\n",                           // one participant
            "a,1,pinch\nb,1,pinch\nc,1,cable\n",                // one demonstration

@@ -88,11 +88,11 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x34a1eaa709289349, 0x1e7aa22b9b3c930e},
+    {"01-roll-over", 0x1480f10c1cc50bd6, 0x1e7aa22b9b3c930e},
     {"02-stack", 0xdc4dca8c384ccb15, 0x6108cc8c405ab6f2},
     {"03-drop", 0x2f19eab5e670cea2, 0x506cc218cee0dcd8},
     {"04-two-blocking", 0x07a155f3a79649e7, 0xf10cfa63aec2d77c},
-    {"05-notch", 0x16a2cbcafd81820b, 0x70422b9ab3dfaeb4},
+    {"05-notch", 0x44830abeb74b3fcd, 0x2911db5285586e85},
     {"06-windlass", 0x75c990b37d4c0f3c, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
     {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},
@@ -118,14 +118,14 @@ TEST_P(Demonstration, DiffersWithinTheFirstSecond) {
   const double visible = scenery.unit();  // m
   World pinch = make_world(scene_, Method::pinch), baseline = make_world(scene_, scene_.baseline);
   Workspace pinch_work, baseline_work;
+  double apart = 0.0;
   for (int i = 0; i < scene_.frames_per_second * scene_.steps_per_frame; ++i) {
     ASSERT_EQ(step(scene_, pinch, pinch_work), StepStatus::ok);
     ASSERT_EQ(step(scene_, baseline, baseline_work), StepStatus::ok);
-  }
-  double apart = 0.0;
-  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    apart = std::max({apart, (pinch.position[b] - baseline.position[b]).norm(),
-                      scene_.bodies[b].radius * std::abs(pinch.angle[b] - baseline.angle[b])});
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+      apart = std::max({apart, (pinch.position[b] - baseline.position[b]).norm(),
+                        scene_.bodies[b].radius * std::abs(pinch.angle[b] - baseline.angle[b])});
+    }
   }
   EXPECT_GT(apart, visible);
 }

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 RunResult draw(const fs::path& folder, const char* kind, const fs::path& scene) {
   ::setenv("PINCHLAB_GL", kind, 1);
-  RunResult run =
-      run_program(folder, {"still", scene.string(), "--time", "0.5,1.5", "--both", "--out", kind});
+  RunResult run = run_program(folder, {"still", scene.string(), "--time", "0.5,1.5", "--both",
+                                       "--out", std::string(kind) + ".png"});
   ::unsetenv("PINCHLAB_GL");
   return run;
 }
@@ -28,7 +28,7 @@ TEST(GlContext, OsmesaAndEglGiveTheSameBytes) {
       if (run.err.find("there is no") != std::string::npos) GTEST_SKIP() << run.err;
       ASSERT_EQ(run.exit_code, 0) << kind << ": " << run.err;
     }
-    EXPECT_TRUE(text_of(folder / "osmesa") == text_of(folder / "egl")) << scene;
+    EXPECT_TRUE(text_of(folder / "osmesa.png") == text_of(folder / "egl.png")) << scene;
   }
 }
 
@@ -39,7 +39,7 @@ TEST(GlContext, AnUnknownKindIsTold) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.err.find("PINCHLAB_GL: `vulkan` must be osmesa or egl"), std::string::npos)
       << run.err;
-  EXPECT_FALSE(fs::exists(folder / "vulkan"));
+  EXPECT_FALSE(fs::exists(folder / "vulkan.png"));
 }
 
 }  // namespace

@@ -108,7 +108,8 @@ TEST(HelpPages, CompletionKnowsBeginningsAndValues) {
   EXPECT_EQ(offered(folder, {"st"}), (Set{"still", "study"}));
   EXPECT_EQ(offered(folder, {"study", "ser"}), (Set{"serve"}));
   EXPECT_EQ(offered(folder, {"render", "--co"}), (Set{"--codec"}));
-  EXPECT_EQ(offered(folder, {"render", "--codec", ""}), (Set{"h264", "vp9", "ffv1"}));
+  EXPECT_EQ(offered(folder, {"render", "--codec", ""}),
+            (Set{"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
   EXPECT_EQ(offered(folder, {"simulate", "--out", "x.csv", "--method", "t"}), (Set{"thesis"}));
   EXPECT_EQ(offered(folder, {"completion", "b"}), (Set{"bash"}));
   EXPECT_EQ(offered(folder, {"simulate", "my-scene"}), (Set{}));  // bash then offers files

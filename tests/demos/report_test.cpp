@@ -8,6 +8,8 @@
 #include "demos/events.h"
 #include "demos/pair_report.h"
 #include "demos/player.h"
+#include "render/mesh.h"
+#include "render/scenery.h"
 #include "run_program.h"
 #include "scene_files.h"
 
@@ -73,8 +75,8 @@ TEST(PairReport, FindsTheLandingAndTheDepthOfTheDrop) {
       roller.position.y() - pulley.position.y() - pulley.radius - roller.radius - 0.1;  // m
   const double landing = std::sqrt(2.0 * fall / 9.81);
   EXPECT_NEAR(*report.first_difference / 60.0, landing, 3.0 / 60.0);
-  const double width = file.scene.view.high.x() - file.scene.view.low.x();
-  EXPECT_NEAR(report.largest_distance, 0.1 / width * 480, 0.5);
+  const double scale = Fit(set_scenery(file.scene, file.look).view, 0, 480, 480).scale;  // px/m
+  EXPECT_NEAR(report.largest_distance, 0.1 * scale, 0.5);
   EXPECT_EQ(report.largest_body, "roller");
   EXPECT_GT(longest(report.pinch.still), 1.0);
   EXPECT_NEAR(report.pinch.end_speed, 0.0, 0.1);

@@ -46,7 +46,7 @@ const BadScene bad_scenes[] = {
      "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, "
      "driven_angular_velocity_rad_s, torque_n_m, linear_drag_per_s, angular_drag_per_s, "
      "cable_friction, "
-     "contact_friction, restitution)"},
+     "contact_friction, restitution, look)"},
     {"/cables/0/wraps/0/orientation", "1",
      "s.json: /cables/0/wraps/0/orientation: unknown key (known here: body, turn, extra_turns)"},
     {"/cables/0/start/point", "[0, 0]",

@@ -36,7 +36,7 @@ Image read(const std::string& path) {
 std::vector<std::uint8_t> gradient(int width, int height) {
   std::vector<std::uint8_t> rgba;
   for (int i = 0; i < width * height; ++i) {
-    for (const int c : {i, 3 * i, i / width, 7}) rgba.push_back(static_cast<std::uint8_t>(c));
+    for (const int c : {i, 3 * i, i / width, 255}) rgba.push_back(static_cast<std::uint8_t>(c));
   }
   return rgba;
 }
@@ -67,9 +67,10 @@ TEST(Png, ContactSheetShowsEveryFrameOverItsLabel) {
   const int w = 120, h = 80;
   std::vector<SheetFrame> frames;
   for (int i = 0; i < 5; ++i) {
-    frames.push_back({std::vector<std::uint8_t>(static_cast<std::size_t>(w * h * 4),
-                                                static_cast<std::uint8_t>(40 * i)),
-                      "t = 1.25 s"});
+    std::vector<std::uint8_t> rgba(static_cast<std::size_t>(w * h * 4),
+                                   static_cast<std::uint8_t>(40 * i));
+    for (std::size_t k = 3; k < rgba.size(); k += 4) rgba[k] = 255;
+    frames.push_back({rgba, "t = 1.25 s"});
   }
   contact_sheet(folder.file("sheet.png"), w, h, frames, 3);
   const Image sheet = read(folder.file("sheet.png"));

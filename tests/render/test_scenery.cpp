@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "render/compose.h"
 #include "render/vector_canvas.h"
 #include "sim/step.h"
@@ -135,8 +137,14 @@ TEST(Vector, SvgAndPdfAreTheSameTwice) {
     const std::string b = folder.file(std::string("b") + ending);
     write_vector(a, format, 200, 200, {{picture, ""}});
     write_vector(b, format, 200, 200, {{picture, ""}});
-    const auto raw = testing::bytes_of(a);
-    EXPECT_EQ(raw, testing::bytes_of(b));
+    // Cairo numbers the surfaces of a process.
+    const auto numbered_anew = [](const std::string& path) {
+      const auto bytes = testing::bytes_of(path);
+      return std::regex_replace(std::string(bytes.begin(), bytes.end()),
+                                std::regex("surface[0-9]+"), "surface");
+    };
+    const std::string raw = numbered_anew(a);
+    EXPECT_TRUE(raw == numbered_anew(b));
     EXPECT_TRUE(std::string(raw.begin(), raw.end()).starts_with(begin));
   }
   const auto raw = testing::bytes_of(folder.file("a.svg"));
