@@ -91,7 +91,7 @@ struct RowsMade {
 };
 
 struct PartSystem {
-  // Bodies of the part in its order, and the world after them; by load_bodies.
+  // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies
   std::vector<char> mobile;                    // impulses can move or turn it
   std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
