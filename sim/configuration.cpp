@@ -8,6 +8,7 @@ Configuration thesis_configuration() {
   thesis.solver = Solver::iterative;
   thesis.detection = Detection::all_pairs;
   thesis.pinch_rows = PinchRows::three;
+  thesis.events = Events::at_steps;
   thesis.sleep = false;
   return thesis;
 }
@@ -30,6 +31,10 @@ const char* to_string(Solver solver) {
 
 const char* to_string(Detection detection) {
   return detection == Detection::sweep ? "sweep" : "all_pairs";
+}
+
+const char* to_string(Events events) {
+  return events == Events::located ? "located" : "at_steps";
 }
 
 const char* to_string(PinchRows rows) {

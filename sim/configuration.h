@@ -28,20 +28,32 @@ enum class PinchRows {
   three,  ///< its contact, and both of its zero-length segments (thesis 4.2.2)
 };
 
+/// When impacts, catches and changes of the cables' course take effect.
+enum class Events {
+  located,   ///< advance.h: at their time; lengths and gaps are exact at the end of each step
+  at_steps,  ///< in the step in which they fall; what a step misses the next one makes up
+};
+
 /// How a scene is simulated.
 struct Configuration {
   Method method = Method::pinch;
   Solver solver = Solver::direct;
   Detection detection = Detection::sweep;
   PinchRows pinch_rows = PinchRows::one;
-  int iterations = 10;       ///< >= 1, sweeps of the iterative solver
-  bool sleep = true;         ///< parts of the scene that have come to rest cost no more
-  bool diagnostics = false;  ///< fills the measured lengths and energy of World::diagnostics
+  Events events = Events::located;  ///< located asks for the direct solver
+  int iterations = 10;              ///< >= 1, sweeps of the iterative solver
+  bool sleep = true;                ///< parts of the scene that have come to rest cost no more
+  bool diagnostics = false;         ///< fills the measured lengths and energy of World::diagnostics
 
   Configuration() = default;
   Configuration(Method m) : method(m) {}  // NOLINT: a method alone is a configuration
   bool operator==(const Configuration&) const = default;
 };
+
+/// Whether events are located: the iterative solver has no use for it.
+inline bool locates_events(const Configuration& configuration) {
+  return configuration.events == Events::located && configuration.solver == Solver::direct;
+}
 
 /// The whole of what the thesis describes: cables solved by projected Gauss-Seidel sweeps,
 /// all-pairs detection, three rows a pinch.
@@ -56,5 +68,6 @@ const char* to_string(const Configuration& configuration);
 const char* to_string(Solver solver);
 const char* to_string(Detection detection);
 const char* to_string(PinchRows rows);
+const char* to_string(Events events);
 
 }  // namespace pinchlab

@@ -21,6 +21,7 @@ struct Contact {
   int pinch_points = 0;        // cables (or turns of one) that share the contact's force
   bool pinch_linked = false;   // a cable between the two takes the place of bare friction
   bool touching = false;       // by the active set
+  bool rebounds = false;       // has just rebounded: bears nothing until it has parted; by impact
   Slip slip = Slip::stick;     // of bare surfaces, by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)

@@ -36,7 +36,7 @@ bool check_finite(const Scene& scene, World& world) {
 
 void measure_energy(const Scene& scene, World& world, const Workspace& work) {
   double energy = 0.0;
-  const double after = world.step == 0 ? 0.0 : 0.5;  // at time 0 velocities are at the positions'
+  const double after = work.kick_before > 0.0 ? work.lag_before / work.kick_before : 0.0;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const BodyProperties& body = world.bodies[b];
     if (body.kind == BodyKind::fixed) continue;

@@ -2,14 +2,15 @@
 #include "sim/step.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/at.h"
+#include "sim/advance.h"
 #include "sim/cable/cable.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
 #include "sim/solve/active_set.h"
+#include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
@@ -20,72 +21,11 @@ namespace pinchlab {
 
 namespace {
 
-/// Velocity kick of forces alone. Positions are at the step's start, velocities half a step before;
-/// the first kick, from velocities at time 0, is half as long. That makes semi-implicit Euler a
+/// Velocity kick of forces alone. Positions are at the step's start, velocities `lag` before: half a
+/// step, or none at time 0, so that the first kick is half as long. That makes semi-implicit Euler a
 /// leapfrog.
 double kick_length(const World& world) {
-  return world.step == 0 ? 0.5 * world.step_length : world.step_length;
-}
-
-/// What of a part's bodies lasts from step to step.
-void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
-  s.mobility_changed = true;
-  s.mobility_kick = kick;
-  s.mobility.clear();
-  s.mobile.clear();
-  s.span_masses.clear();
-  for (const int b : bodies) {
-    s.mobility.push_back(mobility_of(at(world.bodies, b), kick));
-    s.mobile.push_back(is_mobile(at(world.bodies, b)));
-  }
-  s.mobility.emplace_back();  // nothing moves the world
-  s.mobile.push_back(false);
-  s.free_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
-}
-
-/// Velocity of a body after a kick of k seconds by forces alone.
-///
-/// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
-/// f/m.
-Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, const Vec2& v,
-                              double omega, double k) {
-  const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
-  Vec2 free = Vec2::Zero();
-  if (can_move(body)) {
-    Vec2 pull = k * scene.gravity;
-    if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
-    free = ((1.0 - linear) * v + pull) / (1.0 + linear);
-  }
-  if (body.driven_angular_velocity) {
-    omega = *body.driven_angular_velocity;
-  } else if (angular != 0.0 || body.torque != 0.0) {
-    omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
-  }
-  return {free.x(), free.y(), omega};
-}
-
-/// Free velocities of all bodies that are awake, in their parts' systems.
-void apply_forces(const Scene& scene, const World& world, Workspace& work) {
-  const double k = kick_length(world);
-  for (const Part& part : work.parts.list) {
-    if (part.asleep) continue;
-    PartSystem& s = at(work.systems, part.system);
-    const std::span<const int> bodies = bodies_of(work.parts, part);
-    s.mobility_changed = false;
-    if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
-    s.extent = 0.0;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const auto b = index(bodies[i]);
-      s.free_velocity[i] =
-          free_velocity(scene, world.bodies[b], world.velocity[b], world.angular_velocity[b], k);
-      s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
-    }
-    for (const int c : cables_of(work.parts, part)) {
-      const CableState& cable = at(world.cables, c);
-      const auto segments = static_cast<double>(cable.segments.size());
-      s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
-    }
-  }
+  return world.lag + 0.5 * world.step_length;
 }
 
 /// Positions, and the material that slides over bodies, with the velocities just found.
@@ -110,36 +50,19 @@ bool all_asleep(const Parts& parts) {
                      [](const Part& part) { return part.asleep; });
 }
 
-class Stopwatch {
- public:
-  explicit Stopwatch(StageTimes* times) : times_(times) {
-    if (times_) last_ = Clock::now();
-  }
-  void lap(Stage stage) {
-    if (!times_) return;
-    const auto now = Clock::now();
-    times_->seconds[static_cast<std::size_t>(stage)] +=
-        std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  StageTimes* times_;
-  Clock::time_point last_;
-};
-
 /// Velocities of a part's bodies that meet all of its constraints, in its system; whether the
 /// states settled.
 bool solve_part(const Scene& scene, const World& world, Workspace& work, const Part& part,
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   const double kick = kick_length(world);
+  const Interval interval{world.step_length, kick, world.lag};
   work.solve.step_length = world.step_length;
+  work.solve.reach = infinity;
   steady_light_bodies(world, work.parts, part, kick, s);
-  make_segment_rows(scene, world, work.parts, part, kick, s);
+  make_segment_rows(scene, world, work.parts, part, interval, s);
   watch.lap(Stage::init_segments);
-  make_contact_rows(scene, world, work.parts, part, s, work.solve);
+  make_contact_rows(scene, world, work.parts, part, interval, s, work.solve);
   watch.lap(Stage::init_contacts);
   if (world.configuration.solver == Solver::direct) {
     return solve_direct(world, work.parts, part, s, work.solve);
@@ -175,16 +98,25 @@ void note_velocities(const World& world, Workspace& work) {
 
 }  // namespace
 
-void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
-  Stopwatch watch(times);
-  update_segments(world, work);
-  watch.lap(Stage::update_segments);
-  remove_links(world, work);
-  watch.lap(Stage::remove_links);
+void find_pairs(const Scene& scene, const World& world, Workspace& work, Stopwatch& watch) {
   const bool sweep = world.configuration.detection == Detection::sweep;
   (sweep ? find_body_pairs : find_all_body_pairs)(scene, world, work);
   watch.lap(Stage::broad_phase);
   (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
+}
+
+void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
+  update_segments(world, work);
+  watch.lap(Stage::update_segments);
+  detect_after_moving(scene, world, work, times);
+}
+
+void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
+  remove_links(world, work);
+  watch.lap(Stage::remove_links);
+  find_pairs(scene, world, work, watch);
   add_hit_links(world, work);
   watch.lap(Stage::intersect_segments);
   find_contacts(scene, world, work);
@@ -195,6 +127,29 @@ void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times
   watch.lap(Stage::configure_pinches);
 }
 
+namespace {
+
+/// A step in one: events take effect in the step in which they fall.
+StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
+  apply_forces(scene, world, kick_length(world), work);
+  watch.lap(Stage::apply_forces);
+  solve_parts(scene, world, work, watch);
+  if (!check_finite(scene, world)) return StepStatus::not_finite;
+  work.lag_before = world.lag;
+  work.kick_before = kick_length(world);
+  if (world.configuration.diagnostics) measure_energy(scene, world, work);
+  watch.lap(Stage::diagnose);
+  work.start.position = world.position;
+  move_bodies(work.parts, world);
+  world.lag = 0.5 * world.step_length;
+  watch.lap(Stage::move_bodies);
+  detect(scene, world, work, times);
+  return StepStatus::ok;
+}
+
+}  // namespace
+
 StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   fit(world, work);
   if (all_asleep(work.parts)) {
@@ -202,19 +157,13 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
     mark(world, work);
     return StepStatus::ok;
   }
-  Stopwatch watch(times);
   if (world.configuration.diagnostics) note_velocities(world, work);
-  apply_forces(scene, world, work);
-  watch.lap(Stage::apply_forces);
-  solve_parts(scene, world, work, watch);
-  if (!check_finite(scene, world)) return StepStatus::not_finite;
-  if (world.configuration.diagnostics) measure_energy(scene, world, work);
-  watch.lap(Stage::diagnose);
-  move_bodies(work.parts, world);
+  const StepStatus status = locates_events(world.configuration)
+                                ? advance(scene, world, work, times)
+                                : advance_at_once(scene, world, work, times);
+  if (status != StepStatus::ok) return status;
   ++world.step;
-  watch.lap(Stage::move_bodies);
-  detect(scene, world, work, times);
-  watch = Stopwatch(times);
+  Stopwatch watch(times);
   if (world.configuration.diagnostics) measure_cables(scene, world);
   mark(world, work);
   watch.lap(Stage::diagnose);
@@ -225,18 +174,28 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   Velocities now{world.velocity, world.angular_velocity};
   if (world.step == 0) return now;
   fit(world, work);
+  const bool located = locates_events(world.configuration);
   Stopwatch untimed(nullptr);
-  apply_forces(scene, world, work);
+  if (located) {
+    find_present_velocities(scene, world, work);
+  } else {
+    apply_forces(scene, world, kick_length(world), work);
+  }
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
-    solve_part(scene, world, work, part, untimed);
+    if (!located) solve_part(scene, world, work, part, untimed);
     const PartSystem& s = at(work.systems, part.system);
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       Vec2& linear = at(now.linear, bodies[i]);
       double& angular = at(now.angular, bodies[i]);
-      linear = 0.5 * (linear + s.velocity[i].head<2>());
-      angular = 0.5 * (angular + s.velocity[i].z());
+      if (located) {
+        linear = s.velocity[i].head<2>();
+        angular = s.velocity[i].z();
+      } else {  // the mean of half a step before and after
+        linear = 0.5 * (linear + s.velocity[i].head<2>());
+        angular = 0.5 * (angular + s.velocity[i].z());
+      }
     }
   }
   return now;

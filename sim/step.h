@@ -2,37 +2,10 @@
 #pragma once
 // START HERE: one step of the simulation.
 
-#include <array>
-
+#include "sim/stages.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
-
-/// The stages of a step, in order. Those of the thesis' Algorithm 1 keep their names; its cycle
-/// starts at update_segments, ours ends with it, so that a world between steps shows cables that
-/// fit its bodies.
-enum class Stage {
-  apply_forces,
-  init_segments,
-  init_contacts,
-  solve,
-  move_bodies,
-  update_segments,
-  remove_links,
-  broad_phase,
-  intersect_segments,
-  find_contacts,
-  configure_pinches,
-  diagnose,
-  count
-};
-
-const char* to_string(Stage stage);
-
-/// Seconds spent in each stage, added up over the steps that were given this.
-struct StageTimes {
-  std::array<double, static_cast<std::size_t>(Stage::count)> seconds{};
-};
 
 /// Advances `world` by one step of world.step_length seconds: leapfrog, the first kick half a step
 /// long, constraints solved at the positions that the kick is made at. Smooth motion is second
@@ -54,5 +27,11 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
 
 /// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
 void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
+
+/// The same where the segments are up to date.
+void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times);
+
+/// The pairs that may touch or hit.
+void find_pairs(const Scene& scene, const World& world, Workspace& work, Stopwatch& watch);
 
 }  // namespace pinchlab

@@ -21,6 +21,30 @@ struct Release {
   int cable, body;
 };
 
+/// What may happen within an interval, and then ends it: advance.h.
+enum class EventKind : std::int8_t { catches, link_gone, hit };
+
+struct Event {
+  EventKind kind;
+  int part = -1;        // catches: of its row
+  int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight
+  int cable = -1;       // link_gone, hit
+  int item = -1;        // link; or span
+  int body = -1;        // hit
+  int orientation = 0;  // hit
+  double clearance =
+      0.0;             // m, that was left of it at the end of the last trial; negative: too late
+  double reach = 0.0;  // m, to within which it must be met
+  bool seen = false;   // in the last trial
+};
+
+/// Where things were when an interval began.
+struct Start {
+  std::vector<Vec2> position, velocity;
+  std::vector<double> angle, angular_velocity;
+  std::vector<double> material, wrap;  // of the links, cable after cable
+};
+
 /// Storage of find_contacts and configure_pinches.
 struct ContactScratch {
   std::vector<Contact> old_contacts;  // of the step before
@@ -45,8 +69,13 @@ struct Workspace {
   ContactScratch contacts;
   SweepScratch sweeps;  // of the iterative solver
 
+  Start start;                  // of the last interval
+  std::vector<int> first_link;  // of each cable, in `start`
+  std::vector<Event> events;    // of the interval being tried
+
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step; with diagnostics
   std::vector<double> angular_velocity_before;
+  double lag_before = 0.0, kick_before = 0.0;  // s, of the kick that followed
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

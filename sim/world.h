@@ -91,6 +91,8 @@ struct Diagnostics {
   int active_set_solves = 0;                 // in the last step
   std::int64_t total_solves = 0;             // since the start
   std::int64_t fallbacks = 0;                // parts of steps whose active set did not settle
+  std::int64_t events = 0;                   // located since the start
+  std::int64_t clusters = 0;                 // steps with more events than are located in one
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
@@ -99,12 +101,12 @@ struct World {
   Configuration configuration;
   double step_length = 0.0;  // s
   std::int64_t step = 0;     // steps done; the time is step * step_length
+  double lag = 0.0;          // s, by which velocities are behind positions (leapfrog), see step.h
 
   std::vector<BodyProperties> bodies;    // by make_world
   std::vector<Vec2> position;            // m, one a body, at `time()`; by move_bodies
   std::vector<double> angle;             // rad, likewise
-  std::vector<Vec2> velocity;            // m/s, half a step before `time()` (leapfrog), see step.h;
-                                         // by store_solution
+  std::vector<Vec2> velocity;            // m/s, `lag` before `time()`; by store_solution
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;        // geometry by update_segments, links by add_hit_links,
                                          // remove_links and configure_pinches, forces and states by

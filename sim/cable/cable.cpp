@@ -106,28 +106,32 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
   update_rest_lengths(world, cable);
 }
 
+bool update_cable(const World& world, CableState& cable, bool begins) {
+  bool moved = false;
+  Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
+  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+    Segment& segment = cable.segments[i];
+    const Vec2 to = link_centre(world, cable.links[i]);
+    if (begins) {
+      segment.previous_tail = segment.tail;
+      segment.previous_head = segment.head;
+      segment.moved = false;
+    }
+    if (from != segment.tail_centre || to != segment.head_centre) update_tangent(world, cable, i);
+    moved = moved || segment.moved;
+    from = to;
+  }
+  if (moved) update_wraps(cable);
+  update_rest_lengths(world, cable);
+  return moved;
+}
+
 void update_segments(World& world, Workspace& work) {
   work.released.clear();
   work.spans_moved = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(work.parts, c)) continue;
-    CableState& cable = world.cables[c];
-    bool moved = false;
-    Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
-    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-      Segment& segment = cable.segments[i];
-      const Vec2 to = link_centre(world, cable.links[i]);
-      segment.previous_tail = segment.tail;
-      segment.previous_head = segment.head;
-      segment.moved = from != segment.tail_centre || to != segment.head_centre;
-      if (segment.moved) {
-        update_tangent(world, cable, i);
-        moved = true;
-      }
-      from = to;
-    }
-    if (moved) update_wraps(cable);
-    update_rest_lengths(world, cable);
+    const bool moved = update_cable(world, world.cables[c], true);
     work.spans_moved = work.spans_moved || moved;
   }
 }
@@ -167,9 +171,6 @@ void remove_link(const World& world, CableState& cable, int link) {
   update_wraps_and_rest_lengths(world, cable);
 }
 
-namespace {
-
-/// Whether without link i a closed cable would lie on one body only: there would be no tangent.
 bool needed(const CableState& cable, std::size_t i) {
   if (!cable.closed) return false;
   int body = -1;
@@ -181,8 +182,6 @@ bool needed(const CableState& cable, std::size_t i) {
   }
   return true;
 }
-
-}  // namespace
 
 void remove_links(World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {

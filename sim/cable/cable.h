@@ -75,11 +75,17 @@ inline bool holds_span(const World& world, const CableState& cable, const Link& 
 /// UpdateSegments). Material stays where it is on every body.
 void update_segments(World& world, Workspace& work);
 
+/// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last began.
+bool update_cable(const World& world, CableState& cable, bool begins);
+
 /// Tangent, direction and length of segment i alone; its angle is kept continuous.
 void update_tangent(const World& world, CableState& cable, std::size_t segment);
 
 /// Wraps of all links and rest lengths of all segments of a cable whose tangents are up to date.
 void update_wraps_and_rest_lengths(const World& world, CableState& cable);
+
+/// Whether without link i a closed cable would lie on one body only: there would be no tangent.
+bool needed(const CableState& cable, std::size_t i);
 
 /// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
 /// RemoveJoints).

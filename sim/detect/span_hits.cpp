@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/detect/span_hits.h"
 
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
 #include "sim/workspace.h"
@@ -61,11 +62,11 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   const bool beside = along > 0.0 && along < segment.length;
   const bool within = beside && std::abs(side) < margin;
   if (!within && segment.tail == segment.previous_tail && segment.head == segment.previous_head &&
-      world.velocity[b].isZero(0.0)) {
+      b < work.start.position.size() && work.start.position[b] == world.position[b]) {
     return hit;  // neither of them has moved
   }
-  const Vec2 before =
-      world.position[b] - world.step_length * world.velocity[b] - segment.previous_tail;
+  const Vec2& then = b < work.start.position.size() ? work.start.position[b] : world.position[b];
+  const Vec2 before = then - segment.previous_tail;
   const Vec2 span_before = segment.previous_head - segment.previous_tail;
   const double length_before = span_before.norm();
   const Vec2 direction_before =
@@ -91,7 +92,39 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   return hit;
 }
 
+/// Whether the span can be hit by the body at all.
+bool may_hit(const World& world, const CableState& cable, std::size_t s, int body) {
+  const int head = static_cast<int>(s), tail = previous_link(cable, head);
+  return !holds_span(world, cable, cable.links[s], body) &&
+         !holds_span(world, cable, cable.links[static_cast<std::size_t>(tail)], body);
+}
+
 }  // namespace
+
+double span_clearance(const World& world, const CableState& cable, std::size_t s, int body,
+                      int orientation) {
+  const Segment& segment = cable.segments[s];
+  const Vec2 x = at(world.position, body) - segment.tail;
+  const double margin = at(world.bodies, body).radius + cable.half_width;
+  return orientation * cross(segment.direction, x) - margin;
+}
+
+void find_hits(const World& world, Workspace& work, std::vector<Event>& events) {
+  for (const SpanPair& pair : work.broad_phase.span_pairs) {
+    const CableState& cable = at(world.cables, pair.cable);
+    const auto s = index(pair.segment);
+    if (is_still(work.parts, pair.body) && !cable.segments[s].moved) continue;
+    if (!may_hit(world, cable, s, pair.body)) continue;
+    const Hit hit = test_span(world, work, cable, s, pair.body);
+    if (!hit.found) continue;
+    Event event{EventKind::hit};
+    event.cable = pair.cable;
+    event.item = pair.segment;
+    event.body = pair.body;
+    event.orientation = hit.orientation;
+    events.push_back(event);
+  }
+}
 
 void add_hit_links(World& world, const Workspace& work) {
   const auto& pairs = work.broad_phase.span_pairs;
@@ -116,12 +149,7 @@ void add_hit_links(World& world, const Workspace& work) {
         for (std::size_t part = 0; part <= added; ++part) {
           const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
           if (still && !cable.segments[s].moved) continue;
-          const int head = static_cast<int>(s), tail = previous_link(cable, head);
-          if (holds_span(world, cable, cable.links[s], pairs[i].body) ||
-              holds_span(world, cable, cable.links[static_cast<std::size_t>(tail)],
-                         pairs[i].body)) {
-            continue;
-          }
+          if (!may_hit(world, cable, s, pairs[i].body)) continue;
           const Hit hit = test_span(world, work, cable, s, pairs[i].body);
           if (hit.found && (!earliest.found || hit.time < earliest.time)) earliest = hit;
         }

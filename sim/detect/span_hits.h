@@ -2,10 +2,13 @@
 #pragma once
 // Bodies against free spans: new links (thesis: SegmentIntersections and AddJoints).
 
+#include <vector>
+
 #include "sim/world.h"
 
 namespace pinchlab {
 
+struct Event;
 struct Workspace;
 
 /// Gives every body that has met a free span a link on it. A body meets a span when its margin
@@ -13,5 +16,13 @@ struct Workspace;
 /// crossed the span within the step, however fast. The cable runs round the side on which the body
 /// was before.
 void add_hit_links(World& world, const Workspace& work);
+
+/// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to `events`.
+void find_hits(const World& world, Workspace& work, std::vector<Event>& events);
+
+/// How far a body's margin is from a span's centre line, on the side on which a cable that ran round
+/// it would have that orientation (m); below 0 where it is deeper, whether beside the span or not.
+double span_clearance(const World& world, const CableState& cable, std::size_t segment, int body,
+                      int orientation);
 
 }  // namespace pinchlab

@@ -94,7 +94,7 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
 /// it would be round-off.
 bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
-  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0;
+  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
 }
 
 /// Which states the solution contradicts.
@@ -117,7 +117,7 @@ void check(const PartSystem& s, SolveScratch& set) {
     } else if (row.diagonal > 0.0 && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {
         set.flips.push_back({number, false, false, Slip::stick});
-      } else if (!row.on && row.speed < -tolerance.speed) {
+      } else if (!row.on && !row.idle && row.speed < -tolerance.speed) {
         set.flips.push_back({number, false, true, Slip::stick});
       }
     }
@@ -145,7 +145,7 @@ bool clear_rounding(PartSystem& s, const SolveScratch& set) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     row.speed = row_speed(s, r) + row.compliance * row.impulse;
-    if (row.diagonal == 0.0 || (!row.on && !is_unilateral(row))) continue;
+    if (row.diagonal == 0.0 || row.idle || (!row.on && !is_unilateral(row))) continue;
     if (row.speed < -tolerance || (row.on && row.speed > tolerance)) return false;
   }
   return true;
@@ -194,7 +194,7 @@ void spread_tautness(PartSystem& s, const SolveScratch& set, int reach) {
     for (int r = std::max(flip.row - reach, 0); r <= last; ++r) {
       Row& row = at(s.rows, r);
       if (row.kind != RowKind::segment || row.index != pulled.index || row.on) continue;
-      row.on = row.diagonal > 0.0;
+      row.on = row.diagonal > 0.0 && !row.idle;
       row.flipped = set.solves;
     }
   }
@@ -239,7 +239,7 @@ void sweep(PartSystem& s, CapstanScratch& capstan) {
   for (int k = 0; k < sweeps; ++k) {
     for (std::size_t r = 0; r < s.rows.size(); ++r) {
       Row& row = s.rows[r];
-      if (row.diagonal == 0.0) continue;
+      if (row.diagonal == 0.0 || row.idle) continue;
       double least = 0.0, most = infinity;
       if (is_friction(row)) {
         const Friction& friction = at(s.frictions, row.friction);

@@ -337,15 +337,16 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     if (group.slack >= 0) {
       // A member between bodies that cannot move gets taut like any other: the rest of the group
       // gives way.
-      double w = 0.0;
+      double w = 0.0, clearance = 0.0;
       bool gives = false;
       for (int k = group.slack_begin; k < group.slack_end; ++k) {
         const Row& term = rows[index(s.slack_terms[index(k)].index)];
         w += s.slack_terms[index(k)].coefficient * term.speed;
+        clearance += s.slack_terms[index(k)].coefficient * term.clearance;
         gives = gives || term.diagonal > 0.0;
       }
       const int row = s.members[index(group.slack)];
-      if (w < -speed_tolerance && gives) {
+      if (w < -speed_tolerance && gives && clearance <= set.reach) {
         set.flips.push_back({row, false, true, Slip::stick});
       }
     }

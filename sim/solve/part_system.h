@@ -22,6 +22,16 @@ struct Mobility {
   }
 };
 
+/// What a solve is for. Positions move on by `length` with the velocities that it finds, after
+/// forces have acted for `kick`.
+struct Interval {
+  double length = 0.0;      // s; 0: the velocities of an instant
+  double kick = 0.0;        // s, from the velocities' time on
+  double lag = 0.0;         // s, the part of the kick before the positions' time
+  double reach = infinity;  // m: what is further from bearing force than that bears none
+  bool held_only = false;   // nothing bears force that does not do so already
+};
+
 enum class RowKind : std::int8_t {
   segment,       // tension of a span or transitional pinch, >= 0
   pinch_middle,  // friction on the middle body of a non-transitional pinch: one signed row,
@@ -45,12 +55,14 @@ struct Row {
   RowKind kind = RowKind::segment;
   bool on = false;          // active set: bears a force
   Slip slip = Slip::stick;  // active set: friction rows
-  bool rebounds = false;    // normal: the bias is the speed of a rebound
+  bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
+  bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
   bool returned = false;    // normal: has lost its force in this step and got it back
+  double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
   double compliance = 0.0;  // 1/kg
   double diagonal = 0.0;    // 1/kg, J * mobility * J^T
@@ -100,6 +112,7 @@ struct PartSystem {
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
   double extent = 0.0;                         // m, coordinates and cable lengths at most
+  double reach = 0.0;                          // m, Interval::reach where events are located
 
   // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
   std::vector<RowBodies> bodies;

@@ -49,10 +49,20 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
 }
 
+/// What the row has left before it bears force, and what its speed must therefore be.
+void set_clearance(double clearance, const Interval& interval, Row& row) {
+  row.clearance = clearance;
+  row.idle = clearance > interval.reach || (interval.held_only && !row.on);
+  row.on = row.on && !row.idle;
+  row.bias = interval.length > 0.0 ? clearance / interval.length : 0.0;
+}
+
 /// All of a segment's row but its bodies, as it is before a solve.
-void set_segment_values(const World& world, const Segment& segment, Row& row) {
+void set_segment_values(const World& world, const Segment& segment, const Interval& interval,
+                        Row& row) {
   row.kind = RowKind::segment;
   row.on = !segment.slack;
+  row.returned = false;
   row.slip = Slip::stick;
   row.flipped = 0;
   row.friction = -1;
@@ -61,7 +71,7 @@ void set_segment_values(const World& world, const Segment& segment, Row& row) {
   const double rest = world.configuration.method == Method::cable
                           ? std::max(segment.rest_length, 0.0)
                           : segment.rest_length;
-  row.bias = -(segment.length - rest) / world.step_length;
+  set_clearance(rest - segment.length, interval, row);
   row.compliance = 0.0;
 }
 
@@ -72,37 +82,54 @@ double speed_of(const World& world, const Link& link, const Eigen::Vector3d& j) 
   return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, link.body);
 }
 
-// With C_n at the step's start, v- and v+ the velocities before and after the kick,
-//     T = EA / l (C_n + a h dC/dt(v+) - b h dC/dt(v-)).
-// a = b = 1/4 is the mean of C over the three steps about n, weighted 1, 2, 1: the trapezoidal
-// rule, of second order, stable for any stiffness, and undamped. a = 1, b = 0 is implicit Euler,
-// which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about three steps a
-// period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer it is: a - b =
-// 1 - 4/s.
+// With C_n at the positions' time, v- and v+ the velocities before and after the kick, which lasts
+// from `lag` before that time to h/2 after it, the impulse is
+//     p = EA / l (k C_n + a h^2 dC/dt(v+) - 4 b lag^2 dC/dt(v-)),   k = lag + h/2.
+// a = b = 1/4 is the trapezoidal rule over the kick: of second order, stable for any stiffness, and
+// undamped (at equal steps the mean of C over three of them, weighted 1, 2, 1). a = 1, b = 0 is
+// implicit Euler, which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about
+// three steps a period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer
+// it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
 
-/// Makes the row of an inextensible segment that of an elastic one (`stiffness` is EA, N).
+/// Makes the row of an inextensible segment that of an elastic one (`stiffness` is EA, N). At an
+/// instant its impulse up to then is known: it has acted on the free velocities, and the row idles.
 void make_elastic(const World& world, const Link& from, const Link& to, const Segment& segment,
-                  double stiffness, double kick, const RowBodies& bodies, Row& row) {
-  const double h = world.step_length;
+                  double stiffness, const Interval& t, PartSystem& s, int number) {
+  Row& row = at(s.rows, number);
+  const RowBodies& bodies = at(s.bodies, number);
+  const double h = t.length > 0.0 ? t.length : world.step_length;
   const double flexibility = std::max(segment.rest_length, 0.0) / stiffness;  // m/N
   const bool sweeps =
       world.configuration.solver == Solver::iterative;  // the thesis' implicit Euler
-  const double square = h * h * row.diagonal;           // s times flexibility
+  const double square = h * h * row.diagonal;           // (omega h)^2 times flexibility
   const double damped =
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
-  const double b = 0.25 * (1.0 - damped), a = b + damped;
-  row.compliance = flexibility / (a * h * kick);
-  if (b == 0.0) return;
+  const double b = 0.25 * (1.0 - damped);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from, bodies.ja) -
-                        speed_of(world, to, bodies.jb);  // dC/dt(v-), m/s
-  row.bias = row.bias / a + b / a * before;
+                        speed_of(world, to, bodies.jb);                            // dC/dt(v-), m/s
+  const double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
+  if (t.length == 0.0) {
+    if (damped > 0.0) return;
+    row.idle = true;
+    row.on = false;
+    const double impulse = std::max(0.0, -known / flexibility);
+    at(s.free_velocity, bodies.a) += impulse * bodies.ra;
+    at(s.free_velocity, bodies.b) += impulse * bodies.rb;
+    return;
+  }
+  const double scale = b * h * h + damped * h * t.kick;
+  row.idle = false;
+  row.on = !segment.slack;
+  row.compliance = flexibility / scale;
+  row.bias = known / scale;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
 /// attachment points along the centre line, backwards (thesis 4.2.1, Figure 4.3). It then pushes
 /// the bodies apart, but leaves their rolling alone: the origin of the method's jitter.
 void turn_to_centre_line(const World& world, const Link& from, const Link& to,
-                         const Segment& segment, RowBodies& bodies, Row& row) {
+                         const Segment& segment, const Interval& interval, RowBodies& bodies,
+                         Row& row) {
   const Vec2 d = link_centre(world, to) - link_centre(world, from);
   const double distance = d.norm();
   if (!(distance > 0.0)) return;
@@ -110,25 +137,24 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   bodies.ja = {-u.x(), -u.y(), 0.0};
   bodies.jb = {u.x(), u.y(), 0.0};
   const double overlap = from.radius + to.radius - distance;
-  row.bias = -(overlap - std::max(segment.rest_length, 0.0)) / world.step_length;
-}
-
-/// Of two bodies, or of a body and a wall, the greater: who asks for a rebound gets it.
-double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
-  const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution
-                                      : at(scene.walls, contact.wall).restitution;
-  return std::max(at(world.bodies, contact.a).restitution, other);
+  set_clearance(std::max(segment.rest_length, 0.0) - overlap, interval, row);
 }
 
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
-                    RowBodies& bodies, Row& row) {
+                    const Interval& interval, RowBodies& bodies, Row& row) {
   const Vec2& n = contact.normal;
   row.kind = RowKind::normal;
   row.on = contact.touching;
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
   const double clearance = contact.gap - contact.target;
-  row.bias = clearance / world.step_length;
+  set_clearance(clearance, interval, row);
+  if (contact.rebounds) {
+    row.idle = true;
+    row.on = false;
+  }
+  if (interval.reach < infinity || interval.length == 0.0)
+    return;  // rebounds are impacts: impact.h
   const double restitution = restitution_of(scene, world, contact);
   if (restitution == 0.0) return;
   Vec2 v = -at(world.velocity, contact.a);
@@ -171,6 +197,12 @@ void add_friction(PartSystem& s, const Friction& friction) {
 
 }  // namespace
 
+double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
+  const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution
+                                      : at(scene.walls, contact.wall).restitution;
+  return std::max(at(world.bodies, contact.a).restitution, other);
+}
+
 Mobility mobility_of(const BodyProperties& body, double kick) {
   Mobility m;
   // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what an
@@ -190,10 +222,10 @@ Mobility mobility_of(const BodyProperties& body, double kick) {
 }
 
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       double kick, PartSystem& s) {
+                       const Interval& interval, PartSystem& s) {
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   const bool plain = world.configuration.method == Method::cable;
-  RowsMade made{0, kick};
+  RowsMade made{0, interval.kick};
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
   s.made = made;
@@ -231,23 +263,24 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       }
       Row& row = at(s.rows, number);
       RowBodies& bodies = at(s.bodies, number);
-      set_segment_values(world, segment, row);
+      set_segment_values(world, segment, interval, row);
       const bool on_centre_line = plain && segment.pinched;
       // The lever of a circle off its body's centre turns with the body, moved or not.
       const bool stands = again && !segment.moved && has_fixed_lever(from) && has_fixed_lever(to);
       if (!stands || on_centre_line) {
         s.rows_stand = false;
         set_segment_bodies(world, from, to, segment, bodies);
-        if (on_centre_line) turn_to_centre_line(world, from, to, segment, bodies, row);
+        if (on_centre_line) turn_to_centre_line(world, from, to, segment, interval, bodies, row);
       }
       const bool changed = !stands || on_centre_line || s.mobility_changed;
       at(s.changed, number) = changed;
       if (changed) weigh(s, bodies, row);
       if (stiffness < infinity && !segment.pinched) {
-        make_elastic(world, from, to, segment, stiffness, kick, bodies, row);
+        make_elastic(world, from, to, segment, stiffness, interval, s, number);
       }
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;
+        row.idle = false;
         row.slip = to.slip;
       }
     }
@@ -257,7 +290,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       PartSystem& s, SolveScratch& scratch) {
+                       const Interval& interval, PartSystem& s, SolveScratch& scratch) {
   scratch.normal_row_of_contact.resize(world.contacts.size());
   for (const int number : contacts_of(parts, part)) {
     const Contact& contact = at(world.contacts, number);
@@ -269,7 +302,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
     normal = append_row(s, a, b);
     s.rows.back().index = number;
-    set_normal_row(scene, world, contact, s.bodies.back(), s.rows.back());
+    set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
     weigh(s, s.bodies.back(), s.rows.back());
 
     if (contact.pinch_linked) continue;

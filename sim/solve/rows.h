@@ -11,18 +11,22 @@ struct Part;
 struct SolveScratch;
 struct World;
 
+/// Restitution of two bodies, or of a body and a wall: the greater of the two, so that who asks for
+/// a rebound gets it.
+double restitution_of(const Scene& scene, const World& world, const Contact& contact);
+
 /// Of a body by itself, for a velocity kick of `kick` seconds.
 Mobility mobility_of(const BodyProperties& body, double kick);
 
 /// Rows of a part's cables at the present positions, from the first row on (thesis: SegmentsInit).
-/// Where the rows of the step before were for the same links and the same kick, only those of
-/// segments that have moved are made anew.
+/// Where the rows made last were for the same links and the same kick, only those of segments that
+/// have moved are made anew.
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       double kick, PartSystem& system);
+                       const Interval& interval, PartSystem& system);
 
 /// Adds the rows of a part's contacts (thesis: ContactsInit), and bounds all friction. Bodies that
 /// cannot give way to one another get none.
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       PartSystem& system, SolveScratch& scratch);
+                       const Interval& interval, PartSystem& system, SolveScratch& scratch);
 
 }  // namespace pinchlab

@@ -15,7 +15,7 @@ void store_row(const Row& row, double kick, World& world) {
   if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
     CableState& cable = at(world.cables, row.index);
     Segment& segment = at(cable.segments, row.item);
-    segment.tension = row.impulse / kick;
+    if (kick > 0.0) segment.tension = row.impulse / kick;
     if (row.kind == RowKind::segment) {
       segment.slack = !row.on;
     } else {
@@ -26,10 +26,10 @@ void store_row(const Row& row, double kick, World& world) {
   Contact& contact = at(world.contacts, row.index);
   if (row.kind == RowKind::normal) {
     contact.touching = row.on;
-    contact.normal_force = row.impulse / kick;
+    if (kick > 0.0) contact.normal_force = row.impulse / kick;
   } else {
     contact.slip = row.slip;
-    contact.tangent_force = row.impulse / kick;
+    if (kick > 0.0) contact.tangent_force = row.impulse / kick;
   }
 }
 

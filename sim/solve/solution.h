@@ -12,7 +12,8 @@ struct Parts;
 struct PartSystem;
 
 /// Writes the velocities of the part's bodies, and for the next step and for readers the states and
-/// forces (N, impulses over the kick of `kick` seconds) of its segments, links and contacts.
+/// forces (N, impulses over the kick of `kick` seconds) of its segments, links and contacts. At an
+/// instant (`kick` is 0) the forces stay.
 void store_solution(const Parts& parts, const Part& part, PartSystem& system,
                     const CapstanScratch& capstan, double kick, World& world);
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/impact.h"
+
+#include "base/at.h"
+#include "sim/solve/active_set.h"
+#include "sim/solve/rows.h"
+#include "sim/solve/solution.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Of the contacts that may rebound the one that approaches fastest, or -1; `most` are slower than
+/// what counts.
+int fastest_approach(const Scene& scene, const World& world, const PartSystem& s, double least) {
+  int fastest = -1;
+  double speed = -least;
+  for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
+    const Row& row = at(s.rows, r);
+    if (row.kind != RowKind::normal || row.clearance > s.reach) continue;
+    if (restitution_of(scene, world, at(world.contacts, row.index)) == 0.0) continue;
+    const double approach = row_speed(s, index(r));
+    if (approach < speed) {
+      speed = approach;
+      fastest = r;
+    }
+  }
+  return fastest;
+}
+
+double greatest_speed(const PartSystem& s) {
+  double speed = 0.0;
+  for (const Eigen::Vector3d& v : s.free_velocity) {
+    speed = std::max({speed, std::abs(v.x()), std::abs(v.y())});
+  }
+  return speed;
+}
+
+void forget_flips(PartSystem& s) {
+  for (Row& row : s.rows) {
+    row.flipped = 0;
+    row.returned = false;
+  }
+  for (Friction& friction : s.frictions) {
+    friction.dropped = friction.frozen = false;
+    friction.slid = Slip::stick;
+  }
+}
+
+}  // namespace
+
+void strike(const Scene& scene, World& world, Workspace& work, const Part& part) {
+  PartSystem& s = at(work.systems, part.system);
+  SolveScratch& set = work.solve;
+  for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
+  Interval instant;
+  instant.reach = s.reach;
+  set.step_length = world.step_length;
+  set.reach = s.reach;
+  make_segment_rows(scene, world, work.parts, part, instant, s);
+  make_contact_rows(scene, world, work.parts, part, instant, s, set);
+
+  // One blow a contact and neighbour is plenty; what is left then is stopped.
+  const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);
+  constexpr double rounding = 1e-12;
+  s.velocity = s.free_velocity;
+  const double least = rounding * greatest_speed(s);
+  bool rebounded = false;
+  for (int blow = 0; blow < most_blows; ++blow) {
+    const int struck = fastest_approach(scene, world, s, least);
+    if (struck < 0) break;
+    for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
+      Row& row = at(s.rows, r);
+      if (row.kind != RowKind::normal) continue;
+      row.on = r == struck;
+      row.idle = !row.on;
+    }
+    Row& row = at(s.rows, struck);
+    row.bias = 0.0;
+    const double e = restitution_of(scene, world, at(world.contacts, row.index));
+    row.bias = e * row_speed(s, index(struck));
+    forget_flips(s);
+    solve_direct(world, work.parts, part, s, set);
+    at(s.rows, struck).bias = 0.0;
+    s.free_velocity = s.velocity;
+    at(world.contacts, at(s.rows, struck).index).rebounds = rebounded = true;
+  }
+  for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
+    Row& row = at(s.rows, r);
+    if (row.kind != RowKind::normal) continue;
+    row.idle = row.clearance > s.reach;
+    row.on = !row.idle && at(world.contacts, row.index).touching && !rebounded;
+  }
+  forget_flips(s);
+  if (!solve_direct(world, work.parts, part, s, set)) ++world.diagnostics.fallbacks;
+  store_solution(work.parts, part, s, set.capstan, 0.0, world);
+  for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    if (row.kind != RowKind::normal) continue;
+    Contact& contact = at(world.contacts, row.index);
+    contact.rebounds = contact.rebounds && !row.on && row_speed(s, r) > least;
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/forces.h"
+
+#include <algorithm>
+
+#include "base/at.h"
+#include "sim/solve/rows.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// What is within this share of a part's extent of bearing force may do so. Lengths and gaps are
+/// right to a hundredth of it, and round-off of positions is some 1e-16.
+constexpr double within_reach = 1e-9;
+
+/// What of a part's bodies lasts from step to step.
+void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
+  s.mobility_changed = true;
+  s.mobility_kick = kick;
+  s.mobility.clear();
+  s.mobile.clear();
+  s.span_masses.clear();
+  for (const int b : bodies) {
+    s.mobility.push_back(mobility_of(at(world.bodies, b), kick));
+    s.mobile.push_back(is_mobile(at(world.bodies, b)));
+  }
+  s.mobility.emplace_back();  // nothing moves the world
+  s.mobile.push_back(false);
+  s.free_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
+}
+
+/// Velocity of a body after a kick of k seconds by forces alone.
+///
+/// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
+/// f/m.
+Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, const Vec2& v,
+                              double omega, double k) {
+  const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
+  Vec2 free = Vec2::Zero();
+  if (can_move(body)) {
+    Vec2 pull = k * scene.gravity;
+    if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
+    free = ((1.0 - linear) * v + pull) / (1.0 + linear);
+  }
+  if (body.driven_angular_velocity) {
+    omega = *body.driven_angular_velocity;
+  } else if (angular != 0.0 || body.torque != 0.0) {
+    omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
+  }
+  return {free.x(), free.y(), omega};
+}
+
+}  // namespace
+
+void apply_forces(const Scene& scene, const World& world, double k, Workspace& work) {
+  for (const Part& part : work.parts.list) {
+    if (part.asleep) continue;
+    PartSystem& s = at(work.systems, part.system);
+    const std::span<const int> bodies = bodies_of(work.parts, part);
+    s.mobility_changed = false;
+    if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
+    s.extent = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const auto b = index(bodies[i]);
+      s.free_velocity[i] =
+          free_velocity(scene, world.bodies[b], world.velocity[b], world.angular_velocity[b], k);
+      s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
+    }
+    for (const int c : cables_of(work.parts, part)) {
+      const CableState& cable = at(world.cables, c);
+      const auto segments = static_cast<double>(cable.segments.size());
+      s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
+    }
+    s.reach = within_reach * s.extent;
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+namespace pinchlab {
+
+struct Scene;
+struct Workspace;
+struct World;
+
+/// Velocities of all bodies that are awake after forces alone have acted for `kick` seconds, and
+/// what moves the bodies, into their parts' systems.
+void apply_forces(const Scene& scene, const World& world, double kick, Workspace& work);
+
+}  // namespace pinchlab
