@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <tuple>
 
 #include "base/at.h"
@@ -21,7 +23,7 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double exact = 0.01;  // of a part's reach: lengths and gaps at an interval's end
+constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
 constexpr int most_events = 24;   // that are located in one step
 constexpr int most_rounds = 12;   // of SHAKE
@@ -30,7 +32,6 @@ constexpr int most_halvings = 5;  // of an interval that does not converge
 constexpr int most_repairs = 8;
 
 bool is_exact_row(const Row& row) {
-  if (row.compliance > 0.0) return false;
   if (row.kind == RowKind::tangent) return false;
   return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
 }
@@ -79,18 +80,20 @@ double clearance_of(const Scene& scene, const World& world, const Row& row) {
   }
   const Contact& contact = at(world.contacts, row.index);
   const Vec2& a = at(world.position, contact.a);
-  const double radius = at(world.bodies, contact.a).radius;
-  if (contact.b >= 0) {
-    return (at(world.position, contact.b) - a).norm() - radius -
-           at(world.bodies, contact.b).radius - contact.target;
-  }
-  return (nearest_point(at(scene.walls, contact.wall), a) - a).norm() - radius - contact.target;
+  const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
+                                : nearest_point(at(scene.walls, contact.wall), a);
+  const double radii = at(world.bodies, contact.a).radius +
+                       (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
+  // What has gone through the other is on its far side.
+  const Vec2 d = b - a;
+  const double distance = d.dot(contact.normal) < 0.0 ? -d.norm() : d.norm();
+  return distance - radii - contact.target;
 }
 
 /// Adds to the rows' biases what their conditions have missed at the present positions; returns the
 /// most (m).
 double add_missed(const Scene& scene, const World& world, const CapstanScratch& capstan,
-                  double length, PartSystem& s) {
+                  const Interval& t, PartSystem& s) {
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
@@ -98,9 +101,20 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
     if (!row.on && row.kind == RowKind::pinch_middle) continue;
     const bool grouped = !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
     if (grouped && !row.on) continue;
-    double missed = clearance_of(scene, world, row);
+    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
+    const bool made_up = row.clearance <= 0.0 || row.clearance <= s.reach;
+    const double left = made_up ? (1.0 - t.length / t.repair) * row.clearance : 0.0;
+    double missed = clearance_of(scene, world, row) - left;
+    if (row.compliance > 0.0) {
+      if (!row.on || grouped) continue;
+      // The stretch over the interval's end is the real one.
+      const double straight = row_speed(s, r) - row.bias;
+      const double curvature = (missed + left - row.clearance) / t.length - straight;
+      missed = (curvature - row.curvature) * t.length;
+      row.curvature = curvature;
+    }
     if (!row.on) missed = std::min(missed, 0.0);
-    row.bias += missed / length;
+    row.bias += missed / t.length;
     most = std::max(most, std::abs(missed));
   }
   return most;
@@ -118,7 +132,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
                bool begins, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
-  set.step_length = t.length;
+  set.step_length = t.repair;
   set.reach = t.reach;
   steady_light_bodies(world, work.parts, part, t.kick, s);
   make_segment_rows(scene, world, work.parts, part, t, s);
@@ -136,9 +150,10 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
     watch.lap(Stage::move_bodies);
-    const double missed = add_missed(scene, world, set.capstan, t.length, s);
+    const double missed = add_missed(scene, world, set.capstan, t, s);
     watch.lap(Stage::update_segments);
     if (missed <= exact * s.reach) return true;
+    if (getenv("PL_ROUNDS")) { double m=0; size_t rr=0; for(size_t r=0;r<s.rows.size();++r){ const Row& row=s.rows[r]; if(row.idle||!is_exact_row(row)||!row.on) continue; double c=std::abs(clearance_of(scene,world,row)-row.clearance); if(c>m){m=c;rr=r;} } const Row& row=s.rows[rr]; fprintf(stderr,"  round %d t %.9f len %.2e missed %.3e row %zu kind %d idx %d item %d clamped %d clear0 %.2e now %.2e speed %.2e bias %.2e diag %.1e imp %.2e sym %d solves %d\n",round,world.time(),t.length,missed,rr,(int)row.kind,row.index,row.item,row.clamped,row.clearance,clearance_of(scene,world,row),row.speed,row.bias,row.diagonal,row.impulse,set.symmetric,set.solves); }
     if (round == most_rounds || !(missed < 0.7 * last)) return false;
     last = missed;
   }
@@ -156,6 +171,8 @@ Event& note(std::vector<Event>& events, const Event& key) {
   return events.back();
 }
 
+/// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0: or
+/// nearly there).
 void measure(std::vector<Event>& events, const Event& key, double clearance, double late) {
   if (events.empty() && clearance >= -late) return;
   bool known = false;
@@ -185,7 +202,8 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     key.row = static_cast<int>(r);
-    measure(work.events, key, clearance_of(scene, world, row), late);
+    const double clearance = clearance_of(scene, world, row);
+    measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
   }
   if (!slides) return;
   for (const Group& group : capstan.groups) {
@@ -199,7 +217,7 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
       now += term.coefficient * clearance_of(scene, world, row);
     }
     key.row = at(capstan.members, group.slack);
-    if (before > s.reach) measure(work.events, key, now, late);
+    if (before > s.reach) measure(work.events, key, now, -late);
   }
 }
 
@@ -259,7 +277,9 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
                   bool begins, Stopwatch& watch) {
   Interval t;
   t.length = length;
+  t.repair = world.step_length;
   t.lag = world.lag;
+  t.clamps = true;
   t.kick = world.lag + 0.5 * length;
   apply_forces(scene, world, t.kick, work);
   watch.lap(Stage::apply_forces);
@@ -297,10 +317,17 @@ void go_back(World& world, Workspace& work) {
   }
 }
 
-/// Of the events the one of least clearance, over its reach.
+/// What closes is met early rather than late, by this share of its reach, so that nothing is ever
+/// squeezed or stretched; what changes a cable's course late, so that it has happened.
+constexpr double aim = 0.25;
+
+/// Of the events the one of least clearance, over its reach; 0 where it is aimed at.
 double least_clearance(const std::vector<Event>& events) {
   double least = infinity;
-  for (const Event& event : events) least = std::min(least, event.clearance / event.reach);
+  for (const Event& event : events) {
+    const double wanted = event.kind == EventKind::catches ? aim : -aim;
+    least = std::min(least, event.clearance / event.reach - wanted);
+  }
   return least;
 }
 
@@ -323,7 +350,7 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
   double tried = length;
   for (int trial = 0; trial < most_trials; ++trial) {
     const double least = least_clearance(work.events);
-    if (least >= -0.5 && least <= 0.5) return tried;
+    if (std::abs(least) <= 0.5 * aim) return tried;
     if (least < 0.0) {
       if (trial > 0 && late_by < 0.0 && early_by < infinity) early_by *= 0.5;  // Illinois
       late = tried;
@@ -349,7 +376,7 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
   Interval t;
   t.kick = t.lag = world.lag;
   t.reach = s.reach;
-  t.held_only = true;
+  t.held_only = t.clamps = true;
   work.solve.step_length = world.step_length;
   work.solve.reach = -infinity;
   steady_light_bodies(world, work.parts, part, t.kick, s);
@@ -395,6 +422,35 @@ void change_courses(World& world, Workspace& work) {
   }
 }
 
+/// The greatest reach of all parts (m).
+double reach_of(const Workspace& work) {
+  double reach = 0.0;
+  for (const PartSystem& s : work.systems) reach = std::max(reach, s.reach);
+  return reach;
+}
+
+/// Slack that a closing pinch would enclose goes to the spans beside it: to those that are slack
+/// already, or to both.
+void empty_pinches(World& world, double reach) {
+  for (CableState& cable : world.cables) {
+    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
+      const Segment& segment = at(cable.segments, i);
+      if (!segment.pinched || segment.contact < 0 || segment.rest_length <= 0.0) continue;
+      const Contact& contact = at(world.contacts, segment.contact);
+      if (contact.gap - contact.target > reach) continue;
+      const int from = previous_link(cable, i), after = next_link(cable, i);
+      if (after < 0) continue;
+      const bool before_slack = at(cable.segments, from).slack;
+      const bool after_slack = at(cable.segments, after).slack;
+      const double share = before_slack == after_slack ? 0.5 : before_slack ? 1.0 : 0.0;
+      const double slack = segment.rest_length;
+      at(cable.links, from).material += share * slack;
+      at(cable.links, i).material -= (1.0 - share) * slack;
+      update_wraps_and_rest_lengths(world, cable);
+    }
+  }
+}
+
 /// The most that a part's constraints are violated by (m).
 double violation(const Scene& scene, const World& world, const PartSystem& s) {
   double most = 0.0;
@@ -410,7 +466,7 @@ double violation(const Scene& scene, const World& world, const PartSystem& s) {
 bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   PartSystem& s = at(work.systems, part.system);
   Interval t;
-  t.length = 1.0;
+  t.length = t.repair = 1.0;
   t.kick = 1.0;
   work.solve.step_length = 1.0;
   work.solve.reach = infinity;
@@ -480,24 +536,30 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (interval == 0 && world.configuration.diagnostics) {
       work.lag_before = lag;
       work.kick_before = lag + 0.5 * length;
-      measure_energy(scene, world, work);
+      world.diagnostics.energy += kinetic_energy(world, work);
     }
     world.diagnostics.total_solves += world.diagnostics.active_set_solves;
     left = length < left ? left - length : 0.0;
     world.lag = 0.5 * length;
     const bool happened = !work.events.empty();
+    if (getenv("PL_TRACE")) { if (happened || !met) { fprintf(stderr,"t=%.9f len=%.3e met=%d", world.time()+world.step_length-left, length, met); for (auto& e: work.events) { int idx=-9; int kind=-1; if(e.part>=0&&e.row>=0){ auto&r=at(at(work.systems,at(work.parts.list,e.part).system).rows,e.row); idx=r.index; kind=(int)r.kind; if(r.kind==RowKind::normal) {idx=world.contacts[(size_t)r.index].a*100+world.contacts[(size_t)r.index].b;} else idx=idx*100+r.item;} fprintf(stderr," [k%d row%d/%d(%d) c%d i%d b%d %.2e]", (int)e.kind,e.row,idx,kind,e.cable,e.item,e.body,e.clearance/e.reach);} fprintf(stderr,"\n"); } }
     if (happened) {
       ++world.diagnostics.events;
       catch_up(scene, world, work);
       change_courses(world, work);
     }
     detect_after_moving(scene, world, work, times);
+    if (happened) empty_pinches(world, reach_of(work));
     watch = Stopwatch(times);
     apply_forces(scene, world, 0.0, work);
+    const bool squeezed = std::any_of(
+        world.contacts.begin(), world.contacts.end(), [reach = reach_of(work)](const Contact& c) {
+          return c.gap < c.target - reach;
+        });
     bool repaired = false;
     const bool changed = changes_of_cables(world) != changes;
     for (Part& part : work.parts.list) {
-      if (part.asleep || (met && !happened && !changed)) continue;
+      if (part.asleep || (met && !happened && !changed && !squeezed)) continue;
       repaired = repair(scene, world, work, part) || repaired;
     }
     if (repaired && world.lag > 0.0) catch_up(scene, world, work);
@@ -507,6 +569,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
         if (!part.asleep) strike(scene, world, work, part);
       }
     }
+    if (getenv("PL_TRACE")&&happened) { for (auto& c: world.cables){ fprintf(stderr,"    L:"); for(size_t i=0;i<c.links.size();++i) {auto&l=c.links[i]; fprintf(stderr," %d%s%s(%.2e)",l.body,l.orientation>0?"+":l.orientation<0?"-":"",l.pinch_middle?"m":"",l.wrap);if(i>=first_segment(c)) fprintf(stderr," [T%.2f %s%s C%.1e L%.2e]",c.segments[i].tension,c.segments[i].slack?"s":"",c.segments[i].pinched?"p":"",c.segments[i].length-c.segments[i].rest_length,c.segments[i].length);} fprintf(stderr,"\n"); } for(auto&c:world.contacts) fprintf(stderr,"    contact %d-%d gap-target %.2e touching %d rebounds %d linked %d\n",c.a,c.b,c.gap-c.target,c.touching,c.rebounds,c.pinch_linked); for(size_t b=0;b<world.bodies.size();++b) if(can_move(world.bodies[b])) fprintf(stderr,"    v%zu %.6f %.6f %.6f\n",b,world.velocity[b].x(),world.velocity[b].y(),world.angular_velocity[b]); }
     watch.lap(Stage::solve);
   }
   for (const Part& part : work.parts.list) {

@@ -34,7 +34,27 @@ bool check_finite(const Scene& scene, World& world) {
   return true;
 }
 
-void measure_energy(const Scene& scene, World& world, const Workspace& work) {
+double potential_energy(const Scene& scene, const World& world) {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const BodyProperties& body = world.bodies[b];
+    if (can_move(body)) energy -= body.mass * scene.gravity.dot(world.position[b]);
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const double stiffness = scene.cables[c].axial_stiffness;
+    if (stiffness == infinity) continue;
+    const CableState& cable = world.cables[c];
+    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+      const Segment& segment = cable.segments[i];
+      if (segment.rest_length <= 0.0) continue;
+      const double stretch = std::max(segment.length - segment.rest_length, 0.0);
+      energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
+    }
+  }
+  return energy;
+}
+
+double kinetic_energy(const World& world, const Workspace& work) {
   double energy = 0.0;
   const double after = work.kick_before > 0.0 ? work.lag_before / work.kick_before : 0.0;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
@@ -44,19 +64,9 @@ void measure_energy(const Scene& scene, World& world, const Workspace& work) {
     const double omega =
         (1.0 - after) * work.angular_velocity_before[b] + after * world.angular_velocity[b];
     energy += 0.5 * disc_inertia(body) * omega * omega;
-    if (body.kind == BodyKind::fixed_axle) continue;
-    energy += 0.5 * body.mass * v.squaredNorm() - body.mass * scene.gravity.dot(world.position[b]);
+    if (can_move(body)) energy += 0.5 * body.mass * v.squaredNorm();
   }
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    const double stiffness = scene.cables[c].axial_stiffness;
-    if (stiffness == infinity) continue;
-    for (const Segment& segment : world.cables[c].segments) {
-      if (segment.rest_length <= 0.0) continue;
-      const double stretch = std::max(segment.length - segment.rest_length, 0.0);
-      energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
-    }
-  }
-  world.diagnostics.energy = energy;
+  return energy;
 }
 
 void measure_cables(const Scene& scene, World& world) {

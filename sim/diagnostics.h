@@ -10,9 +10,12 @@ struct Workspace;
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
 
-/// Energy at the step's start, from the velocities before and after the kick (their mean is the
-/// velocity at the positions' time to second order).
-void measure_energy(const Scene& scene, World& world, const Workspace& work);
+/// Energy of gravity and of stretched cables at the present positions (J).
+double potential_energy(const Scene& scene, const World& world);
+
+/// Kinetic energy at the step's start (J), from the velocities before and after its first kick:
+/// those between them are right to second order.
+double kinetic_energy(const World& world, const Workspace& work);
 
 /// Stretch, gaps and cable lengths at the present positions.
 void measure_cables(const Scene& scene, World& world);

@@ -56,6 +56,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
   for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
   Interval instant;
   instant.reach = s.reach;
+  instant.clamps = true;
   set.step_length = world.step_length;
   set.reach = s.reach;
   make_segment_rows(scene, world, work.parts, part, instant, s);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/cable/cable.h"
+#include "sim/diagnostics.h"
 
 namespace pinchlab {
 namespace {
@@ -20,29 +21,6 @@ bool is_undriven(const Scene& scene) {
   return std::none_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
     return body.driven_angular_velocity.has_value() || body.torque != 0.0;
   });
-}
-
-/// J, of gravity and of stretched cables.
-double potential_energy(const Scene& scene, const World& world) {
-  double energy = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    if (can_move(scene.bodies[b])) {
-      energy -= scene.bodies[b].mass * scene.gravity.dot(world.position[b]);
-    }
-  }
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    const double stiffness = scene.cables[c].axial_stiffness;
-    if (stiffness == infinity) continue;
-    const CableState& cable = world.cables[c];
-    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-      const Segment& segment = cable.segments[i];
-      const double stretch = segment.length - segment.rest_length;
-      if (segment.rest_length > 0.0 && stretch > 0.0) {
-        energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
-      }
-    }
-  }
-  return energy;
 }
 
 /// "12 %", "0.3 %", "4.12e+05 %".

@@ -56,7 +56,7 @@ bool solve_part(const Scene& scene, const World& world, Workspace& work, const P
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   const double kick = kick_length(world);
-  const Interval interval{world.step_length, kick, world.lag};
+  const Interval interval{world.step_length, kick, world.lag, world.step_length};
   work.solve.step_length = world.step_length;
   work.solve.reach = infinity;
   steady_light_bodies(world, work.parts, part, kick, s);
@@ -136,9 +136,11 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   watch.lap(Stage::apply_forces);
   solve_parts(scene, world, work, watch);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
-  work.lag_before = world.lag;
-  work.kick_before = kick_length(world);
-  if (world.configuration.diagnostics) measure_energy(scene, world, work);
+  if (world.configuration.diagnostics) {
+    work.lag_before = world.lag;
+    work.kick_before = kick_length(world);
+    world.diagnostics.energy += kinetic_energy(world, work);
+  }
   watch.lap(Stage::diagnose);
   work.start.position = world.position;
   move_bodies(work.parts, world);
@@ -157,7 +159,10 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
     mark(world, work);
     return StepStatus::ok;
   }
-  if (world.configuration.diagnostics) note_velocities(world, work);
+  if (world.configuration.diagnostics) {
+    note_velocities(world, work);
+    world.diagnostics.energy = potential_energy(scene, world);
+  }
   const StepStatus status = locates_events(world.configuration)
                                 ? advance(scene, world, work, times)
                                 : advance_at_once(scene, world, work, times);

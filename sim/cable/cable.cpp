@@ -52,7 +52,8 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   const Link& to = cable.links[i];
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
-  Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius());
+  const double parting = !opposite(from, to) ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
+  Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
     const bool arrives = from.orientation == 0;  // at the body, from its rim
     const Vec2 rim = arrives ? Vec2(a - b) : Vec2(b - a);
@@ -116,6 +117,7 @@ bool update_cable(const World& world, CableState& cable, bool begins) {
       segment.previous_tail = segment.tail;
       segment.previous_head = segment.head;
       segment.moved = false;
+      segment.was_pinched = segment.pinched;
     }
     if (from != segment.tail_centre || to != segment.head_centre) update_tangent(world, cable, i);
     moved = moved || segment.moved;

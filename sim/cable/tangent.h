@@ -37,13 +37,17 @@ struct Tangent {
 /// For opposite orientations |Delta| is the sum of the radii, so the root vanishes exactly where
 /// the cable is pinched; e then is perpendicular to the centre line, the limit of the ordinary
 /// tangent.
-inline Tangent common_tangent(const Vec2& a, double p_a, const Vec2& b, double p_b) {
+///
+/// `parting` is the share of |Delta| by which circles that were pinched may part before they are
+/// not: round-off of their distance must not turn the tangent by its square root.
+inline Tangent common_tangent(const Vec2& a, double p_a, const Vec2& b, double p_b,
+                              double parting = 0.0) {
   const Vec2 d = b - a;
   const double distance = d.norm();
   const Vec2 u = distance > 0.0 ? Vec2(d / distance) : Vec2(1.0, 0.0);
   const double delta = p_b - p_a;
   const double square = (distance - std::abs(delta)) * (distance + std::abs(delta));
-  if (square <= 0.0) {
+  if (distance - std::abs(delta) <= parting * std::abs(delta)) {
     const Vec2 e = delta == 0.0 ? u : Vec2(-std::copysign(1.0, delta) * left(u));
     return {e, 0.0, distance, delta != 0.0};
   }

@@ -41,6 +41,18 @@ void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
   }
 }
 
+/// Cable between two surfaces that press it, and over which it cannot slide, moves as both do: it is
+/// pushed as well as pulled.
+void clamp_pinches(PartSystem& s) {
+  for (int r = 0; r < s.first_contact_row; ++r) {
+    Row& row = at(s.rows, r);
+    if (row.presser < 0) continue;
+    const Row& presser = at(s.rows, row.presser);
+    row.clamped = presser.on || presser.returned;
+    row.on = row.on || row.clamped;
+  }
+}
+
 struct Tolerances {
   double speed;    // m/s
   double impulse;  // N s
@@ -94,6 +106,7 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
 /// it would be round-off.
 bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
+  if (row.clamped) return false;
   return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
 }
 
@@ -114,7 +127,7 @@ void check(const PartSystem& s, SolveScratch& set) {
     if (is_friction(row)) {
       const double sliding = row.speed + run_speed(s, set.capstan, row);
       check_friction(s, row, number, sliding, tolerance, set);
-    } else if (row.diagonal > 0.0 && (!slides || set.capstan.group_of_row[r] < 0)) {
+    } else if (row.diagonal > 0.0 && !row.clamped && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {
         set.flips.push_back({number, false, false, Slip::stick});
       } else if (!row.on && !row.idle && row.speed < -tolerance.speed) {
@@ -125,7 +138,7 @@ void check(const PartSystem& s, SolveScratch& set) {
 }
 
 bool is_unilateral(const Row& row) {
-  return row.kind == RowKind::segment || row.kind == RowKind::normal;
+  return (row.kind == RowKind::segment && !row.clamped) || row.kind == RowKind::normal;
 }
 
 /// Whether the solution's negative impulses are round-off: whether, with zero in their place, every
@@ -240,7 +253,7 @@ void sweep(PartSystem& s, CapstanScratch& capstan) {
     for (std::size_t r = 0; r < s.rows.size(); ++r) {
       Row& row = s.rows[r];
       if (row.diagonal == 0.0 || row.idle) continue;
-      double least = 0.0, most = infinity;
+      double least = row.clamped ? -infinity : 0.0, most = infinity;
       if (is_friction(row)) {
         const Friction& friction = at(s.frictions, row.friction);
         const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
@@ -275,6 +288,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
     }
     if (solves == before_dropping) drop_friction(s);
     bound_friction(s, set.capstan);
+    clamp_pinches(s);
     solve_for_states(s, set);
     set.solves = solves;
     check(s, set);
@@ -311,7 +325,7 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
   find_runs(world, parts, part, s, set);
   if (!settle(s, set)) sweep(s, set.capstan);
   for (Row& row : s.rows) {
-    if (!is_friction(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
+    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
   }
   return !set.froze;
 }

@@ -28,7 +28,9 @@ struct Interval {
   double length = 0.0;      // s; 0: the velocities of an instant
   double kick = 0.0;        // s, from the velocities' time on
   double lag = 0.0;         // s, the part of the kick before the positions' time
+  double repair = 0.0;      // s, in which a violation is made up for; at least the length
   double reach = infinity;  // m: what is further from bearing force than that bears none
+  bool clamps = false;      // pressed bodies hold the cable in a transitional pinch both ways
   bool held_only = false;   // nothing bears force that does not do so already
 };
 
@@ -59,6 +61,8 @@ struct Row {
   bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
+  int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1
+  bool clamped = false;     // active set: that force bears, so that the row may push as well
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
   bool returned = false;    // normal: has lost its force in this step and got it back
@@ -67,6 +71,7 @@ struct Row {
   double compliance = 0.0;  // 1/kg
   double diagonal = 0.0;    // 1/kg, J * mobility * J^T
   double impulse = 0.0;     // N s
+  double curvature = 0.0;   // m/s, elastic: of `bias`, by which C changes otherwise than by J v
   double speed = 0.0;       // w + compliance p, m/s, after the solve
 };
 

@@ -54,7 +54,10 @@ void set_clearance(double clearance, const Interval& interval, Row& row) {
   row.clearance = clearance;
   row.idle = clearance > interval.reach || (interval.held_only && !row.on);
   row.on = row.on && !row.idle;
-  row.bias = interval.length > 0.0 ? clearance / interval.length : 0.0;
+  // What is left within reach is round-off, which a short interval must not make a speed of.
+  const bool free = clearance > interval.reach || interval.reach == infinity;
+  const double time = clearance > 0.0 && free ? interval.length : interval.repair;
+  row.bias = interval.length > 0.0 ? clearance / time : 0.0;
 }
 
 /// All of a segment's row but its bodies, as it is before a solve.
@@ -66,6 +69,9 @@ void set_segment_values(const World& world, const Segment& segment, const Interv
   row.slip = Slip::stick;
   row.flipped = 0;
   row.friction = -1;
+  row.presser = -1;
+  row.curvature = 0.0;
+  row.clamped = false;
   // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
   // what is left of a segment is then at least nothing.
   const double rest = world.configuration.method == Method::cable
@@ -149,7 +155,7 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   bodies.jb = {n.x(), n.y(), 0.0};
   const double clearance = contact.gap - contact.target;
   set_clearance(clearance, interval, row);
-  if (contact.rebounds) {
+  if (contact.rebounds && interval.reach < infinity) {
     row.idle = true;
     row.on = false;
   }
@@ -193,6 +199,18 @@ int append_row(PartSystem& s, int a, int b) {
 void add_friction(PartSystem& s, const Friction& friction) {
   at(s.rows, friction.row).friction = static_cast<int>(s.frictions.size());
   s.frictions.push_back(friction);
+}
+
+/// The row of the force that clamps the cable of a transitional pinch between two bodies neither of
+/// which it can slide over; or -1.
+int presser_of(const World& world, const SolveScratch& scratch, const Row& row) {
+  const CableState& cable = at(world.cables, row.index);
+  const Segment& segment = at(cable.segments, row.item);
+  if (!segment.pinched || segment.contact < 0 || row.idle || row.compliance > 0.0) return -1;
+  for (const int link : {row.item, previous_link(cable, row.item)}) {
+    if (at(world.bodies, at(cable.links, link).body).cable_friction < infinity) return -1;
+  }
+  return at(scratch.normal_row_of_contact, segment.contact);
 }
 
 }  // namespace
@@ -322,7 +340,10 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   bool middles = false;
   for (int r = 0; r < s.first_contact_row; ++r) {
     Row& row = at(s.rows, r);
-    if (row.kind != RowKind::pinch_middle) continue;
+    if (row.kind != RowKind::pinch_middle) {
+      if (interval.clamps) row.presser = presser_of(world, scratch, row);
+      continue;
+    }
     const Friction friction = middle_friction(world, s, scratch, r);
     add_friction(s, friction);
     if (friction.normal < 0 && friction.coefficient == infinity) {
