@@ -26,7 +26,7 @@ namespace {
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
 constexpr int most_events = 24;   // that are located in one step
-constexpr int most_rounds = 12;   // of SHAKE
+constexpr int shake_rounds = 12;
 constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
 constexpr int most_repairs = 8;
@@ -37,6 +37,7 @@ bool is_exact_row(const Row& row) {
 }
 
 void note_start(const World& world, Start& start) {
+  start.fallbacks = world.diagnostics.fallbacks;
   start.position = world.position;
   start.velocity = world.velocity;
   start.angle = world.angle;
@@ -113,7 +114,10 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
       missed = (curvature - row.curvature) * t.length;
       row.curvature = curvature;
     }
-    if (!row.on) missed = std::min(missed, 0.0);
+    // Of a group that is slack as a whole no segment is held to its length.
+    const bool bears = row.on && !(grouped && row.impulse == 0.0 &&
+                                   at(capstan.groups, capstan.group_of_row[r]).slack >= 0);
+    if (!bears) missed = std::min(missed, 0.0);
     row.bias += missed / t.length;
     most = std::max(most, std::abs(missed));
   }
@@ -129,7 +133,7 @@ void forget_flips(PartSystem& s) {
 
 /// Solves and moves a part; whether its lengths and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const Interval& t,
-               bool begins, Stopwatch& watch) {
+               int most_rounds, bool begins, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   set.step_length = t.repair;
@@ -139,11 +143,14 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   watch.lap(Stage::init_segments);
   make_contact_rows(scene, world, work.parts, part, t, s, set);
   watch.lap(Stage::init_contacts);
-  double last = infinity;
+  double last = infinity, before_last = infinity;
   Diagnostics& d = world.diagnostics;
+  bool fell_back = false;
   for (int round = 0;; ++round) {
     if (round > 0) forget_flips(s);
-    if (!solve_direct(world, work.parts, part, s, set)) ++d.fallbacks;
+    const bool settled = solve_direct(world, work.parts, part, s, set);
+    if (!settled && !fell_back) ++d.fallbacks;
+    fell_back = fell_back || !settled;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     store_solution(work.parts, part, s, set.capstan, t.kick, world);
     part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
@@ -154,7 +161,9 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::update_segments);
     if (missed <= exact * s.reach) return true;
     if (getenv("PL_ROUNDS")) { double m=0; size_t rr=0; for(size_t r=0;r<s.rows.size();++r){ const Row& row=s.rows[r]; if(row.idle||!is_exact_row(row)||!row.on) continue; double c=std::abs(clearance_of(scene,world,row)-row.clearance); if(c>m){m=c;rr=r;} } const Row& row=s.rows[rr]; fprintf(stderr,"  round %d t %.9f len %.2e missed %.3e row %zu kind %d idx %d item %d clamped %d clear0 %.2e now %.2e speed %.2e bias %.2e diag %.1e imp %.2e sym %d solves %d\n",round,world.time(),t.length,missed,rr,(int)row.kind,row.index,row.item,row.clamped,row.clearance,clearance_of(scene,world,row),row.speed,row.bias,row.diagonal,row.impulse,set.symmetric,set.solves); }
-    if (round == most_rounds || !(missed < 0.7 * last)) return false;
+    // Where states flip it may get worse for a round.
+    if (round == most_rounds || (round > 1 && !(missed < 0.5 * before_last))) return false;
+    before_last = last;
     last = missed;
   }
 }
@@ -274,7 +283,7 @@ void find_span_hits(const Scene& scene, World& world, Workspace& work, Stopwatch
 /// Tries an interval from where the last began; whether lengths and gaps are exact at its end. Lists
 /// what has happened in it.
 bool try_interval(const Scene& scene, World& world, Workspace& work, double length, bool locate,
-                  bool begins, Stopwatch& watch) {
+                  int most_rounds, bool begins, Stopwatch& watch) {
   Interval t;
   t.length = length;
   t.repair = world.step_length;
@@ -290,7 +299,7 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
     if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
     t.reach = locate ? s.reach : infinity;
-    met = move_part(scene, world, work, part, t, begins, watch) && met;
+    met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
     if (!locate) continue;
     find_catches(scene, world, work, p);
     find_gone_links(world, work, p);
@@ -305,6 +314,7 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
 /// Puts everything back to where the interval began.
 void go_back(World& world, Workspace& work) {
   const Start& start = work.start;
+  world.diagnostics.fallbacks = start.fallbacks;
   world.position = start.position;
   world.velocity = start.velocity;
   world.angle = start.angle;
@@ -336,12 +346,17 @@ double least_clearance(const std::vector<Event>& events) {
 double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
                      Stopwatch& watch) {
   work.events.clear();
-  met = try_interval(scene, world, work, length, true, true, watch);
+  met = try_interval(scene, world, work, length, true, shake_rounds, true, watch);
   for (int halvings = 0; !met && halvings < most_halvings; ++halvings) {
     go_back(world, work);
     work.events.clear();
     length *= 0.5;
-    met = try_interval(scene, world, work, length, true, false, watch);
+    met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
+  }
+  if (!met) {  // the linear solution is sound at least; what it misses is repaired
+    go_back(world, work);
+    work.events.clear();
+    try_interval(scene, world, work, length, true, 0, false, watch);
   }
   if (work.events.empty()) return length;
 
@@ -365,7 +380,7 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
     if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
     tried = next;
     go_back(world, work);
-    met = try_interval(scene, world, work, tried, true, false, watch);
+    met = try_interval(scene, world, work, tried, true, met ? shake_rounds : 0, false, watch) && met;
   }
   return tried;
 }
@@ -529,7 +544,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (interval < most_events) {
       length = find_interval(scene, world, work, left, met, watch);
     } else {
-      met = try_interval(scene, world, work, left, false, true, watch);
+      met = try_interval(scene, world, work, left, false, 0, true, watch);
       ++world.diagnostics.clusters;
     }
     if (!check_finite(scene, world)) return StepStatus::not_finite;

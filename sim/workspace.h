@@ -43,6 +43,7 @@ struct Start {
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
   std::vector<double> material, wrap;  // of the links, cable after cable
+  std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 
 /// Storage of find_contacts and configure_pinches.
