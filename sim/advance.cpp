@@ -25,7 +25,9 @@ namespace {
 
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
-constexpr int most_events = 24;   // that are located in one step
+constexpr int most_events = 24;          // that are located in one step
+constexpr double share_of_error = 2e-4;  // of Configuration::error that an interval may take
+constexpr double shortest = 1e-4;        // of a step, that intervals are divided into for that
 constexpr int shake_rounds = 12;
 constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
@@ -157,10 +159,32 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
     watch.lap(Stage::move_bodies);
+    // SHAKE's first correction is the curvature of the way, and the second what the constraints'
+    // turning on that way makes of it: of the order of the interval's own error.
     const double missed = add_missed(scene, world, set.capstan, t, s);
     watch.lap(Stage::update_segments);
+    if (round == 1) work.local_error = std::max(work.local_error, missed);
     if (missed <= exact * s.reach) return true;
-    if (getenv("PL_ROUNDS")) { double m=0; size_t rr=0; for(size_t r=0;r<s.rows.size();++r){ const Row& row=s.rows[r]; if(row.idle||!is_exact_row(row)||!row.on) continue; double c=std::abs(clearance_of(scene,world,row)-row.clearance); if(c>m){m=c;rr=r;} } const Row& row=s.rows[rr]; fprintf(stderr,"  round %d t %.9f len %.2e missed %.3e row %zu kind %d idx %d item %d clamped %d clear0 %.2e now %.2e speed %.2e bias %.2e diag %.1e imp %.2e sym %d solves %d\n",round,world.time(),t.length,missed,rr,(int)row.kind,row.index,row.item,row.clamped,row.clearance,clearance_of(scene,world,row),row.speed,row.bias,row.diagonal,row.impulse,set.symmetric,set.solves); }
+    if (getenv("PL_ROUNDS")) {
+      double m = 0;
+      size_t rr = 0;
+      for (size_t r = 0; r < s.rows.size(); ++r) {
+        const Row& row = s.rows[r];
+        if (row.idle || !is_exact_row(row) || !row.on) continue;
+        double c = std::abs(clearance_of(scene, world, row) - row.clearance);
+        if (c > m) {
+          m = c;
+          rr = r;
+        }
+      }
+      const Row& row = s.rows[rr];
+      fprintf(stderr,
+              "  round %d t %.9f len %.2e missed %.3e row %zu kind %d idx %d item %d clamped %d "
+              "clear0 %.2e now %.2e speed %.2e bias %.2e diag %.1e imp %.2e sym %d solves %d\n",
+              round, world.time(), t.length, missed, rr, (int)row.kind, row.index, row.item,
+              row.clamped, row.clearance, clearance_of(scene, world, row), row.speed, row.bias,
+              row.diagonal, row.impulse, set.symmetric, set.solves);
+    }
     // Where states flip it may get worse for a round.
     if (round == most_rounds || (round > 1 && !(missed < 0.5 * before_last))) return false;
     before_last = last;
@@ -292,6 +316,7 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   t.kick = world.lag + 0.5 * length;
   apply_forces(scene, world, t.kick, work);
   watch.lap(Stage::apply_forces);
+  work.local_error = 0.0;
   for (Event& event : work.events) event.seen = false;
   bool met = true;
   for (int p = 0; index(p) < work.parts.list.size(); ++p) {
@@ -347,6 +372,14 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
                      Stopwatch& watch) {
   work.events.clear();
   met = try_interval(scene, world, work, length, true, shake_rounds, true, watch);
+  const double allowed = share_of_error * world.configuration.error;
+  while (allowed > 0.0 && met && work.local_error > allowed &&
+         length > shortest * world.step_length) {
+    go_back(world, work);
+    work.events.clear();
+    length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
+    met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
+  }
   for (int halvings = 0; !met && halvings < most_halvings; ++halvings) {
     go_back(world, work);
     work.events.clear();
@@ -380,7 +413,8 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
     if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
     tried = next;
     go_back(world, work);
-    met = try_interval(scene, world, work, tried, true, met ? shake_rounds : 0, false, watch) && met;
+    met =
+        try_interval(scene, world, work, tried, true, met ? shake_rounds : 0, false, watch) && met;
   }
   return tried;
 }
@@ -526,6 +560,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   Stopwatch watch(times);
   world.diagnostics.active_set_solves = 0;
   double left = world.step_length;
+  int events = 0;
   for (int interval = 0; left > 0.0; ++interval) {
     note_start(world, work.start);
     work.first_link.clear();
@@ -541,7 +576,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     const int changes = changes_of_cables(world);
     bool met = true;
     double length = left;
-    if (interval < most_events) {
+    if (events < most_events) {
       length = find_interval(scene, world, work, left, met, watch);
     } else {
       met = try_interval(scene, world, work, left, false, 0, true, watch);
@@ -553,13 +588,38 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       work.kick_before = lag + 0.5 * length;
       world.diagnostics.energy += kinetic_energy(world, work);
     }
+    ++world.diagnostics.intervals;
+    world.diagnostics.local_errors += work.local_error;
+    if (!met) ++events;
     world.diagnostics.total_solves += world.diagnostics.active_set_solves;
     left = length < left ? left - length : 0.0;
     world.lag = 0.5 * length;
     const bool happened = !work.events.empty();
-    if (getenv("PL_TRACE")) { if (happened || !met) { fprintf(stderr,"t=%.9f len=%.3e met=%d", world.time()+world.step_length-left, length, met); for (auto& e: work.events) { int idx=-9; int kind=-1; if(e.part>=0&&e.row>=0){ auto&r=at(at(work.systems,at(work.parts.list,e.part).system).rows,e.row); idx=r.index; kind=(int)r.kind; if(r.kind==RowKind::normal) {idx=world.contacts[(size_t)r.index].a*100+world.contacts[(size_t)r.index].b;} else idx=idx*100+r.item;} fprintf(stderr," [k%d row%d/%d(%d) c%d i%d b%d %.2e]", (int)e.kind,e.row,idx,kind,e.cable,e.item,e.body,e.clearance/e.reach);} fprintf(stderr,"\n"); } }
+    if (getenv("PL_TRACE")) {
+      if (happened || !met) {
+        fprintf(stderr, "t=%.9f len=%.3e met=%d", world.time() + world.step_length - left, length,
+                met);
+        for (auto& e : work.events) {
+          int idx = -9;
+          int kind = -1;
+          if (e.part >= 0 && e.row >= 0) {
+            auto& r = at(at(work.systems, at(work.parts.list, e.part).system).rows, e.row);
+            idx = r.index;
+            kind = (int)r.kind;
+            if (r.kind == RowKind::normal) {
+              idx = world.contacts[(size_t)r.index].a * 100 + world.contacts[(size_t)r.index].b;
+            } else
+              idx = idx * 100 + r.item;
+          }
+          fprintf(stderr, " [k%d row%d/%d(%d) c%d i%d b%d %.2e]", (int)e.kind, e.row, idx, kind,
+                  e.cable, e.item, e.body, e.clearance / e.reach);
+        }
+        fprintf(stderr, "\n");
+      }
+    }
     if (happened) {
       ++world.diagnostics.events;
+      ++events;
       catch_up(scene, world, work);
       change_courses(world, work);
     }
@@ -568,9 +628,8 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     watch = Stopwatch(times);
     apply_forces(scene, world, 0.0, work);
     const bool squeezed = std::any_of(
-        world.contacts.begin(), world.contacts.end(), [reach = reach_of(work)](const Contact& c) {
-          return c.gap < c.target - reach;
-        });
+        world.contacts.begin(), world.contacts.end(),
+        [reach = reach_of(work)](const Contact& c) { return c.gap < c.target - reach; });
     bool repaired = false;
     const bool changed = changes_of_cables(world) != changes;
     for (Part& part : work.parts.list) {
@@ -584,7 +643,31 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
         if (!part.asleep) strike(scene, world, work, part);
       }
     }
-    if (getenv("PL_TRACE")&&happened) { for (auto& c: world.cables){ fprintf(stderr,"    L:"); for(size_t i=0;i<c.links.size();++i) {auto&l=c.links[i]; fprintf(stderr," %d%s%s(%.2e)",l.body,l.orientation>0?"+":l.orientation<0?"-":"",l.pinch_middle?"m":"",l.wrap);if(i>=first_segment(c)) fprintf(stderr," [T%.2f %s%s C%.1e L%.2e]",c.segments[i].tension,c.segments[i].slack?"s":"",c.segments[i].pinched?"p":"",c.segments[i].length-c.segments[i].rest_length,c.segments[i].length);} fprintf(stderr,"\n"); } for(auto&c:world.contacts) fprintf(stderr,"    contact %d-%d gap-target %.2e touching %d rebounds %d linked %d\n",c.a,c.b,c.gap-c.target,c.touching,c.rebounds,c.pinch_linked); for(size_t b=0;b<world.bodies.size();++b) if(can_move(world.bodies[b])) fprintf(stderr,"    v%zu %.6f %.6f %.6f\n",b,world.velocity[b].x(),world.velocity[b].y(),world.angular_velocity[b]); }
+    if (getenv("PL_TRACE") && happened) {
+      for (auto& c : world.cables) {
+        fprintf(stderr, "    L:");
+        for (size_t i = 0; i < c.links.size(); ++i) {
+          auto& l = c.links[i];
+          fprintf(stderr, " %d%s%s(%.2e)", l.body,
+                  l.orientation > 0   ? "+"
+                  : l.orientation < 0 ? "-"
+                                      : "",
+                  l.pinch_middle ? "m" : "", l.wrap);
+          if (i >= first_segment(c))
+            fprintf(stderr, " [T%.2f %s%s C%.1e L%.2e]", c.segments[i].tension,
+                    c.segments[i].slack ? "s" : "", c.segments[i].pinched ? "p" : "",
+                    c.segments[i].length - c.segments[i].rest_length, c.segments[i].length);
+        }
+        fprintf(stderr, "\n");
+      }
+      for (auto& c : world.contacts)
+        fprintf(stderr, "    contact %d-%d gap-target %.2e touching %d rebounds %d linked %d\n",
+                c.a, c.b, c.gap - c.target, c.touching, c.rebounds, c.pinch_linked);
+      for (size_t b = 0; b < world.bodies.size(); ++b)
+        if (can_move(world.bodies[b]))
+          fprintf(stderr, "    v%zu %.6f %.6f %.6f\n", b, world.velocity[b].x(),
+                  world.velocity[b].y(), world.angular_velocity[b]);
+    }
     watch.lap(Stage::solve);
   }
   for (const Part& part : work.parts.list) {

@@ -41,9 +41,11 @@ struct Configuration {
   Detection detection = Detection::sweep;
   PinchRows pinch_rows = PinchRows::one;
   Events events = Events::located;  ///< located asks for the direct solver
-  int iterations = 10;              ///< >= 1, sweeps of the iterative solver
-  bool sleep = true;                ///< parts of the scene that have come to rest cost no more
-  bool diagnostics = false;         ///< fills the measured lengths and energy of World::diagnostics
+  double error = 0.0;   ///< m; above 0: steps are divided so that positions end about as near to
+                        ///< the exact ones (Events::located only)
+  int iterations = 10;  ///< >= 1, sweeps of the iterative solver
+  bool sleep = true;    ///< parts of the scene that have come to rest cost no more
+  bool diagnostics = false;  ///< fills the measured lengths and energy of World::diagnostics
 
   Configuration() = default;
   Configuration(Method m) : method(m) {}  // NOLINT: a method alone is a configuration

@@ -72,6 +72,7 @@ struct Workspace {
 
   Start start;                  // of the last interval
   std::vector<int> first_link;  // of each cable, in `start`
+  double local_error = 0.0;     // m, of the last trial; by move_part
   std::vector<Event> events;    // of the interval being tried
 
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step; with diagnostics
