@@ -579,7 +579,11 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (events < most_events) {
       length = find_interval(scene, world, work, left, met, watch);
     } else {
-      met = try_interval(scene, world, work, left, false, 0, true, watch);
+      met = try_interval(scene, world, work, left, false, shake_rounds, true, watch);
+      if (!met) {
+        go_back(world, work);
+        try_interval(scene, world, work, left, false, 0, false, watch);
+      }
       ++world.diagnostics.clusters;
     }
     if (!check_finite(scene, world)) return StepStatus::not_finite;
