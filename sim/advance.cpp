@@ -33,6 +33,12 @@ constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
 constexpr int most_repairs = 8;
 
+/// Round-off of a body's place that is nothing to put right (m).
+double reach_at(const World& world, int body) {
+  return within_reach *
+         (at(world.position, body).cwiseAbs().maxCoeff() + at(world.bodies, body).radius);
+}
+
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent) return false;
   return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
@@ -105,8 +111,10 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
     const bool grouped = !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
     if (grouped && !row.on) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
-    const bool made_up = row.clearance <= 0.0 || row.clearance <= s.reach;
-    const double left = made_up ? (1.0 - t.length / t.repair) * row.clearance : 0.0;
+    const bool made_up = row.clearance <= s.reach;
+    const double left = row.clearance < -t.made_up ? row.clearance
+                        : made_up                  ? (1.0 - t.length / t.repair) * row.clearance
+                                                   : 0.0;
     double missed = clearance_of(scene, world, row) - left;
     if (row.compliance > 0.0) {
       if (!row.on || grouped) continue;
@@ -288,8 +296,8 @@ void find_span_hits(const Scene& scene, World& world, Workspace& work, Stopwatch
   std::size_t kept = known;
   for (std::size_t i = known; i < work.events.size(); ++i) {
     Event event = work.events[i];
-    const int part = at(work.parts.of_cable, event.cable);
-    event.reach = at(work.systems, at(work.parts.list, part).system).reach;
+    event.reach =
+        std::max(reach_at(world, event.body), within_reach * at(world.cables, event.cable).length);
     event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
                                      event.body, event.orientation);
     event.seen = true;
@@ -323,6 +331,7 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
     Part& part = at(work.parts.list, p);
     if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
+    t.made_up = s.reach;
     t.reach = locate ? s.reach : infinity;
     met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
     if (!locate) continue;
@@ -471,22 +480,15 @@ void change_courses(World& world, Workspace& work) {
   }
 }
 
-/// The greatest reach of all parts (m).
-double reach_of(const Workspace& work) {
-  double reach = 0.0;
-  for (const PartSystem& s : work.systems) reach = std::max(reach, s.reach);
-  return reach;
-}
-
 /// Slack that a closing pinch would enclose goes to the spans beside it: to those that are slack
 /// already, or to both.
-void empty_pinches(World& world, double reach) {
+void empty_pinches(World& world) {
   for (CableState& cable : world.cables) {
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const Segment& segment = at(cable.segments, i);
       if (!segment.pinched || segment.contact < 0 || segment.rest_length <= 0.0) continue;
       const Contact& contact = at(world.contacts, segment.contact);
-      if (contact.gap - contact.target > reach) continue;
+      if (contact.gap - contact.target > 10.0 * reach_at(world, contact.a)) continue;
       const int from = previous_link(cable, i), after = next_link(cable, i);
       if (after < 0) continue;
       const bool before_slack = at(cable.segments, from).slack;
@@ -627,15 +629,18 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       catch_up(scene, world, work);
       change_courses(world, work);
     }
+    for (const Part& part : work.parts.list) {
+      if (left == 0.0 && !part.asleep) note_rest(work.parts, part, world);
+    }
     detect_after_moving(scene, world, work, times);
-    if (happened) empty_pinches(world, reach_of(work));
+    if (happened) empty_pinches(world);
     watch = Stopwatch(times);
-    apply_forces(scene, world, 0.0, work);
     const bool squeezed = std::any_of(
         world.contacts.begin(), world.contacts.end(),
-        [reach = reach_of(work)](const Contact& c) { return c.gap < c.target - reach; });
+        [&world](const Contact& c) { return c.gap < c.target - 10.0 * reach_at(world, c.a); });
     bool repaired = false;
     const bool changed = changes_of_cables(world) != changes;
+    if (!met || happened || changed || squeezed) apply_forces(scene, world, 0.0, work);
     for (Part& part : work.parts.list) {
       if (part.asleep || (met && !happened && !changed && !squeezed)) continue;
       repaired = repair(scene, world, work, part) || repaired;
@@ -673,9 +678,6 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
                   world.velocity[b].y(), world.angular_velocity[b]);
     }
     watch.lap(Stage::solve);
-  }
-  for (const Part& part : work.parts.list) {
-    if (!part.asleep) note_rest(work.parts, part, world);
   }
   return StepStatus::ok;
 }

@@ -56,7 +56,10 @@ bool solve_part(const Scene& scene, const World& world, Workspace& work, const P
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   const double kick = kick_length(world);
-  const Interval interval{world.step_length, kick, world.lag, world.step_length};
+  Interval interval;
+  interval.length = interval.repair = world.step_length;
+  interval.kick = kick;
+  interval.lag = world.lag;
   work.solve.step_length = world.step_length;
   work.solve.reach = infinity;
   steady_light_bodies(world, work.parts, part, kick, s);

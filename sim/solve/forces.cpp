@@ -11,10 +11,6 @@ namespace pinchlab {
 
 namespace {
 
-/// What is within this share of a part's extent of bearing force may do so. Lengths and gaps are
-/// right to a tenth of it, and round-off of positions is some 1e-16.
-constexpr double within_reach = 1e-11;
-
 /// What of a part's bodies lasts from step to step.
 void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
   s.mobility_changed = true;

@@ -25,13 +25,14 @@ struct Mobility {
 /// What a solve is for. Positions move on by `length` with the velocities that it finds, after
 /// forces have acted for `kick`.
 struct Interval {
-  double length = 0.0;      // s; 0: the velocities of an instant
-  double kick = 0.0;        // s, from the velocities' time on
-  double lag = 0.0;         // s, the part of the kick before the positions' time
-  double repair = 0.0;      // s, in which a violation is made up for; at least the length
-  double reach = infinity;  // m: what is further from bearing force than that bears none
-  bool clamps = false;      // pressed bodies hold the cable in a transitional pinch both ways
-  bool held_only = false;   // nothing bears force that does not do so already
+  double length = 0.0;        // s; 0: the velocities of an instant
+  double kick = 0.0;          // s, from the velocities' time on
+  double lag = 0.0;           // s, the part of the kick before the positions' time
+  double repair = 0.0;        // s, in which a violation is made up for; at least the length
+  double made_up = infinity;  // m: a greater violation stays as it is, and is repaired in positions
+  double reach = infinity;    // m: what is further from bearing force than that bears none
+  bool clamps = false;        // pressed bodies hold the cable in a transitional pinch both ways
+  bool held_only = false;     // nothing bears force that does not do so already
 };
 
 enum class RowKind : std::int8_t {
@@ -106,6 +107,10 @@ struct RowsMade {
   double kick = 0.0;  // s
   bool operator==(const RowsMade&) const = default;
 };
+
+/// What is within this share of a part's extent of bearing force may do so. Lengths and gaps are
+/// right to a tenth of it, and round-off of positions is some 1e-16.
+constexpr double within_reach = 1e-11;
 
 struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).

@@ -57,7 +57,7 @@ void set_clearance(double clearance, const Interval& interval, Row& row) {
   // What is left within reach is round-off, which a short interval must not make a speed of.
   const bool free = clearance > interval.reach || interval.reach == infinity;
   const double time = clearance > 0.0 && free ? interval.length : interval.repair;
-  row.bias = interval.length > 0.0 ? clearance / time : 0.0;
+  row.bias = interval.length > 0.0 && clearance >= -interval.made_up ? clearance / time : 0.0;
 }
 
 /// All of a segment's row but its bodies, as it is before a solve.

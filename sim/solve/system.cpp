@@ -288,6 +288,9 @@ int factor_symmetric(PartSystem& s, SolveScratch& set) {
   }
   const int repeated = s.ldl.factor(s.scale, 0.0);
   s.factored = repeated == 0;
+  // The matrix is up to date: another solve of the same rows needs no other.
+  s.rows_stand = true;
+  std::fill(s.changed.begin(), s.changed.end(), false);
   return repeated;
 }
 
