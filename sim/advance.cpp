@@ -25,9 +25,10 @@ namespace {
 
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
-constexpr int most_events = 24;          // that are located in one step
-constexpr double share_of_error = 2e-4;  // of Configuration::error that an interval may take
-constexpr double shortest = 1e-4;        // of a step, that intervals are divided into for that
+constexpr int most_events = 24;              // that are located in one step
+constexpr double share_of_error = 2e-4;      // of Configuration::error that an interval may take
+constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
+constexpr double shortest_corrected = 1e-6;  // of a step
 constexpr int shake_rounds = 12;
 constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
@@ -155,12 +156,11 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   watch.lap(Stage::init_contacts);
   double last = infinity, before_last = infinity;
   Diagnostics& d = world.diagnostics;
-  bool fell_back = false;
   for (int round = 0;; ++round) {
     if (round > 0) forget_flips(s);
     const bool settled = solve_direct(world, work.parts, part, s, set);
-    if (!settled && !fell_back) ++d.fallbacks;
-    fell_back = fell_back || !settled;
+    if (!settled) ++d.fallbacks;
+    work.settled = work.settled && settled;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     store_solution(work.parts, part, s, set.capstan, t.kick, world);
     part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
@@ -172,7 +172,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     const double missed = add_missed(scene, world, set.capstan, t, s);
     watch.lap(Stage::update_segments);
     if (round == 1) work.local_error = std::max(work.local_error, missed);
-    if (missed <= exact * s.reach) return true;
+    // In so short an interval there is nothing to correct but round-off.
+    if (missed <= exact * s.reach || t.length < shortest_corrected * t.repair) return true;
     if (getenv("PL_ROUNDS")) {
       double m = 0;
       size_t rr = 0;
@@ -194,7 +195,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
               row.diagonal, row.impulse, set.symmetric, set.solves);
     }
     // Where states flip it may get worse for a round.
-    if (round == most_rounds || (round > 1 && !(missed < 0.5 * before_last))) return false;
+    if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
+      return false;
     before_last = last;
     last = missed;
   }
@@ -325,6 +327,7 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   apply_forces(scene, world, t.kick, work);
   watch.lap(Stage::apply_forces);
   work.local_error = 0.0;
+  work.settled = true;
   for (Event& event : work.events) event.seen = false;
   bool met = true;
   for (int p = 0; index(p) < work.parts.list.size(); ++p) {
@@ -389,13 +392,13 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
     length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
     met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
   }
-  for (int halvings = 0; !met && halvings < most_halvings; ++halvings) {
+  for (int halvings = 0; !met && work.settled && halvings < most_halvings; ++halvings) {
     go_back(world, work);
     work.events.clear();
     length *= 0.5;
     met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
   }
-  if (!met) {  // the linear solution is sound at least; what it misses is repaired
+  if (!met && work.settled) {  // the linear solution is sound at least; what it misses is repaired
     go_back(world, work);
     work.events.clear();
     try_interval(scene, world, work, length, true, 0, false, watch);
@@ -512,39 +515,60 @@ double violation(const Scene& scene, const World& world, const PartSystem& s) {
   return most;
 }
 
+/// Moves a part's bodies by `share` of the displacements that were just solved for.
+void displace(World& world, Workspace& work, const Part& part, double share) {
+  const PartSystem& s = at(work.systems, part.system);
+  const std::span<const int> bodies = bodies_of(work.parts, part);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    at(world.position, bodies[i]) += share * s.velocity[i].head<2>();
+    at(world.angle, bodies[i]) += share * s.velocity[i].z();
+  }
+  for (const Run& run : work.solve.capstan.runs) {
+    CableState& cable = at(world.cables, run.cable);
+    for (int i = run.first_link;; i = next_link(cable, i)) {
+      if (!at(cable.links, i).pinch_middle) at(cable.links, i).material -= share * run.speed;
+      if (i == run.last_link) break;
+    }
+  }
+  for (const int c : cables_of(work.parts, part)) update_cable(world, at(world.cables, c), false);
+}
+
 /// Puts right what is too long or too near in a part by moving its bodies, the heavier the less;
-/// their velocities stay. Returns whether there was anything to put right.
+/// their velocities stay. A step of this Newton's method is no longer than a small share of a body,
+/// and one that makes nothing better is taken back: where a constraint has hardly any gradient, its
+/// violation stays. Returns whether anything has been moved.
 bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
+  constexpr double longest = 0.05;  // of a body's radius
   PartSystem& s = at(work.systems, part.system);
   Interval t;
-  t.length = t.repair = 1.0;
-  t.kick = 1.0;
+  t.length = t.repair = t.kick = 1.0;
   work.solve.step_length = 1.0;
   work.solve.reach = infinity;
+  double share = 0.0, before = infinity;
   bool any = false;
   for (int k = 0; k < most_repairs; ++k) {
+    if (k > 0 && violation(scene, world, s) >= before) {
+      displace(world, work, part, -share);
+      return k > 1;
+    }
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_segment_rows(scene, world, work.parts, part, t, s);
     make_contact_rows(scene, world, work.parts, part, t, s, work.solve);
-    if (violation(scene, world, s) <= s.reach) break;
+    before = violation(scene, world, s);
+    if (before <= s.reach) break;
     any = true;
     for (Friction& friction : s.frictions) {
       if (at(s.rows, friction.row).kind == RowKind::tangent) friction.dropped = true;
     }
     solve_direct(world, work.parts, part, s, work.solve);
+    share = 1.0;
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      at(world.position, bodies[i]) += s.velocity[i].head<2>();
-      at(world.angle, bodies[i]) += s.velocity[i].z();
+      const double radius = at(world.bodies, bodies[i]).radius,
+                   way = s.velocity[i].head<2>().norm();
+      if (way * share > longest * radius) share = longest * radius / way;
     }
-    for (const Run& run : work.solve.capstan.runs) {
-      CableState& cable = at(world.cables, run.cable);
-      for (int i = run.first_link;; i = next_link(cable, i)) {
-        if (!at(cable.links, i).pinch_middle) at(cable.links, i).material -= run.speed;
-        if (i == run.last_link) break;
-      }
-    }
-    for (const int c : cables_of(work.parts, part)) update_cable(world, at(world.cables, c), false);
+    displace(world, work, part, share);
   }
   return any;
 }
@@ -646,6 +670,11 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       repaired = repair(scene, world, work, part) || repaired;
     }
     if (repaired && world.lag > 0.0) catch_up(scene, world, work);
+    if (getenv("PL_TRACE") && happened)
+      for (size_t b = 0; b < world.bodies.size(); ++b)
+        if (can_move(world.bodies[b]))
+          fprintf(stderr, "    before v%zu %.6f %.6f %.6f\n", b, world.velocity[b].x(),
+                  world.velocity[b].y(), world.angular_velocity[b]);
     if (happened || repaired) {
       apply_forces(scene, world, 0.0, work);
       for (const Part& part : work.parts.list) {

@@ -72,6 +72,7 @@ struct Workspace {
 
   Start start;                  // of the last interval
   std::vector<int> first_link;  // of each cable, in `start`
+  bool settled = true;         // every solve of the last trial; by move_part
   double local_error = 0.0;     // m, of the last trial; by move_part
   std::vector<Event> events;    // of the interval being tried
 

@@ -74,6 +74,10 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   const double along_before = direction_before.dot(before);
   const double side_before = cross(direction_before, before);
 
+  // What was beside the span's line before has come past its end: it is in front of the cable, not
+  // in its way.
+  constexpr double in_touch = 1e-6;
+  if (std::abs(side_before) < margin * (1.0 - in_touch)) return hit;
   bool reached = within;
   if (!reached && side * side_before < 0.0) {
     const double t = side_before / (side_before - side);  // of the crossing, 0..1 within the step
