@@ -18,7 +18,7 @@ namespace {
 
 using testing::atwood;
 using testing::body;
-using testing::Folder;
+using test::TemporaryFolder;
 
 Scene short_atwood() {
   Scene scene = atwood();
@@ -130,7 +130,7 @@ TEST(Vector, SvgAndPdfAreTheSameTwice) {
   const Scene scene = short_atwood();
   Picture picture;
   compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const auto& [format, ending, begin] :
        {std::tuple(VectorFormat::svg, ".svg", "<?xml"), {VectorFormat::pdf, ".pdf", "%PDF"}}) {
     const std::string a = folder.file(std::string("a") + ending);

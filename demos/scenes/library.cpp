@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/experiments/scenes.h"
+#include "demos/scenes/library.h"
 
 #include <fmt/format.h>
 
-namespace pinchlab::experiments {
+#include "demos/scenes/build.h"
+#include "sim/world.h"
+
+namespace pinchlab {
 
 namespace {
 
-constexpr double pulley_radius = 0.5, half_width = 0.05;  // m
+using build::pulley_radius;
+constexpr double half_width = build::cable_half_width;  // m
 
 Scene named(const std::string& name) {
   Scene scene;
@@ -17,22 +21,9 @@ Scene named(const std::string& name) {
 
 /// Adds a body and returns its index. Its mass is 1 kg, as in the thesis' scenes.
 int add_body(Scene& scene, const char* what, BodyKind kind, double x, double y, double radius) {
-  Body body;
-  body.name = fmt::format("{} {}", what, scene.bodies.size());
-  body.kind = kind;
-  body.position = {x, y};
-  body.radius = radius;
-  scene.bodies.push_back(body);
-  return static_cast<int>(scene.bodies.size()) - 1;
-}
-
-Cable cable_between(const Attachment& start, const Attachment& end) {
-  Cable cable;
-  cable.name = "cable";
-  cable.half_width = half_width;
-  cable.start = start;
-  cable.end = end;
-  return cable;
+  const auto index = static_cast<int>(scene.bodies.size());
+  scene.bodies.push_back(build::body(fmt::format("{} {}", what, index), kind, x, y, radius));
+  return index;
 }
 
 /// Makes the scene's cable elastic and puts it under tension. What lies on pulleys is not stretched
@@ -48,10 +39,10 @@ void string_cable(Scene& scene) {
 
 }  // namespace
 
-Scene stress_scene(int load, double spacing) {
+Scene slack_stress_scene(int load, double spacing) {
   Scene scene = named("stress");
   const double a = spacing;
-  Cable cable = cable_between({-1, {0.0, 0.0}}, {-1, {2.0 * a * load, 0.0}});
+  Cable cable = build::cable({-1, {0.0, 0.0}}, {}, {-1, {2.0 * a * load, 0.0}});
   constexpr int clockwise = -1, counter_clockwise = 1;
   for (int i = 0; i < load; ++i) {
     const double x1 = a * (2.0 * i + 0.5), x2 = a * (2.0 * i + 1.5);
@@ -65,6 +56,11 @@ Scene stress_scene(int load, double spacing) {
     cable.wraps.push_back({pulley(x2, upper), clockwise, 0});
   }
   scene.cables.push_back(cable);
+  return scene;
+}
+
+Scene stress_scene(int load, double spacing) {
+  Scene scene = slack_stress_scene(load, spacing);
   string_cable(scene);
   return scene;
 }
@@ -72,7 +68,7 @@ Scene stress_scene(int load, double spacing) {
 Scene pinch_detection_scene(int load, bool pinching, bool other) {
   Scene scene = named("pinch-detection");
   constexpr double a = 1.2, small_radius = 0.25;
-  Cable cable = cable_between({-1, {0.0, 0.0}}, {-1, {a * (2 * load + 1), 0.0}});
+  Cable cable = build::cable({-1, {0.0, 0.0}}, {}, {-1, {a * (2 * load + 1), 0.0}});
   for (int i = 0; i < 2 * load; ++i) {
     const bool over = i % 2 == 0;
     const double x = a * (i + 1);
@@ -91,21 +87,8 @@ Scene pinch_detection_scene(int load, bool pinching, bool other) {
 }
 
 Scene chain_scene(int pulleys) {
-  Scene scene = named("chain");
-  const double reach = pulley_radius + half_width, spacing = 1.5;
-  const int left = add_body(scene, "weight", BodyKind::free, -reach, -3.0, 0.2);
-  const int right =
-      add_body(scene, "weight", BodyKind::free, spacing * (pulleys - 1) + reach, -3.0, 0.2);
-  scene.bodies[static_cast<std::size_t>(left)].mass = 1000.0;
-  scene.bodies[static_cast<std::size_t>(right)].mass = 999.0;
-  Cable cable = cable_between({left, {0.0, 0.0}}, {right, {0.0, 0.0}});
-  for (int i = 0; i < pulleys; ++i) {
-    const int pulley =
-        add_body(scene, "pulley", BodyKind::fixed_axle, spacing * i, 0.0, pulley_radius);
-    scene.bodies[static_cast<std::size_t>(pulley)].mass = 0.1;
-    cable.wraps.push_back({pulley, i % 2 == 0 ? -1 : 1, 0});
-  }
-  scene.cables.push_back(cable);
+  Scene scene = build::load_chain(pulleys, 1000.0, 999.0, 0.1);
+  scene.name = "chain";
   return scene;
 }
 
@@ -115,7 +98,7 @@ Scene swinging_scene(int pulleys) {
   const int weight =
       add_body(scene, "weight", BodyKind::free, spacing * (pulleys - 1) + reach, -3.0, 0.2);
   scene.bodies.back().velocity = {0.5, 0.0};
-  Cable cable = cable_between({-1, {-reach, -3.0}}, {weight, {0.0, 0.0}});
+  Cable cable = build::cable({-1, {-reach, -3.0}}, {}, {weight, {0.0, 0.0}});
   for (int i = 0; i < pulleys; ++i) {
     const int pulley =
         add_body(scene, "pulley", BodyKind::fixed_axle, spacing * i, 0.0, pulley_radius);
@@ -134,7 +117,7 @@ Scene disconnected_scene(int count, int moving) {
     const int weight =
         add_body(scene, "weight", BodyKind::free, x + pulley_radius + half_width, -1.5, 0.2);
     if (i < moving) scene.bodies.back().velocity = {swing_speed, 0.0};
-    Cable cable = cable_between({-1, {x - 1.5, 0.0}}, {weight, {0.0, 0.0}});
+    Cable cable = build::cable({-1, {x - 1.5, 0.0}}, {}, {weight, {0.0, 0.0}});
     cable.name = fmt::format("cable {}", i);
     cable.wraps.push_back({pulley, -1, 0});
     scene.cables.push_back(cable);
@@ -142,22 +125,4 @@ Scene disconnected_scene(int count, int moving) {
   return scene;
 }
 
-ElementCounts count_elements(const World& world) {
-  ElementCounts counts;
-  counts.bodies = world.position.size();
-  for (const Contact& contact : world.contacts) counts.contacts += contact.pinch_points > 0;
-  for (const CableState& cable : world.cables) {
-    counts.joints += cable.links.size();
-    counts.segments += cable.links.size() - (cable.closed ? 0 : 1);
-    for (std::size_t i = cable.closed ? 0 : 1; i < cable.links.size(); ++i) {
-      const std::size_t before = i > 0 ? i - 1 : cable.links.size() - 1;
-      const bool middle = cable.links[i].pinch_middle;
-      counts.non_transitional += middle;
-      counts.transitional +=
-          cable.segments[i].pinched && !middle && !cable.links[before].pinch_middle;
-    }
-  }
-  return counts;
-}
-
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The scenes of the experiments, by rule instead of by file: thesis 3.2, Figure 3.1.
-
-#include <cstddef>
+// The scenes that tests and experiments share, by rule instead of by file: thesis 3.2, Figure 3.1.
 
 #include "sim/scene.h"
-#include "sim/world.h"
 
-namespace pinchlab::experiments {
+namespace pinchlab {
 
 /// Pulleys of radius 0.5 m and a cable of half width 0.05 m pinch where centres lie nearer than
 /// 2 r + 2 w = 1.1 m. Half a nanometre less makes every pinch certain in floating point; more would
@@ -24,6 +21,8 @@ constexpr double stress_strain = 0.01;
 /// Figures 3.1a (pinched_spacing) and 3.1b (free_spacing), repeated `load` times: 4 pulleys with
 /// fixed axles a unit on one cable anchored at both ends, no slip, all of it in tension.
 Scene stress_scene(int load, double spacing);
+/// The same with a cable that cannot stretch and carries nothing.
+Scene slack_stress_scene(int load, double spacing);
 
 /// Figure 3.1c, repeated `load` times: two wrapped pulleys with fixed axles a unit, over and under
 /// in turn, and on rails above them small pulleys of 1 kg. `pinching` ones lie on the wrap of the
@@ -42,17 +41,4 @@ Scene swinging_scene(int pulleys);
 /// hanging weight (thesis 7.1). The first `moving` weights swing, the others hang still.
 Scene disconnected_scene(int count, int moving);
 
-/// What the thesis counts in Tables 5.1 and 5.2.
-struct ElementCounts {
-  std::size_t bodies = 0, non_transitional = 0, transitional = 0, contacts = 0, joints = 0,
-              segments = 0;
-  bool operator==(const ElementCounts&) const = default;
-
-  /// Joints that are there without pinches, and pinches of the non-transitional kind (Figure 5.3).
-  /// A pinch of that kind brings two joints of its own.
-  [[nodiscard]] std::size_t attachments() const { return joints - non_transitional; }
-};
-
-ElementCounts count_elements(const World& world);
-
-}  // namespace pinchlab::experiments
+}  // namespace pinchlab
