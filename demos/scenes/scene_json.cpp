@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/at.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
@@ -284,6 +285,15 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
     }
   }
   cable.wraps = read_wraps(from.value("wraps", json::array()), place + "/wraps", cable.closed);
+  const bool is_on_one_body =
+      !cable.closed && cable.start.body >= 0 && cable.end.body == cable.start.body &&
+      std::ranges::all_of(cable.wraps,
+                          [&](const Wrap& wrap) { return wrap.body == cable.start.body; });
+  if (is_on_one_body && from.contains("start") && from.contains("end")) {
+    problem(place, fmt::format("is on body \"{}\" alone, where it can do nothing; let an end or a "
+                               "wrap be elsewhere",
+                               at(scene.bodies, cable.start.body).name));
+  }
   if (cable.slack < 0.0 && !std::isfinite(cable.axial_stiffness)) {
     problem(
         place + "/slack_m",

@@ -223,6 +223,12 @@ const BadScene bad_scenes[] = {
      "s.json: /cables/0/wraps/0: is on the same body as the wrap before it; say extra_turns for "
      "more than one "
      "turn"},
+    {"/cables/0", R"({"name": "coil", "half_width_m": 0.1,
+       "start": {"body": "wheel", "rim_angle_rad": 0},
+       "wraps": [{"body": "wheel", "turn": "clockwise"}],
+       "end": {"body": "wheel", "rim_angle_rad": 2}})",
+     "s.json: /cables/0: is on body \"wheel\" alone, where it can do nothing; let an end or a wrap "
+     "be elsewhere"},
     // Walls and view
     {"/walls/0/to_m", "[-3, -4]",
      "s.json: /walls/0/to_m: must differ from from_m: the wall's length is zero or nearly so"},
