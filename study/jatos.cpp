@@ -9,12 +9,14 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
+#include "study/html_page.h"
 #include "study/page_assets.h"
 #include "study/secrets.h"
 #include "study/session.h"
@@ -233,6 +235,7 @@ Result read_result(const std::string& line, const std::string& place, const Key&
                                  {"answers", object.need("answers")}};
   const json free_text = {{"free_text", object.need("free_text")}};
   object.finish();
+  Result result;
   try {
     const Session session = session_from_json(session_document);
     if (session.id.size() != 16 ||
@@ -244,11 +247,14 @@ Result read_result(const std::string& line, const std::string& place, const Key&
           key.files.at(trial.demonstration).at(to_string(encoding)).at(to_string(trial.pinch));
       return ShownFile{file.at("name"), file.at("sha256")};
     };
-    return {session.id, answer_file(session, key.options, key.shown, shown,
-                                    parse_free_text(free_text), saved_utc, code_hash)};
+    result = {session.id, answer_file(session, key.options, key.shown, shown,
+                                      parse_free_text(free_text), saved_utc, code_hash)};
   } catch (const std::exception& error) {
     throw InputError(place, error.what());
   }
+  // As it will be read: what cannot be is told before anything is written.
+  parse_answer_file(json::parse(result.file.dump()), place);
+  return result;
 }
 
 std::vector<fs::path> text_files(const std::vector<fs::path>& paths) {

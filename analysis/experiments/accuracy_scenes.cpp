@@ -9,66 +9,23 @@
 #include <numbers>
 
 #include "analysis/experiments/references.h"
+#include "demos/scenes/build.h"
 
 namespace pinchlab::experiments {
 
 namespace {
 
-constexpr double g = 9.81;           // m/s^2
-constexpr double half_width = 0.05;  // m
-constexpr double pulley_radius = 0.5;
-constexpr double R = pulley_radius + half_width;  // m, to the cable's centre line
-
-Body body(const std::string& name, BodyKind kind, const Vec2& position, double radius,
-          double mass) {
-  Body b;
-  b.name = name;
-  b.kind = kind;
-  b.position = position;
-  b.radius = radius;
-  b.mass = mass;
-  return b;
-}
-
-Attachment world_point(double x, double y) {
-  return {-1, {x, y}};
-}
-
-Attachment centre_of(int index) {
-  return {index, Vec2::Zero()};
-}
-
-Cable cable(const Attachment& start, std::vector<Wrap> wraps, const Attachment& end) {
-  Cable c;
-  c.name = "cable";
-  c.half_width = half_width;
-  c.start = start;
-  c.wraps = std::move(wraps);
-  c.end = end;
-  return c;
-}
+constexpr double g = 9.81;  // m/s^2
+using build::body;
+using build::cable;
+using build::load_chain;
+using build::pulley_radius;
+constexpr double half_width = build::cable_half_width;  // m
+constexpr double R = pulley_radius + half_width;        // m, to the cable's centre line
 
 /// I/R^2 (kg) of a disc that carries a cable.
 double pulley_share(const Body& pulley) {
   return disc_inertia(pulley) / (R * R);
-}
-
-/// Loads `left` and `right` (kg, bodies 0 and 1) over a row of pulleys, wrapped over and under in
-/// turn.
-Scene loads_over(int pulleys, double left, double right, double pulley_mass) {
-  constexpr double spacing = 1.5;
-  Scene scene;
-  scene.bodies.push_back(body("left", BodyKind::free, {-R, -3.0}, 0.2, left));
-  scene.bodies.push_back(
-      body("right", BodyKind::free, {spacing * (pulleys - 1) + R, -3.0}, 0.2, right));
-  std::vector<Wrap> wraps;
-  for (int i = 0; i < pulleys; ++i) {
-    scene.bodies.push_back(body(fmt::format("pulley {}", i), BodyKind::fixed_axle,
-                                {spacing * i, 0.0}, pulley_radius, pulley_mass));
-    wraps.push_back({2 + i, i % 2 == 0 ? -1 : 1, 0});
-  }
-  scene.cables.push_back(cable(centre_of(0), wraps, centre_of(1)));
-  return scene;
 }
 
 /// Fills `exact` with what `place` says of the time (s) and the body's index.
@@ -110,14 +67,14 @@ void stay(Problem& problem) {
 }  // namespace
 
 Problem atwood() {
-  const Scene scene = loads_over(1, 1.0, 3.0, 2.0);
+  const Scene scene = load_chain(1, 1.0, 3.0, 2.0);
   return uniformly_accelerated("atwood", "Atwood machine", scene,
                                atwood_acceleration(1.0, 3.0, pulley_share(scene.bodies[2]), g));
 }
 
 Problem slipping_atwood() {
   constexpr double mu = 0.05;
-  Scene scene = loads_over(1, 1.0, 3.0, 2.0);
+  Scene scene = load_chain(1, 1.0, 3.0, 2.0);
   scene.bodies[2].cable_friction = mu;
   const double k = std::exp(mu * std::numbers::pi);
   return uniformly_accelerated("slipping-atwood", "Slipping Atwood machine", scene,
@@ -126,7 +83,7 @@ Problem slipping_atwood() {
 
 Problem pulley_chain() {
   constexpr int pulleys = 81;
-  const Scene scene = loads_over(pulleys, 1000.0, 999.0, 0.1);
+  const Scene scene = load_chain(pulleys, 1000.0, 999.0, 0.1);
   const double share = pulleys * pulley_share(scene.bodies[2]);
   return uniformly_accelerated("pulley-chain", "1000 and 999 kg over 81 light pulleys", scene,
                                atwood_acceleration(1000.0, 999.0, share, g));
@@ -150,7 +107,7 @@ Problem swinging_load() {
     scene.bodies.push_back(body(x > 0.0 ? "second pulley" : "first pulley", BodyKind::fixed_axle,
                                 {x, 0.0}, pulley_radius, 4.0));
   }
-  scene.cables.push_back(cable(centre_of(0), {{2, -1, 0}, {3, -1, 0}}, centre_of(1)));
+  scene.cables.push_back(cable(build::on(0), {{2, -1, 0}, {3, -1, 0}}, build::on(1)));
   SwingingLoad with_pulleys = swing;
   with_pulleys.pulleys = pulley_share(scene.bodies[2]) + pulley_share(scene.bodies[3]);
   const std::vector<State> states =
@@ -186,7 +143,7 @@ Problem roller_on_drum() {
   b.velocity = D * push * Vec2(std::cos(start), std::sin(start));
   b.angular_velocity = -D * push / R2;
   scene.bodies.push_back(b);
-  scene.cables.push_back(cable(world_point(-2.0, -1.0), {{0, -1, 0}}, world_point(2.0, -1.0)));
+  scene.cables.push_back(cable(build::at(-2.0, -1.0), {{0, -1, 0}}, build::at(2.0, -1.0)));
   for (const State& y : integrate([&](const State& s) { return roller.derivative(s); },
                                   {-start, push}, 1.0 / scene.frames_per_second, problem.frames)) {
     problem.exact.push_back({Place{D * Vec2(std::sin(y[0]), std::cos(y[0])), 0.0}});
@@ -218,7 +175,7 @@ Problem resting_stack() {
     wraps.push_back({2 + i, i % 2 == 0 ? 1 : -1, 0});
     y += 2.0 * small + 2.0 * half_width;
   }
-  scene.cables.push_back(cable(centre_of(0), wraps, world_point(49.9, 10.505)));
+  scene.cables.push_back(cable(build::on(0), wraps, build::at(49.9, 10.505)));
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) problem.watched.push_back(b);
   stay(problem);
   problem.length_m = half_width;
@@ -234,7 +191,7 @@ Problem hanging_load() {
   problem.frames = 120;
   problem.watched = {0};
   problem.scene.bodies.push_back(body("load", BodyKind::free, {0.0, -length}, 0.2, 100.0));
-  problem.scene.cables.push_back(cable(world_point(0.0, 0.0), {}, centre_of(0)));
+  problem.scene.cables.push_back(cable(build::at(0.0, 0.0), {}, build::on(0)));
   stay(problem);
   problem.length_m = length;
   problem.length = "the cable's length";

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "analysis/experiments/scenes.h"
 #include "analysis/experiments/step_cost.h"
 #include "base/at.h"
+#include "demos/scenes/library.h"
 #include "sim/cable/cable.h"
 #include "sim/detect/pinch.h"
 #include "sim/diagnostics.h"

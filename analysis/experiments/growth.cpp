@@ -4,7 +4,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "analysis/experiments/scenes.h"
+#include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
 

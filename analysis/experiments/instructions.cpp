@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "analysis/experiments/scenes.h"
+#include "demos/scenes/library.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments {

@@ -8,8 +8,9 @@
 #include <cstdio>
 
 #include "analysis/experiments/chart.h"
-#include "analysis/experiments/scenes.h"
+#include "analysis/experiments/element_counts.h"
 #include "analysis/experiments/step_cost.h"
+#include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
 

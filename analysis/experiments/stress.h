@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/experiments/element_counts.h"
 #include "analysis/experiments/growth.h"
-#include "analysis/experiments/scenes.h"
 #include "analysis/experiments/step_cost.h"
+#include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
 

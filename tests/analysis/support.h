@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -15,33 +14,13 @@
 
 #include "analysis/answers_table.h"
 #include "analysis/report.h"
+#include "tests/base/temporary_folder.h"
 
 namespace pinchlab::analysis::test {
 
 namespace fs = std::filesystem;
 
-/// A folder that vanishes with its test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    static int count = 0;
-    path_ = fs::temp_directory_path() / fmt::format("pinchlab-analysis-{}-{}", getpid(), count++);
-    fs::create_directories(path_);
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  fs::path write(const std::string& name, const std::string& content) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  fs::path path_;
-};
+using pinchlab::test::TemporaryFolder;
 
 inline std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);

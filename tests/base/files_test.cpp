@@ -16,8 +16,8 @@ namespace pinchlab {
 namespace {
 
 namespace fs = std::filesystem;
-using pinchlab::testing::message_of;
-using pinchlab::testing::TemporaryFolder;
+using pinchlab::test::message_of;
+using pinchlab::test::TemporaryFolder;
 
 std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(

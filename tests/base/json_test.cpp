@@ -10,7 +10,7 @@ namespace pinchlab {
 namespace {
 
 using nlohmann::json;
-using pinchlab::testing::message_of;
+using pinchlab::test::message_of;
 
 // "place: message" of the first mistake.
 std::string mistake(std::string_view text, std::size_t max_depth = 16) {
@@ -42,7 +42,7 @@ TEST(StrictJson, RefusesTheRest) {
 }
 
 TEST(StrictJson, FilesAreNamed) {
-  const pinchlab::testing::TemporaryFolder folder;
+  const pinchlab::test::TemporaryFolder folder;
   const std::string path = folder.write("a.json", "{\"a\": 1, \"a\": 1}").string();
   EXPECT_EQ(message_of<InputError>([&] { read_json_file(path, 100); }),
             path + ": /a: key given twice; keep one of them");

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pinchlab::testing {
+namespace pinchlab::test {
 
 /// An empty folder that is removed at the end of the test.
 class TemporaryFolder {
@@ -29,6 +29,8 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  bool empty() const { return std::filesystem::is_empty(path_); }
   /// Writes a file, with the folders above it, and returns its path.
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((path_ / name).parent_path());
@@ -51,4 +53,4 @@ std::string message_of(Act act) {
   return "";
 }
 
-}  // namespace pinchlab::testing
+}  // namespace pinchlab::test

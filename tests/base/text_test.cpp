@@ -68,7 +68,7 @@ TEST(Sha256, ExamplesOfTheStandard) {
     sha.add(std::string(1000, 'a'));
   }
   EXPECT_EQ(sha.hex(), million);
-  const pinchlab::testing::TemporaryFolder folder;
+  const pinchlab::test::TemporaryFolder folder;
   EXPECT_EQ(sha256_of_file(folder.write("a", std::string(1'000'000, 'a'))), million);
 }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "render/canvas.h"
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {
@@ -288,7 +288,7 @@ TEST(Canvas, PicturesSideBySideLookAsAlone) {
 TEST(Canvas, RefusesAbsurdSizes) {
   for (const auto& [width, height] : {std::pair{0, 100}, {100, -1}, {15, 100}, {100, 1000000}}) {
     const std::string message =
-        testing::message_of<std::runtime_error>([w = width, h = height] { Canvas(w, h); });
+        test::message_of<std::runtime_error>([w = width, h = height] { Canvas(w, h); });
     EXPECT_NE(message.find("each side must be 16 to 8192 px"), std::string::npos) << message;
   }
 }
@@ -325,7 +325,7 @@ TEST(Canvas, LabelsAreCentredAndInTheirColour) {
 
 TEST(Canvas, SaysWhichPackageBringsTheFont) {
   setenv("PINCHLAB_FONT", "/no/such/font.ttf", 1);
-  const std::string message = testing::message_of<std::runtime_error>([] { Canvas(32, 32); });
+  const std::string message = test::message_of<std::runtime_error>([] { Canvas(32, 32); });
   unsetenv("PINCHLAB_FONT");
   EXPECT_NE(message.find("/no/such/font.ttf"), std::string::npos) << message;
 }

@@ -9,8 +9,8 @@
 namespace pinchlab {
 namespace {
 
-using testing::Folder;
-using testing::message_of;
+using test::message_of;
+using test::TemporaryFolder;
 
 struct Image {
   int width = 0, height = 0;
@@ -42,7 +42,7 @@ std::vector<std::uint8_t> gradient(int width, int height) {
 }
 
 TEST(Png, ReadsBackAsWritten) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto rgba = gradient(37, 21);
   write_png(folder.file("a.png"), 37, 21, rgba.data());
   const Image image = read(folder.file("a.png"));
@@ -55,7 +55,7 @@ TEST(Png, ReadsBackAsWritten) {
 }
 
 TEST(Png, SamePixelsSameBytes) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto rgba = gradient(64, 64);
   write_png(folder.file("a.png"), 64, 64, rgba.data());
   write_png(folder.file("b.png"), 64, 64, rgba.data());
@@ -63,7 +63,7 @@ TEST(Png, SamePixelsSameBytes) {
 }
 
 TEST(Png, ContactSheetShowsEveryFrameOverItsLabel) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const int w = 120, h = 80;
   std::vector<SheetFrame> frames;
   for (int i = 0; i < 5; ++i) {
@@ -93,12 +93,12 @@ TEST(Png, ContactSheetShowsEveryFrameOverItsLabel) {
 }
 
 TEST(Png, ErrorsNameTheFileAndLeaveNothing) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto rgba = gradient(8, 8);
   const std::string lost = folder.file("missing/a.png");
   EXPECT_NE(message_of<std::runtime_error>([&] { write_png(lost, 8, 8, rgba.data()); }).find(lost),
             std::string::npos);
-  EXPECT_THROW(write_png(folder.path.string(), 8, 8, rgba.data()), std::runtime_error);
+  EXPECT_THROW(write_png(folder.path().string(), 8, 8, rgba.data()), std::runtime_error);
   EXPECT_THROW(write_png(folder.file("a.png"), 0, 8, rgba.data()), std::invalid_argument);
   EXPECT_THROW(contact_sheet(folder.file("a.png"), 8, 8, {}), std::invalid_argument);
   EXPECT_THROW(contact_sheet(folder.file("a.png"), 8, 8, {{gradient(4, 4), "small"}}),
@@ -108,7 +108,7 @@ TEST(Png, ErrorsNameTheFileAndLeaveNothing) {
 
 TEST(Png, AFullDiskLeavesNothing) {
   // /dev/full fails every write: the partial file is a link to it here.
-  const Folder folder;
+  const TemporaryFolder folder;
   std::filesystem::create_symlink("/dev/full", folder.file("a.png.partial"));
   const auto rgba = gradient(400, 400);
   EXPECT_THROW(write_png(folder.file("a.png"), 400, 400, rgba.data()), std::runtime_error);

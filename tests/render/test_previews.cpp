@@ -13,8 +13,8 @@
 namespace pinchlab {
 namespace {
 
-using testing::Folder;
-using testing::message_of;
+using test::message_of;
+using test::TemporaryFolder;
 
 constexpr int width = 33, height = 18, frames = 5, rate = 25;
 
@@ -45,7 +45,7 @@ std::size_t count(const std::string& bytes, const std::string& what) {
 
 TEST(Preview, PngAndGifReadBackWithoutLoss) {
   for (const Codec codec : {Codec::apng, Codec::gif}) {
-    const Folder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file(std::string("clip") + file_ending(codec));
     write(path, codec);
     VideoReader reader(path);
@@ -67,7 +67,7 @@ TEST(Preview, PngAndGifReadBackWithoutLoss) {
 
 // This FFmpeg writes animated WebP but does not read it: the file's own structure is looked at.
 TEST(Preview, WebPHasItsFramesAndLoops) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write(folder.file("clip.webp"), Codec::webp);
   const auto raw = testing::bytes_of(folder.file("clip.webp"));
   const std::string bytes(raw.begin(), raw.end());
@@ -81,7 +81,7 @@ TEST(Preview, WebPHasItsFramesAndLoops) {
 
 TEST(Preview, SameFramesSameBytes) {
   for (const Codec codec : {Codec::apng, Codec::webp, Codec::gif}) {
-    const Folder folder;
+    const TemporaryFolder folder;
     write(folder.file("a"), codec);
     write(folder.file("b"), codec);
     EXPECT_EQ(testing::bytes_of(folder.file("a")), testing::bytes_of(folder.file("b")));
@@ -89,7 +89,7 @@ TEST(Preview, SameFramesSameBytes) {
 }
 
 TEST(Preview, AGifsClockIsChecked) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string error = message_of<std::invalid_argument>([&] {
     VideoWriter(folder.file("a.gif"), {Codec::gif, 32, 32, 60, ""});
   });

@@ -2,13 +2,13 @@
 // What a rehearsal finds: how far rails are used, what must be seen, where labels are out of the
 // way.
 
-#include "render/scenery.h"
+#include "render/picture/scenery.h"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "render/vector_canvas.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
@@ -18,7 +18,7 @@ namespace {
 
 using testing::atwood;
 using testing::body;
-using testing::Folder;
+using test::TemporaryFolder;
 
 Scene short_atwood() {
   Scene scene = atwood();
@@ -130,7 +130,7 @@ TEST(Vector, SvgAndPdfAreTheSameTwice) {
   const Scene scene = short_atwood();
   Picture picture;
   compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const auto& [format, ending, begin] :
        {std::tuple(VectorFormat::svg, ".svg", "<?xml"), {VectorFormat::pdf, ".pdf", "%PDF"}}) {
     const std::string a = folder.file(std::string("a") + ending);

@@ -7,14 +7,14 @@
 #include <cstring>
 
 #include "render/canvas.h"
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {
 namespace {
 
-using testing::Folder;
-using testing::message_of;
+using test::message_of;
+using test::TemporaryFolder;
 
 constexpr int width = 192, height = 160, frames = 75;
 
@@ -68,7 +68,7 @@ class EveryCodec : public ::testing::TestWithParam<Codec> {};
 TEST_P(EveryCodec, ReadsBackAsWritten) {
   const Codec codec = GetParam();
   const bool rgb = codec == Codec::ffv1;
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string path = folder.file(std::string("clip") + file_ending(codec));
   write(path, settings(codec));
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
@@ -111,14 +111,14 @@ TEST_P(EveryCodec, ReadsBackAsWritten) {
 }
 
 TEST_P(EveryCodec, SameFramesSameBytes) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write(folder.file("a"), settings(GetParam()));
   write(folder.file("b"), settings(GetParam()));
   EXPECT_EQ(testing::bytes_of(folder.file("a")), testing::bytes_of(folder.file("b")));
 }
 
 TEST_P(EveryCodec, AnInterruptedWriteLeavesNothing) {
-  const Folder folder;
+  const TemporaryFolder folder;
   {
     VideoWriter writer(folder.file("clip"), settings(GetParam()));
     for (int i = 0; i < 20; ++i) writer.add(drawn()[static_cast<std::size_t>(i)].data());
@@ -134,7 +134,7 @@ TEST_P(EveryCodec, OnlyChangesMayBeConverted) {
   for (int y = 40; y < 60; ++y)
     std::fill_n(second.begin() + (y * width + 70) * 4, 20 * 4, std::uint8_t{90});
   const PixelRect patch{70, 40, 20, 20};
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const bool patched : {false, true}) {
     VideoWriter writer(folder.file(patched ? "patched" : "whole"), settings(GetParam()));
     writer.add(drawn()[0].data());
@@ -150,7 +150,7 @@ TEST_P(EveryCodec, OnlyChangesMayBeConverted) {
 
 TEST_P(EveryCodec, TheFirstFrameIsConvertedWhole) {
   // A canvas that has drawn before names only what it changed; a new clip knows nothing of that.
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const bool nothing : {false, true}) {
     VideoWriter writer(folder.file(nothing ? "nothing" : "whole"), settings(GetParam()));
     if (nothing) {
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(Video, EveryCodec, ::testing::Values(Codec::h264, Codec
                          [](const auto& codec) { return std::string(to_string(codec.param)); });
 
 TEST(Video, H264IsMadeForPlayersAndStimuli) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write(folder.file("clip.mp4"), settings(Codec::h264));
   const auto bytes = testing::bytes_of(folder.file("clip.mp4"));
   const auto find = [&](const char* tag) {
@@ -196,7 +196,7 @@ TEST(Video, H264IsMadeForPlayersAndStimuli) {
 }
 
 TEST(Video, BadSettingsAreNamedAndLeaveNothing) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto error = [&](VideoSettings how) {
     return message_of<std::invalid_argument>([&] { VideoWriter(folder.file("clip"), how); });
   };
@@ -215,13 +215,13 @@ TEST(Video, BadSettingsAreNamedAndLeaveNothing) {
 }
 
 TEST(Video, BadPlacesAreNamedAndLeaveNothing) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string lost = folder.file("missing/clip.mp4");
   EXPECT_NE(
       message_of<std::runtime_error>([&] { VideoWriter(lost, settings(Codec::h264)); }).find(lost),
       std::string::npos);
   EXPECT_NE(message_of<std::runtime_error>([&] {
-              VideoWriter(folder.path.string(), settings(Codec::h264));
+              VideoWriter(folder.path().string(), settings(Codec::h264));
             }).find("is a folder"),
             std::string::npos);
   const std::string empty_clip = message_of<std::runtime_error>(
@@ -231,7 +231,7 @@ TEST(Video, BadPlacesAreNamedAndLeaveNothing) {
 }
 
 TEST(Video, AFullDiskIsAnErrorAndLeavesNothing) {
-  const Folder folder;
+  const TemporaryFolder folder;
   for (const Codec codec : {Codec::h264, Codec::vp9, Codec::ffv1}) {
     std::filesystem::create_symlink("/dev/full", folder.file("clip.partial"));
     EXPECT_THROW(write(folder.file("clip"), settings(codec)), std::runtime_error)
@@ -241,7 +241,7 @@ TEST(Video, AFullDiskIsAnErrorAndLeavesNothing) {
 }
 
 TEST(Video, OddSizesWorkInFfv1) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::vector<std::uint8_t> grey(33 * 17 * 4, 90);
   {
     VideoWriter writer(folder.file("odd.mkv"), {Codec::ffv1, 33, 17, 30, ""});
@@ -256,7 +256,7 @@ TEST(Video, OddSizesWorkInFfv1) {
 }
 
 TEST(Video, UnreadableFilesAreNamed) {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::ofstream(folder.file("no.mp4")) << "not a video";
   EXPECT_NE(
       message_of<std::runtime_error>([&] { VideoReader(folder.file("no.mp4")); }).find("no.mp4"),

@@ -3,30 +3,13 @@
 
 #include <stdexcept>
 
+#include "demos/scenes/library.h"
 #include "tests/sim/random_scene.h"
 
 namespace pinchlab::testing {
 namespace {
 
 constexpr double w = 0.05, R = 0.5 + w;
-
-/// The thesis' stress test (its Figure 3.1) by its author's generator: four pulleys a unit of load,
-/// `spacing` m apart, on one cable between two anchors.
-Scene stress_scene(int load, double spacing) {
-  Scene scene;
-  std::vector<Wrap> wraps;
-  for (int i = 0; i < load; ++i) {
-    const double left = spacing * (2 * i + 0.5), right = spacing * (2 * i + 1.5);
-    const double x[] = {left, left, right, right}, row[] = {0.5, 1.5, 1.5, 0.5};
-    for (int k = 0; k < 4; ++k) {
-      wraps.push_back({4 * i + k, k == 0 || k == 3 ? -1 : 1, 0});
-      scene.bodies.push_back(body(fmt::format("pulley {}", 4 * i + k), BodyKind::fixed_axle, x[k],
-                                  -row[k] * spacing, 0.5, 1.0));
-    }
-  }
-  scene.cables.push_back(cable(at(0.0, 0.0), wraps, at(2.0 * spacing * load, 0.0), w));
-  return scene;
-}
 
 struct Elements {
   int joints = 0, segments = 0, contacts = 0, middles = 0, transitional = 0;
@@ -59,7 +42,8 @@ TEST(Methods, StressScenesHaveTheElementsOfTheThesis) {
   for (const int n : {1, 2, 5, 10, 20}) {
     for (const Configuration& configuration :
          {Configuration(Method::pinch), thesis_configuration()}) {
-      const Scene pinched = stress_scene(n, 2.0 * R - 5e-10), apart = stress_scene(n, 1.2);
+      const Scene pinched = slack_stress_scene(n, pinched_spacing);
+      const Scene apart = slack_stress_scene(n, free_spacing);
       World world = make_world(pinched, configuration);
       const Elements table_5_1{12 * n - 2, 12 * n - 3, 4 * n - 1, 4 * n - 2, 2 * n};
       EXPECT_EQ(count_elements(world), table_5_1) << to_string(configuration) << ' ' << n;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <gsl/gsl_rng.h>
-
 #include <cmath>
-#include <memory>
 
+#include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -13,15 +11,11 @@ namespace pinchlab::testing {
 /// Two to six free rollers of 0.1 to 10 kg that fall on three to five wrapped pulleys. No cable
 /// slips where `seed` is a multiple of 3.
 inline Scene random_scene(int seed) {
-  const std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)> rng(gsl_rng_alloc(gsl_rng_mt19937),
-                                                              &gsl_rng_free);
-  gsl_rng_set(rng.get(), static_cast<unsigned long>(seed));
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * gsl_rng_uniform(rng.get());
-  };
+  Random random(static_cast<unsigned>(seed));
+  const auto uniform = [&](double low, double high) { return random.uniform(low, high); };
   Scene scene;
-  const int pulleys = 3 + static_cast<int>(gsl_rng_uniform_int(rng.get(), 3));
-  const int rollers = 2 + static_cast<int>(gsl_rng_uniform_int(rng.get(), 5));
+  const int pulleys = 3 + random.below(3);
+  const int rollers = 2 + random.below(5);
   std::vector<Wrap> wraps;
   for (int i = 0; i < pulleys; ++i) {
     Body p = body(fmt::format("pulley {}", i), BodyKind::fixed_axle, 1.3 * i,

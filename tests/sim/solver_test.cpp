@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gsl/gsl_rng.h>
-
 #include <Eigen/Dense>
 
 #include "sim/solve/profile_lu.h"
+#include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -11,7 +10,7 @@ namespace {
 
 /// A random matrix that is narrow about its diagonal, with a few full rows, diagonally dominant.
 TEST(ProfileLu, AgreesWithDenseLu) {
-  gsl_rng* rng = gsl_rng_alloc(gsl_rng_mt19937);
+  Random random(1);
   for (int n = 1; n < 60; n += 7) {
     std::vector<int> first(static_cast<std::size_t>(n));
     for (int u = 0; u < n; ++u)
@@ -23,7 +22,7 @@ TEST(ProfileLu, AgreesWithDenseLu) {
       for (int v = first[static_cast<std::size_t>(u)]; v <= u; ++v) {
         for (const auto& [i, j] : {std::pair(u, v), std::pair(v, u)}) {
           if (i == j && a(i, j) != 0.0) continue;
-          const double value = gsl_rng_uniform(rng) - 0.5 + (i == j ? 20.0 : 0.0);
+          const double value = random.uniform(-0.5, 0.5) + (i == j ? 20.0 : 0.0);
           a(i, j) += value;
           lu.add(i, j, value);
         }
@@ -36,7 +35,6 @@ TEST(ProfileLu, AgreesWithDenseLu) {
     const Eigen::VectorXd exact = a.partialPivLu().solve(b);
     for (int u = 0; u < n; ++u) EXPECT_NEAR(x[static_cast<std::size_t>(u)], exact(u), 1e-13);
   }
-  gsl_rng_free(rng);
 }
 
 TEST(ProfileLu, FindsRepeatedRows) {

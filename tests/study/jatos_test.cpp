@@ -7,7 +7,8 @@
 #include <map>
 #include <set>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
+#include "base/input_error.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -186,7 +187,7 @@ TEST(Jatos, ResultsBecomeAnswerFiles) {
   EXPECT_EQ(bring().added, 2);
   EXPECT_EQ(bring().known, 2) << "a second time changes nothing";
   const json file = json::parse(read_whole(study.folder / "answers" / "0123456789abcdef.json"));
-  analysis::parse_answer_file(file, "answers");
+  parse_answer_file(file, "answers");
   const std::vector<PlannedTrial> plan = make_plan(7, 2, plan_options(small_config()));
   for (std::size_t i = 0; i < plan.size(); ++i) {
     EXPECT_EQ(file["trials"][i]["demonstration"], plan[i].demonstration);
@@ -229,6 +230,24 @@ TEST(Jatos, WhatCannotBeIsToldAndNothingIsWritten) {
     EXPECT_FALSE(fs::exists(study.folder / "answers"));
   }
   EXPECT_EQ(error(good.dump()), "no error");
+}
+
+// A key that was changed by hand: what it makes of good results is no answer file.
+TEST(Jatos, NothingIsWrittenWithADamagedKey) {
+  const Exported study = exported(small_config());
+  const fs::path results = study.folder / "results.txt", key = study.folder / "study.key.json";
+  write_text(results, result(study.input, 0, 3, "0123456789abcdef").dump() + "\n" +
+                          result(study.input, 1, 3, "0123456789abcde0").dump());
+  json damaged = json::parse(read_whole(key));
+  damaged["shown"]["question"] = 7;
+  write_text(key, damaged.dump());
+  try {
+    import_jatos({results}, key, study.folder / "answers");
+    FAIL() << "a question that is a number was taken";
+  } catch (const InputError& error) {
+    EXPECT_TRUE(error.place.starts_with(results.string() + ":1")) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(study.folder / "answers"));
 }
 
 TEST(Jatos, AKeyIsNotWrittenOver) {

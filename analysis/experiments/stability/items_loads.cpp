@@ -29,7 +29,7 @@ Case along_a_cable(double ratio) {
   Case test;
   test.series = "along a cable";
   test.x = ratio;
-  test.scene = loads_over_pulleys(count, ratio, 0.5 * ratio, 1.0);
+  test.scene = build::load_chain(count, ratio, 0.5 * ratio, 1.0);
   test.energy = EnergyLaw::keeps;
   test.energy_at_play_j = energy_at_play(test.scene, 1.0);
   const double a = -0.5 * ratio * g / (1.5 * ratio + count * pulley_load);
@@ -74,7 +74,7 @@ Case slipping(const std::string& series, int count, BodyKind kind, double mu) {
   Case test;
   test.series = series;
   test.x = mu;
-  test.scene = loads_over_pulleys(count, light, heavy, 1.0, mu);
+  test.scene = build::load_chain(count, light, heavy, 1.0, mu);
   for (Body& b : test.scene.bodies) {
     if (b.kind == BodyKind::fixed_axle) b.kind = kind;
   }
@@ -134,7 +134,7 @@ Item pulleys(bool quick) {
       Case test;
       test.series = heavy ? "1000 kg and 999 kg" : "2 kg and 1 kg";
       test.x = count;
-      test.scene = loads_over_pulleys(count, left, right, 0.1);
+      test.scene = build::load_chain(count, left, right, 0.1);
       const double a = -(left - right) * g / (left + right + count * 0.1 * pulley_load);
       test.error = rise_error(a, std::abs(a));
       test.energy = EnergyLaw::keeps;

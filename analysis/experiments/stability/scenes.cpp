@@ -11,61 +11,19 @@ namespace pinchlab::experiments::stability {
 
 namespace {
 
+using build::at;
+using build::body;
+using build::on;
+
 constexpr double R = pulley_radius + cable_half_width;
-
-Body body(std::string name, BodyKind kind, double x, double y, double radius, double mass) {
-  Body b;
-  b.name = std::move(name);
-  b.kind = kind;
-  b.position = {x, y};
-  b.radius = radius;
-  b.mass = mass;
-  return b;
-}
-
-Attachment at(double x, double y) {
-  return {-1, {x, y}};
-}
-
-Attachment on(int b) {
-  return {b, {0.0, 0.0}};
-}
 
 void add_cable(Scene& scene, const Attachment& start, std::vector<Wrap> wraps,
                const Attachment& end, double half_width = cable_half_width) {
-  Cable c;
-  c.name = fmt::format("cable {}", scene.cables.size());
-  c.half_width = half_width;
-  c.start = start;
-  c.wraps = std::move(wraps);
-  c.end = end;
-  scene.cables.push_back(c);
-}
-
-/// Wraps of a row of pulleys: the first and last from above, those between in turn.
-std::vector<Wrap> over_and_under(int first_body, int pulleys) {
-  std::vector<Wrap> wraps;
-  for (int i = 0; i < pulleys; ++i) wraps.push_back({first_body + i, i % 2 == 0 ? -1 : 1, 0});
-  return wraps;
+  scene.cables.push_back(build::cable(start, std::move(wraps), end, half_width));
+  scene.cables.back().name = fmt::format("cable {}", scene.cables.size() - 1);
 }
 
 }  // namespace
-
-Scene loads_over_pulleys(int pulleys, double left_mass, double right_mass, double pulley_mass,
-                         double friction) {
-  constexpr double spacing = 1.5;
-  Scene scene;
-  scene.bodies.push_back(body("left", BodyKind::free, -R, -3.0, 0.2, left_mass));
-  scene.bodies.push_back(
-      body("right", BodyKind::free, spacing * (pulleys - 1) + R, -3.0, 0.2, right_mass));
-  for (int i = 0; i < pulleys; ++i) {
-    scene.bodies.push_back(body(fmt::format("pulley {}", i), BodyKind::fixed_axle, spacing * i, 0.0,
-                                pulley_radius, pulley_mass));
-    scene.bodies.back().cable_friction = friction;
-  }
-  add_cable(scene, on(0), over_and_under(2, pulleys), on(1));
-  return scene;
-}
 
 Scene hanging_pair(double ratio) {
   Scene scene;
@@ -89,7 +47,7 @@ Scene heavy_on_light(double ratio) {
 }
 
 Scene caught_load(double height) {
-  Scene scene = loads_over_pulleys(5, 10.0, 1.0, 0.1);
+  Scene scene = build::load_chain(5, 10.0, 1.0, 0.1);
   scene.bodies.erase(scene.bodies.begin() + 1);
   Cable& cable = scene.cables[0];
   for (Wrap& wrap : cable.wraps) --wrap.body;

@@ -2,18 +2,13 @@
 #pragma once
 // The scenes of the stability tests. Lengths in m, masses in kg; gravity is the default.
 
-#include "sim/scene.h"
+#include "demos/scenes/build.h"
 
 namespace pinchlab::experiments::stability {
 
-constexpr double g = 9.81;                 // m/s^2
-constexpr double pulley_radius = 0.5;      // m
-constexpr double cable_half_width = 0.05;  // m
-
-/// Two loads on one cable over a row of equal pulleys, wrapped over and under in turn (an odd
-/// number). Bodies 0 and 1 are the loads, the pulleys follow.
-Scene loads_over_pulleys(int pulleys, double left_mass, double right_mass, double pulley_mass,
-                         double friction = infinity);
+constexpr double g = 9.81;  // m/s^2
+using build::cable_half_width;
+using build::pulley_radius;
 
 /// A body of 1 kg on a cable of 1 m, and `ratio` kg on a cable of 1 m below it, 1 mm out of line.
 Scene hanging_pair(double ratio);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "analysis/experiments/scenes.h"
+#include "demos/scenes/library.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments {

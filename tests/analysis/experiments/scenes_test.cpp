@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/experiments/scenes.h"
+#include "analysis/experiments/element_counts.h"
+#include "demos/scenes/library.h"
 
 #include <gtest/gtest.h>
 

@@ -102,7 +102,7 @@ TEST(StabilityMeasures, WatchFindsWhatIsWrong) {
   EXPECT_EQ(watch(restless, "pinch", Method::pinch).verdict.worst, Failure::restless);
 
   Case driven;  // a load that is wound up by a torque
-  driven.scene = loads_over_pulleys(1, 1.0, 1.0, 1.0);
+  driven.scene = build::load_chain(1, 1.0, 1.0, 1.0);
   driven.scene.bodies[2].torque = -5.0;
   driven.energy = EnergyLaw::falls;
   driven.energy_at_play_j = energy_at_play(driven.scene, 1.0);

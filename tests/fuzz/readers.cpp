@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "analysis/answers_table.h"
+#include "analysis/levels_table.h"
+#include "base/input_error.h"
+#include "demos/scenes/scene_json.h"
+#include "demos/scenes/theme.h"
+#include "study/config.h"
+#include "study/jatos.h"
+#include "tests/fuzz/targets.h"
+
+namespace pinchlab::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path source(const char* name) {
+  return fs::path(PINCHLAB_SOURCE_DIR) / "tests" / "fuzz" / name;
+}
+
+/// A table that was read must be one: indices in range, counts that are those of the answers.
+void check(const analysis::AnswersTable& table) {
+  std::vector<analysis::Counts> counts(table.demonstrations.size());
+  for (const analysis::Answer& answer : table.answers) {
+    if (answer.demonstration >= counts.size() || answer.participant >= table.participants.size()) {
+      throw Finding("an answer of nobody, or to nothing");
+    }
+    ++(answer.chose_pinch ? counts[answer.demonstration].pinch
+                          : counts[answer.demonstration].cable);
+  }
+  if (table.counts.size() != counts.size()) throw Finding("counts of what is not there");
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const analysis::Counts& told = table.counts[i];
+    if (told.pinch < 0 || told.cable < 0) throw Finding("a negative count");
+    const bool same = told.pinch == counts[i].pinch && told.cable == counts[i].cable;
+    if (!table.answers.empty() && !same) throw Finding("counts that are not the answers'");
+  }
+  for (const analysis::Group& group : table.groups) {
+    for (const std::uint16_t demonstration : group.demonstrations) {
+      if (demonstration >= counts.size()) throw Finding("a group of what is not there");
+    }
+  }
+}
+
+bool read_table(const fs::path& path) {
+  analysis::ReadOptions options;
+  options.allow_missing = true;
+  try {
+    check(analysis::read_answers({path}, options));
+    return true;
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+/// Counts at each level, as threshold studies give them.
+bool read_levels(const fs::path& path) {
+  try {
+    const analysis::LevelsTable table = analysis::read_levels({path}, {});
+    if (table.series.empty()) throw Finding("a table without series");
+    return true;
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+/// Imports into a folder that is empty before.
+bool import(const fs::path& results, const fs::path& key) {
+  const fs::path answers = results.parent_path() / "answers";
+  fs::remove_all(answers);
+  try {
+    const study::Imported imported = study::import_jatos({results}, key, answers);
+    if (imported.added == 0) return false;
+    // What was taken must be readable.
+    if (!read_table(answers)) throw Finding("imported answers that are none");
+    return true;
+  } catch (const std::runtime_error& error) {
+    const std::string_view what = error.what();
+    if (!what.starts_with(key.string())) must_name(error, results.string());
+    return false;
+  }
+}
+
+}  // namespace
+
+bool fuzz_answers(std::string_view bytes) {
+  return read_table(file_with(bytes, "answers.json"));
+}
+
+bool fuzz_counts(std::string_view bytes) {
+  const fs::path path = file_with(bytes, "counts.csv");
+  bool has_levels = false;
+  try {
+    has_levels = analysis::has_levels(path, {});
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+  return has_levels ? read_levels(path) : read_table(path);
+}
+
+bool fuzz_study_config(std::string_view bytes) {
+  const fs::path path = file_with(bytes, "study.json");
+  try {
+    const study::Config config = study::read_config(path);
+    if (config.texts.empty()) throw Finding("a study without texts");
+    if (!config.demonstrations.empty()) study::make_plan(1, 0, study::plan_options(config));
+    return true;
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+bool fuzz_theme(std::string_view bytes) {
+  const fs::path path = file_with(bytes, "theme.json");
+  try {
+    read_theme_file(path);
+    return true;
+  } catch (const SceneFileError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+bool fuzz_jatos(std::string_view bytes) {
+  return import(file_with(bytes, "results.txt"), source("jatos.key.json"));
+}
+
+bool fuzz_jatos_key(std::string_view bytes) {
+  const fs::path key = file_with(bytes, "key.json");
+  return import(source("jatos.results.txt"), key);
+}
+
+}  // namespace pinchlab::fuzz

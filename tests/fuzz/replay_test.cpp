@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that fuzzing starts from (corpus), and all that it ever found (found), as ordinary tests.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "tests/fuzz/targets.h"
+
+namespace pinchlab::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (fs::exists(folder)) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      files.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Fuzz : public ::testing::TestWithParam<Target> {
+ protected:
+  /// How many of the files are used and not refused.
+  static int replay(const char* kind) {
+    const fs::path folder = fs::path(PINCHLAB_SOURCE_DIR) / "tests" / "fuzz" / kind;
+    int used = 0;
+    for (const fs::path& file : files_in(folder / GetParam().name)) {
+      SCOPED_TRACE(file.string());
+      EXPECT_NO_THROW(used += GetParam().run(bytes_of(file)) ? 1 : 0);
+    }
+    return used;
+  }
+};
+
+// Fuzzing that starts from nothing but refused files hardly comes past the door.
+TEST_P(Fuzz, CorpusHolds) {
+  EXPECT_GT(replay("corpus"), 0);
+}
+
+TEST_P(Fuzz, WhatWasFoundHolds) {
+  replay("found");
+}
+
+INSTANTIATE_TEST_SUITE_P(Targets, Fuzz, ::testing::ValuesIn(targets),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace pinchlab::fuzz

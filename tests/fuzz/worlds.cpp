@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "demos/scenes/scene_json.h"
+#include "sim/promises.h"
+#include "sim/step.h"
+#include "tests/fuzz/targets.h"
+
+namespace pinchlab::fuzz {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* file = "scene.json";
+
+/// Bytes as choices; zeros when there are no more, so that small inputs make simple scenes.
+class Choices {
+ public:
+  explicit Choices(std::string_view bytes) : bytes_(bytes) {}
+
+  unsigned byte() {
+    if (next_ >= bytes_.size()) return 0;
+    return static_cast<unsigned char>(bytes_[next_++]);
+  }
+  /// 0 to n - 1.
+  unsigned below(unsigned n) { return byte() % n; }
+  bool one_in(unsigned n) { return byte() % n == 1; }
+  /// low to high, in 65536 steps; 0 bytes give `low`.
+  double between(double low, double high) {
+    const unsigned value = 256 * byte() + byte();
+    return low + (high - low) * static_cast<double>(value) / 65535.0;
+  }
+  /// 10^low to 10^high; 0 bytes give 1 where that is between.
+  double magnitude(double low, double high) {
+    const unsigned value = (256 * byte() + byte() + 32768) % 65536;
+    return std::pow(10.0, low + (high - low) * static_cast<double>(value) / 65535.0);
+  }
+
+ private:
+  std::string_view bytes_;
+  std::size_t next_ = 0;
+};
+
+/// In cells of a grid, where most bodies find room, or anywhere.
+json place(Choices& choices, unsigned index) {
+  if (choices.one_in(16)) return {choices.between(-3.0, 3.0), choices.between(-3.0, 3.0)};
+  constexpr double cell = 1.5;
+  return {cell * (index % 3) - cell + choices.between(-0.3, 0.3),
+          cell * (index / 3) - cell + choices.between(-0.3, 0.3)};
+}
+
+json body(Choices& choices, unsigned index) {
+  const char* kinds[] = {"free", "fixed_axle", "rail", "fixed"};
+  const std::string kind = kinds[choices.below(4)];
+  json b = {
+      {"name", fmt::format("b{}", index)},
+      {"kind", kind},
+      {"radius_m", choices.one_in(16) ? choices.magnitude(-3.0, 1.0) : choices.between(0.1, 0.5)},
+      {"position_m", place(choices, index)}};
+  if (kind == "rail") b["rail_axis"] = {choices.between(-1.0, 1.0), 1.0};
+  if (choices.one_in(3)) b["cable_friction"] = choices.between(0.0, 2.0);
+  if (choices.one_in(5)) b["contact_friction"] = choices.between(0.0, 2.0);
+  if (choices.one_in(5)) b["restitution"] = choices.between(0.0, 1.0);
+  if (kind == "fixed") return b;
+  b["mass_kg"] = choices.one_in(4) ? choices.magnitude(-9.0, 12.0) : choices.magnitude(-1.0, 1.0);
+  if (choices.one_in(6)) {
+    b["driven_angular_velocity_rad_s"] = choices.between(-20.0, 20.0);
+  } else {
+    if (choices.one_in(6)) b["torque_n_m"] = choices.between(-100.0, 100.0);
+    if (choices.one_in(6)) b["angular_velocity_rad_s"] = choices.between(-50.0, 50.0);
+    if (choices.one_in(8)) b["angular_drag_per_s"] = choices.magnitude(-2.0, 4.0);
+  }
+  if (kind == "fixed_axle") return b;
+  if (choices.one_in(4)) {
+    const double x = choices.between(-30.0, 30.0), y = choices.between(-30.0, 30.0);
+    b["velocity_m_s"] = kind == "rail" ? json{x * b["rail_axis"][0].get<double>(), x} : json{x, y};
+  }
+  if (choices.one_in(8)) b["linear_drag_per_s"] = choices.magnitude(-2.0, 4.0);
+  return b;
+}
+
+/// `wound` is the body that the cable is wound on there, null if on none: on that it can end at its
+/// rim only.
+json attachment(Choices& choices, unsigned bodies, const json& wound) {
+  const unsigned kind = choices.below(4);
+  if (kind == 0) return {{"world_m", {choices.between(-4.0, 4.0), choices.between(-4.0, 4.0)}}};
+  const std::string name = fmt::format("b{}", choices.below(bodies));
+  if (!wound.is_null() && (kind == 1 || wound == name)) {
+    return {{"body", wound}, {"rim_angle_rad", choices.between(-4.0, 4.0)}};
+  }
+  return {{"body", name}, {"point_m", {choices.between(0.0, 0.07), choices.between(0.0, 0.07)}}};
+}
+
+json cable(Choices& choices, unsigned index, unsigned bodies) {
+  json c = {{"name", fmt::format("c{}", index)},
+            {"half_width_m",
+             choices.one_in(8) ? choices.magnitude(-4.0, 0.0) : choices.between(0.01, 0.08)},
+            {"wraps", json::array()}};
+  const bool closed = choices.one_in(4) && bodies > 1;
+  const unsigned wraps = bodies == 1 ? choices.below(2) : choices.below(5) + (closed ? 2 : 0);
+  unsigned on = choices.below(bodies);
+  for (unsigned i = 0; i < wraps; ++i) {
+    // Never twice running on the same body, which extra turns are for.
+    if (i > 0) on = (on + 1 + choices.below(bodies - 1)) % bodies;
+    json wrap = {{"body", fmt::format("b{}", on)},
+                 {"turn", choices.one_in(2) ? "counter_clockwise" : "clockwise"}};
+    if (choices.one_in(8)) wrap["extra_turns"] = 1 + choices.below(3);
+    c["wraps"].push_back(wrap);
+  }
+  if (closed) {
+    c["closed"] = true;
+  } else {
+    const json none;
+    c["start"] = attachment(choices, bodies, wraps > 0 ? c["wraps"].front()["body"] : none);
+    c["end"] = attachment(choices, bodies, wraps > 0 ? c["wraps"].back()["body"] : none);
+  }
+  const bool elastic = choices.one_in(4);
+  if (elastic) c["axial_stiffness_n"] = choices.magnitude(-3.0, 15.0);
+  if (choices.one_in(2)) c["slack_m"] = choices.between(elastic ? -0.1 : 0.0, 1.0);
+  return c;
+}
+
+json scene(Choices& choices) {
+  const unsigned bodies = 1 + choices.below(8), cables = choices.below(4), walls = choices.below(3);
+  const unsigned steps_per_frame[] = {4, 1, 2, 16};
+  json s = {{"title", "Made of bytes"},
+            {"duration_s", 1},
+            {"frames_per_second", 60},
+            {"steps_per_frame", steps_per_frame[choices.below(4)]},
+            {"view", {{"low_m", {-5, -5}}, {"high_m", {5, 5}}}},
+            {"baseline", {{"method", "cable"}, {"reason", "It must hold too."}}},
+            {"bodies", json::array()},
+            {"cables", json::array()},
+            {"walls", json::array()}};
+  if (choices.one_in(6))
+    s["gravity_m_s2"] = {choices.between(-20.0, 20.0), choices.between(-20.0, 20.0)};
+  for (unsigned i = 0; i < bodies; ++i) s["bodies"].push_back(body(choices, i));
+  for (unsigned i = 0; i < cables; ++i) s["cables"].push_back(cable(choices, i, bodies));
+  for (unsigned i = 0; i < walls; ++i) {
+    const double x = choices.between(-6.0, 2.0), y = choices.between(-2.5, -6.0);
+    s["walls"].push_back(
+        {{"from_m", {x, y}}, {"to_m", {x + choices.between(1.0, 8.0), choices.between(y, -6.0)}}});
+  }
+  return s;
+}
+
+/// Every number that leaves the simulator.
+bool is_finite(const World& world) {
+  for (std::size_t b = 0; b < world.position.size(); ++b) {
+    if (!world.position[b].allFinite() || !world.velocity[b].allFinite()) return false;
+    if (!std::isfinite(world.angle[b] + world.angular_velocity[b])) return false;
+  }
+  for (const CableState& cable : world.cables) {
+    for (const Segment& segment : cable.segments) {
+      if (!std::isfinite(segment.length + segment.rest_length + segment.tension)) return false;
+    }
+  }
+  return true;
+}
+
+bool run(const SceneFile& source, const Configuration& configuration, int steps) {
+  World world = start_world(source.scene, file, configuration);
+  Workspace work;
+  Promises promises(source.scene, world);
+  for (int i = 0; i < steps; ++i) {
+    if (step(source.scene, world, work) != StepStatus::ok) {
+      if (world.failure.empty()) throw Finding("a failure that says nothing");
+      return true;
+    }
+    if (!is_finite(world)) throw Finding(fmt::format("step {} was ok and is not finite", i + 1));
+    promises.note(source.scene, world);
+  }
+  promises.broken(source.scene, world);
+  return true;
+}
+
+}  // namespace
+
+std::string scene_of(std::string_view bytes) {
+  Choices choices(bytes.substr(std::min<std::size_t>(1, bytes.size())));
+  return scene(choices).dump(1);
+}
+
+bool fuzz_world(std::string_view bytes) {
+  const Configuration configurations[] = {Method::pinch, Method::cable, Method::pinch_no_contact,
+                                          thesis_configuration()};
+  const unsigned first = bytes.empty() ? 0 : static_cast<unsigned char>(bytes.front());
+  try {
+    const SceneFile source = parse_scene(scene_of(bytes), file);
+    return run(source, configurations[first % 8 > 3 ? 0 : first % 8], 240);
+  } catch (const SceneFileError& error) {
+    must_name(error, file);
+    return false;
+  }
+}
+
+bool fuzz_scene(std::string_view bytes) {
+  try {
+    const SceneFile source = parse_scene(bytes, file);
+    const bool is_small = source.scene.bodies.size() <= 40 && source.scene.cables.size() <= 10;
+    return !is_small || run(source, Method::pinch, 8);
+  } catch (const SceneFileError& error) {
+    must_name(error, file);
+    return false;
+  }
+}
+
+}  // namespace pinchlab::fuzz
