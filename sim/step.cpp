@@ -43,6 +43,26 @@ void make_system(const World& world, std::span<const int> bodies, double kick, P
   s.free_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
 }
 
+/// The body with what its motor's table says for this step: the angular velocity of the motion that
+/// follows, or the torque of the kick, each the mean over its time. Both are exact integrals.
+BodyProperties driven_now(const Body& body, const World& world, BodyProperties now) {
+  const double t = world.time(), h = world.step_length, k = kick_length(world);
+  if (now.driven_angular_velocity) {
+    now.driven_angular_velocity = mean_drive(body.motor, t, t + h);
+  } else {
+    now.torque = mean_drive(body.motor, t + 0.5 * h - k, t + 0.5 * h);
+  }
+  return now;
+}
+
+/// A body whose motor's table goes on is not at rest.
+void keep_motors_awake(const Scene& scene, std::span<const int> bodies, World& world) {
+  for (const int b : bodies) {
+    const std::vector<MotorPoint>& motor = at(scene.bodies, b).motor;
+    if (!motor.empty() && world.time() <= motor.back().time) at(world.still_steps, b) = 0;
+  }
+}
+
 /// Velocity of a body after a kick of k seconds by forces alone.
 ///
 /// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
@@ -76,8 +96,13 @@ void apply_forces(const Scene& scene, const World& world, Workspace& work) {
     s.extent = 0.0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto b = index(bodies[i]);
+      const Body& given = scene.bodies[b];
+      const Vec2& v = world.velocity[b];
+      const double omega = world.angular_velocity[b];
       s.free_velocity[i] =
-          free_velocity(scene, world.bodies[b], world.velocity[b], world.angular_velocity[b], k);
+          given.motor.empty()
+              ? free_velocity(scene, world.bodies[b], v, omega, k)
+              : free_velocity(scene, driven_now(given, world, world.bodies[b]), v, omega, k);
       s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
     }
     for (const int c : cables_of(work.parts, part)) {
@@ -163,6 +188,7 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
     part.slides = !work.solve.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
     d.active_set_solves = std::max(d.active_set_solves, work.solve.solves);
     note_rest(work.parts, part, world);
+    keep_motors_awake(scene, bodies_of(work.parts, part), world);
     watch.lap(Stage::solve);
   }
   d.total_solves += d.active_set_solves;
