@@ -24,8 +24,9 @@
 #include "demos/batch.h"
 #include "demos/command_line.h"
 #include "demos/help_pages.h"
+#include "demos/scenes/find_scenes.h"
+#include "demos/scenes/trajectory.h"
 #include "demos/still.h"
-#include "demos/trajectory.h"
 #include "demos/version.h"
 #include "study/commands.h"
 

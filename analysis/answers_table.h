@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace pinchlab::analysis {
+#include "base/answer_file.h"
 
-/// Left, right, or not recorded.
-enum class Side : std::uint8_t { unknown, left, right };
+namespace pinchlab::analysis {
 
 /// One answer of one participant to one pair of clips.
 struct Answer {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
-#include "analysis/answer_file.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/groups.h"
 #include "analysis/table_builder.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/strict_json.h"
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "analysis/pages.h"
+#include "base/html.h"
 
 namespace pinchlab::analysis {
 
@@ -27,29 +28,6 @@ figcaption { color: #444; font-size: .9rem; max-width: 48rem; }
 @media print { body { margin: 0; max-width: none; font-size: 11px; } }
 )";
 
-std::string escape(const std::string& text) {
-  std::string escaped;
-  for (char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 std::string base64(const std::string& bytes) {
   constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -71,11 +49,12 @@ class Printer {
   std::string text;
 
   void operator()(const Heading& heading) {
-    text += fmt::format("<h2>{}</h2>\n", escape(heading.text));
+    text += fmt::format("<h2>{}</h2>\n", html_escaped(heading.text));
   }
 
   void operator()(const Paragraph& paragraph) {
-    text += fmt::format("<p{}>{}</p>\n", first_ ? " class=\"answer\"" : "", escape(paragraph.text));
+    text += fmt::format("<p{}>{}</p>\n", first_ ? " class=\"answer\"" : "",
+                        html_escaped(paragraph.text));
     first_ = false;
   }
 
@@ -83,14 +62,14 @@ class Printer {
     // Tables of words (exclusions, free texts) wrap; tables of numbers do not.
     const bool words = !table.header.empty() && table.header[0] == "participant";
     text += fmt::format("<div class=\"wide\"><table{}>\n<caption>{}</caption>\n<thead><tr>",
-                        words ? " class=\"text\"" : "", escape(table.caption));
+                        words ? " class=\"text\"" : "", html_escaped(table.caption));
     for (const std::string& name : table.header)
-      text += fmt::format("<th scope=\"col\">{}</th>", escape(name));
+      text += fmt::format("<th scope=\"col\">{}</th>", html_escaped(name));
     text += "</tr></thead>\n<tbody>\n";
     for (const auto& row : table.rows) {
       text += "<tr>";
       for (const TextCell& cell : row) {
-        const std::string content = escape(cell.text);
+        const std::string content = html_escaped(cell.text);
         text += cell.bold ? "<td><b>" + content + "</b></td>" : "<td>" + content + "</td>";
       }
       text += "</tr>\n";
@@ -105,7 +84,7 @@ class Printer {
       text += fmt::format(
           "<figure><img alt=\"{0}\" src=\"data:image/svg+xml;base64,{1}\">\n"
           "<figcaption>{0}</figcaption></figure>\n",
-          escape(figure.caption), base64(figure.svg));
+          html_escaped(figure.caption), base64(figure.svg));
     }
   }
 
@@ -127,7 +106,7 @@ std::string html_page(const Document& document, const std::vector<Figure>& figur
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-      escape(document.title), style);
+      html_escaped(document.title), style);
   for (const Block& block : document.blocks) std::visit(printer, block);
   printer.text += "</body>\n</html>\n";
   return printer.text;

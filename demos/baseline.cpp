@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 
 namespace pinchlab {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "demos/scene_json.h"
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab {
 

@@ -16,6 +16,7 @@
 #include "base/progress.h"
 #include "demos/manifest.h"
 #include "demos/report_page.h"
+#include "demos/scenes/find_scenes.h"
 #include "demos/worker_pool.h"
 #include "render/canvas.h"
 
@@ -48,13 +49,6 @@ std::vector<SceneFile> read_scenes(const std::vector<fs::path>& paths) {
     }
   }
   return scenes;
-}
-
-bool is_demo_name(const fs::path& path) {
-  const std::string name = path.filename().string();
-  const auto is_digit = [](char c) { return '0' <= c && c <= '9'; };
-  return name.size() > 8 && is_digit(name[0]) && is_digit(name[1]) && name[2] == '-' &&
-         name.ends_with(".json");
 }
 
 std::int64_t pictures_a_tick(const ClipPlan& plan) {
@@ -154,28 +148,6 @@ Configuration method_of(const Scene& scene, const std::string& name) {
   if (name == "baseline") return scene.baseline;
   if (const auto known = configuration_from_string(name)) return *known;
   throw std::invalid_argument("no method is called " + name);
-}
-
-std::vector<fs::path> find_scenes(const std::vector<fs::path>& paths) {
-  std::vector<fs::path> scenes;
-  for (const fs::path& path : paths) {
-    if (!fs::is_directory(path)) {
-      scenes.push_back(path);
-      continue;
-    }
-    std::vector<fs::path> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
-      if (is_demo_name(entry.path())) {
-        found.push_back(entry.path());
-      }
-    }
-    if (found.empty()) {
-      throw std::runtime_error(fmt::format("{}: has no scene called NN-name.json", path.string()));
-    }
-    std::ranges::sort(found);
-    scenes.insert(scenes.end(), found.begin(), found.end());
-  }
-  return scenes;
 }
 
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "demos/clip.h"
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 
 namespace pinchlab {
 
@@ -33,10 +33,6 @@ struct BatchOptions {
 /// What `name` stands for: a method, "baseline" (the scene's own) or "thesis". Throws
 /// std::invalid_argument.
 Configuration method_of(const Scene& scene, const std::string& name);
-
-/// The scene files that `paths` name, in order: a folder stands for its NN-name.json, NN two
-/// digits. Throws std::runtime_error if a folder has none.
-std::vector<std::filesystem::path> find_scenes(const std::vector<std::filesystem::path>& paths);
 
 /// What a batch makes of one scene: the pair's clips and poster, or the one clip asked for. Throws
 /// std::invalid_argument for options that the scene or the codec cannot have.

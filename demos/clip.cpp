@@ -9,11 +9,11 @@
 
 #include "base/sha256.h"
 #include "demos/pair_report.h"
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 #include "demos/version.h"
 #include "render/canvas.h"
-#include "render/compose.h"
 #include "render/frame_hash.h"
+#include "render/picture/compose.h"
 #include "render/png.h"
 
 namespace pinchlab {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "demos/playback.h"
-#include "demos/scene_json.h"
-#include "demos/theme.h"
+#include "demos/scenes/scene_json.h"
+#include "demos/scenes/theme.h"
 #include "render/video.h"
 
 namespace pinchlab {

@@ -7,10 +7,10 @@
 #include <array>
 #include <cmath>
 
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 #include "render/canvas.h"
-#include "render/compose.h"
 #include "render/mesh.h"
+#include "render/picture/compose.h"
 #include "render/png.h"
 
 namespace pinchlab {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "demos/events.h"
-#include "demos/scene_json.h"
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab {
 

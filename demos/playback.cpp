@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "demos/scene_format.h"
+#include "demos/scenes/scene_format.h"
 
 namespace pinchlab {
 namespace {

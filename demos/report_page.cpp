@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/html.h"
 #include "base/output_file.h"
 
 namespace pinchlab {
@@ -26,29 +27,6 @@ std::vector<const ordered_json*> reports(const Manifest& manifest) {
     if (entry.value("role", "") == "report" && entry.contains("report")) found.push_back(&entry);
   }
   return found;
-}
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
 }
 
 std::string seconds_or_never(const ordered_json& value) {
@@ -119,7 +97,7 @@ std::string timeline(const ordered_json& entry) {
   double y = 4.0;
   const auto row = [&](const std::string& name, const std::string& content) {
     fmt::format_to(std::back_inserter(svg), R"(<text x="650" y="{:.0f}">{}</text>{})", y + 10.0,
-                   escaped(name), content);
+                   html_escaped(name), content);
     y += 18.0;
   };
   row("clips differ", bars(report.at("differs_s"), scale, y, "differs"));
@@ -148,7 +126,7 @@ std::string timeline(const ordered_json& entry) {
   }
   return fmt::format(
       R"(<svg viewBox="-2 0 1080 {:.0f}" role="img" aria-label="When the clips of {} differ, stand still, and what happens; the list below says the same"><g class="ticks">{}</g>{}</svg>)",
-      y + 20.0, escaped(name_of(entry)), ticks, svg);
+      y + 20.0, html_escaped(name_of(entry)), ticks, svg);
 }
 
 std::string event_list(const ordered_json& report, const char* clip) {
@@ -156,7 +134,7 @@ std::string event_list(const ordered_json& report, const char* clip) {
   for (const ordered_json& event : report.at(clip).at("events")) {
     fmt::format_to(std::back_inserter(list), "<li>{:.2f} to {:.2f} s: {}</li>",
                    number(event, "from_s"), number(event, "to_s"),
-                   escaped(event.at("what").get<std::string>()));
+                   html_escaped(event.at("what").get<std::string>()));
   }
   return fmt::format("<ul>{}</ul>", list.empty() ? "<li>nothing</li>" : list);
 }
@@ -208,8 +186,9 @@ void write_report_page(const std::filesystem::path& folder, const Manifest& mani
     page += "<tr>";
     bool first = true;
     for (const std::string& cell : cells(*entry)) {
-      page += first ? fmt::format(R"(<th scope="row"><a href="#{0}">{0}</a></th>)", escaped(cell))
-                    : "<td>" + escaped(cell) + "</td>";
+      page +=
+          first ? fmt::format(R"(<th scope="row"><a href="#{0}">{0}</a></th>)", html_escaped(cell))
+                : "<td>" + html_escaped(cell) + "</td>";
       first = false;
     }
     page += "</tr>\n";
@@ -223,9 +202,9 @@ void write_report_page(const std::filesystem::path& folder, const Manifest& mani
         "<p><img src=\"{3}\" alt=\"Eight moments of both clips and their difference\"></p>\n"
         "<details><summary>Events</summary><h3>Pinch joints</h3>{4}<h3>Baseline</h3>{5}"
         "</details></section>\n",
-        escaped(name_of(*entry)), escaped(entry->at("title").get<std::string>()), timeline(*entry),
-        escaped(entry->at("file").get<std::string>()), event_list(report, "pinch"),
-        event_list(report, "baseline"));
+        html_escaped(name_of(*entry)), html_escaped(entry->at("title").get<std::string>()),
+        timeline(*entry), html_escaped(entry->at("file").get<std::string>()),
+        event_list(report, "pinch"), event_list(report, "baseline"));
   }
   page += "</main></body></html>\n";
   OutputFile out(folder / "report.html");

@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "base/progress.h"
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 #include "render/canvas.h"
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "render/png.h"
 #include "render/vector_canvas.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "demos/scene_json.h"
-#include "demos/theme.h"
+#include "demos/scenes/scene_json.h"
+#include "demos/scenes/theme.h"
 
 namespace pinchlab {
 

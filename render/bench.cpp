@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "render/canvas.h"
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "render/processor_time.h"
 #include "render/video.h"
 #include "render/yuv.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "render/picture.h"
+#include "render/picture/picture.h"
 #include "render/pixel_rect.h"
 
 namespace pinchlab {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/picture.h"
+#include "render/picture/picture.h"
 
 namespace pinchlab {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "render/picture.h"
+#include "render/picture/picture.h"
 
 namespace pinchlab {
 

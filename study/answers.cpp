@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
@@ -64,7 +64,7 @@ std::string variant(const PlannedTrial& trial, Encoding encoding) {
 }
 
 void check(const std::string& bytes, const fs::path& path) {
-  analysis::parse_answer_file(nlohmann::json::parse(bytes), path.string());
+  parse_answer_file(nlohmann::json::parse(bytes), path.string());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
+#include "study/html_page.h"
 #include "study/page_assets.h"
 #include "study/secrets.h"
 #include "study/session.h"

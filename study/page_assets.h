@@ -3,10 +3,7 @@
 // The files of study/page, built into the program (embed.cmake writes embedded_page.cpp).
 
 #include <span>
-#include <string>
 #include <string_view>
-
-#include "study/config.h"
 
 namespace pinchlab::study {
 
@@ -20,11 +17,6 @@ std::span<const PageAsset> page_assets();
 
 /// The file of that path, or nullptr.
 const PageAsset* find_asset(std::string_view path);
-
-/// One of the pages with its language and title in place, so that they are right before any script
-/// runs. `backend` is the module that keeps the answers; `scripts` is HTML that comes before ours.
-std::string html_page(std::string_view path, const Config& config, std::string_view backend,
-                      std::string_view scripts);
 
 /// Whether jsPsych was there when the program was built: without it there is no page.
 bool has_page();

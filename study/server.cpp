@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "base/strict_json.h"
+#include "study/html_page.h"
 #include "study/http_server.h"
 #include "study/page_assets.h"
 #include "study/rate_limit.h"

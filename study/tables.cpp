@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
 #include "base/csv.h"
 #include "base/durable_file.h"
 #include "base/strict_json.h"
@@ -165,10 +165,10 @@ std::string answers_csv(const fs::path& folder) {
     names.emplace_back(column.name);
   }
   std::string csv = row(names);
-  analysis::SameStudy same_study;
+  SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
     const json file = read_json_file(path, largest_file);
-    same_study.check(analysis::parse_answer_file(file, path.string()), path.string());
+    same_study.check(parse_answer_file(file, path.string()), path.string());
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
       values.reserve(columns.size());

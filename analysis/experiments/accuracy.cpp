@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "analysis/experiments/accuracy_scenes.h"
-#include "demos/batch.h"
 #include "demos/command_line.h"
-#include "demos/scene_json.h"
+#include "demos/scenes/find_scenes.h"
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
 

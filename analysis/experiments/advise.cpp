@@ -11,7 +11,7 @@
 
 #include "analysis/experiments/accuracy_scenes.h"
 #include "analysis/experiments/experiment.h"
-#include "demos/scene_json.h"
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
 

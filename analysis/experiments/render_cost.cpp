@@ -10,6 +10,7 @@
 #include "analysis/experiments/experiment.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
+#include "demos/scenes/find_scenes.h"
 #include "render/bench.h"
 
 namespace pinchlab::experiments {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 #include "tests/analysis/support.h"

@@ -13,9 +13,10 @@
 #include <set>
 #include <thread>
 
+#include "demos/scenes/find_scenes.h"
 #include "demos/version.h"
 #include "run_program.h"
-#include "scene_files.h"
+#include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
 namespace {

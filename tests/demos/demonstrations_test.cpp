@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "demos/scene_json.h"
-#include "render/scenery.h"
+#include "demos/scenes/scene_json.h"
+#include "render/picture/scenery.h"
 #include "sim/step.h"
 #include "tests/sim/same_state.h"
 

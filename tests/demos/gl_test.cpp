@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "demos/batch.h"
+#include "demos/scenes/find_scenes.h"
 #include "tests/demos/run_program.h"
 
 namespace pinchlab {

@@ -8,12 +8,12 @@
 #include <map>
 #include <sstream>
 
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 #include "demos/version.h"
 #include "demos/worker_pool.h"
 #include "run_program.h"
-#include "scene_files.h"
 #include "sim/step.h"
+#include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "demos/events.h"
 #include "demos/pair_report.h"
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 #include "render/mesh.h"
-#include "render/scenery.h"
+#include "render/picture/scenery.h"
 #include "run_program.h"
-#include "scene_files.h"
+#include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
 namespace {

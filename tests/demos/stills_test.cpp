@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "demos/playback.h"
-#include "demos/player.h"
-#include "demos/theme.h"
+#include "demos/scenes/player.h"
+#include "demos/scenes/theme.h"
 #include "run_program.h"
-#include "scene_files.h"
+#include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
 namespace {

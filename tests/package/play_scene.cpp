@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "demos/player.h"
+#include "demos/scenes/player.h"
 
 int main(int argc, char** argv) {
   using namespace pinchlab;

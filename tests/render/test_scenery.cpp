@@ -2,13 +2,13 @@
 // What a rehearsal finds: how far rails are used, what must be seen, where labels are out of the
 // way.
 
-#include "render/scenery.h"
+#include "render/picture/scenery.h"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "render/vector_canvas.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "render/canvas.h"
-#include "render/compose.h"
+#include "render/picture/compose.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {

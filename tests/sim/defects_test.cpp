@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small scenes that once went wrong, one a cause.
 
-#include "demos/scene_json.h"
+#include "demos/scenes/scene_json.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -186,7 +186,7 @@ TEST(Jatos, ResultsBecomeAnswerFiles) {
   EXPECT_EQ(bring().added, 2);
   EXPECT_EQ(bring().known, 2) << "a second time changes nothing";
   const json file = json::parse(read_whole(study.folder / "answers" / "0123456789abcdef.json"));
-  analysis::parse_answer_file(file, "answers");
+  parse_answer_file(file, "answers");
   const std::vector<PlannedTrial> plan = make_plan(7, 2, plan_options(small_config()));
   for (std::size_t i = 0; i < plan.size(); ++i) {
     EXPECT_EQ(file["trials"][i]["demonstration"], plan[i].demonstration);

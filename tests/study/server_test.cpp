@@ -15,7 +15,7 @@
 #include <random>
 #include <thread>
 
-#include "analysis/answer_file.h"
+#include "base/answer_file.h"
 #include "study/answers.h"
 #include "study/connections.h"
 #include "study/page_assets.h"
@@ -90,7 +90,7 @@ TEST(Server, AHundredParticipantsAtOnce) {
   std::set<long> numbers;
   for (const fs::path& path : files) {
     const json file = json::parse(read_whole(path));
-    analysis::parse_answer_file(file, path.string());
+    parse_answer_file(file, path.string());
     numbers.insert(file["participant_number"].get<long>());
   }
   EXPECT_EQ(numbers.size(), 100U) << "every plan once";
@@ -468,7 +468,7 @@ TEST(Server, KilledAtAHundredRandomMomentsWhileSaving) {
     // Every file under a final name is whole, and nobody who was told is missing.
     std::set<std::string> kept;
     for (const fs::path& path : answer_files(folder / "answers")) {
-      ASSERT_NO_THROW(analysis::parse_answer_file(json::parse(read_whole(path)), path.string()));
+      ASSERT_NO_THROW(parse_answer_file(json::parse(read_whole(path)), path.string()));
       kept.insert(path.stem().string());
     }
     for (const std::string& id : confirmed) {

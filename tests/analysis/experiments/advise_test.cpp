@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "demos/scene_json.h"
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
 namespace {

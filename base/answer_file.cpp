@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/answer_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/json_object.h"
+#include "base/text_checks.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr long billion = 1000000000;
+constexpr const char* format_cure = "; see analysis/README.md for the format";
+
+Side side_of(const std::string& word) {
+  return word == "left" ? Side::left : Side::right;
+}
+
+long optional_count(JsonObject& object, const std::string& key) {
+  return object.has(key) ? object.whole(key, 0, billion) : 0;
+}
+
+// What the page records beside the answer. The analysis has no use for most of it, yet a wrong
+// type is a sign of a broken log.
+void read_circumstances(JsonObject& object, Trial& trial) {
+  trial.focus_lost_count = optional_count(object, "focus_lost_count");
+  trial.dropped_frames = optional_count(object, "dropped_frames");
+  if (object.has("playback_errors")) {
+    const auto& errors = object.array("playback_errors", 1000);
+    for (const auto& error : errors) {
+      if (!error.is_string()) object.fail("playback_errors", "must hold strings");
+    }
+    trial.playback_errors = static_cast<long>(errors.size());
+  }
+  optional_count(object, "loops_watched");
+  optional_count(object, "frame_count");
+  for (const char* key : {"loop_gap_median_s", "loop_gap_max_s"}) {
+    if (object.has(key)) object.number(key, -1.0, 86400.0);
+  }
+  if (object.has("clip")) object.text("clip", 1024);
+  if (object.has("shown_utc")) object.utc("shown_utc");
+  if (object.has("input")) object.choice("input", {"mouse", "keyboard", "touch"});
+  for (const char* key : {"window_width_px", "window_height_px", "clip_width_px", "clip_height_px",
+                          "screen_width_px", "screen_height_px"}) {
+    if (object.has(key)) object.whole(key, 0, 100000);
+  }
+  if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
+}
+
+Trial read_trial(JsonObject object) {
+  Trial trial;
+  trial.position = static_cast<int>(object.whole("position", 1, 65535));
+  const std::string kind = object.choice("kind", {"main", "training", "attention"});
+  trial.kind = kind == "main"       ? TrialKind::main
+               : kind == "training" ? TrialKind::training
+                                    : TrialKind::attention;
+  trial.demonstration = object.name("demonstration");
+
+  std::vector<std::string> methods{"pinch", "baseline"};
+  if (trial.kind == TrialKind::attention) methods.emplace_back("check");
+  trial.left = object.choice("left", methods);
+  trial.right = object.choice("right", methods);
+  if (trial.kind != TrialKind::attention && trial.left == trial.right) {
+    object.fail("right",
+                fmt::format("`{}` on both sides; a pair shows each method once", trial.right));
+  }
+  trial.choice = side_of(object.choice("choice", {"left", "right"}));
+  if (trial.kind == TrialKind::attention) {
+    trial.expected = side_of(object.choice("expected", {"left", "right"}));
+  }
+  trial.reaction_time_s = object.number("reaction_time_s", 0.0, 86400.0);
+  read_circumstances(object, trial);
+  object.finish(format_cure);
+  return trial;
+}
+
+void read_plan(JsonObject plan, AnswerFile& file) {
+  std::set<std::string> seen;
+  for (const auto& entry : plan.array("demonstrations", 10000)) {
+    const bool good =
+        entry.is_string() && why_not_a_name(entry.get_ref<const std::string&>()).empty();
+    if (!good) plan.fail("demonstrations", "must hold names of demonstrations");
+    file.planned.push_back(entry.get<std::string>());
+    if (!seen.insert(file.planned.back()).second) {
+      plan.fail("demonstrations",
+                fmt::format("`{}` is planned twice; say how often each is answered with "
+                            "answers_per_demonstration",
+                            file.planned.back()));
+    }
+  }
+  if (file.planned.empty()) plan.fail("demonstrations", "is empty");
+  file.answers_per_demonstration =
+      static_cast<int>(plan.whole("answers_per_demonstration", 1, 100));
+  if (plan.has("both_orders")) plan.flag("both_orders");
+  optional_count(plan, "training_trials");
+  optional_count(plan, "attention_checks");
+  plan.finish(format_cure);
+}
+
+void read_study(JsonObject study, AnswerFile& file) {
+  file.study["language"] = study.text("language", 64);
+  file.study["question"] = study.text("question", 10000);
+  for (const char* key : {"consent_sha256", "texts_sha256", "clips_sha256"}) {
+    file.study[key] = study.sha256(key);
+  }
+  study.finish();
+}
+
+void read_trials(const nlohmann::json& trials, const std::string& file_name, AnswerFile& file) {
+  std::map<int, size_t> positions;
+  for (size_t i = 0; i < trials.size(); ++i) {
+    const std::string pointer = fmt::format("/trials/{}", i);
+    const std::string trial_place = fmt::format("{}: {}", file_name, pointer);
+    file.trials.push_back(read_trial(JsonObject(trials[i], file_name, pointer)));
+    const Trial& trial = file.trials.back();
+    const auto [before, is_new] = positions.emplace(trial.position, i);
+    if (!is_new) {
+      throw InputError(trial_place + "/position",
+                       fmt::format("trial {} has position {} too", before->second, trial.position));
+    }
+    const bool planned = std::find(file.planned.begin(), file.planned.end(), trial.demonstration) !=
+                         file.planned.end();
+    if (trial.kind == TrialKind::main && !planned) {
+      throw InputError(trial_place + "/demonstration",
+                       fmt::format("`{}` is not in the plan{}", trial.demonstration,
+                                   did_you_mean(trial.demonstration, file.planned)));
+    }
+  }
+}
+
+void read_texts(JsonObject& document, AnswerFile& file) {
+  if (document.has("free_text")) {
+    JsonObject texts = document.object("free_text");
+    for (const std::string& key : texts.all_keys()) {
+      const std::string why = why_not_a_name(key);
+      if (!why.empty()) texts.fail(key, fmt::format("bad key: {}", why));
+      file.free_text[key] = texts.text(key, 100000);
+    }
+  }
+  if (document.has("clips_sha256")) {
+    JsonObject clips = document.object("clips_sha256");
+    for (const std::string& demonstration : clips.all_keys()) {
+      JsonObject variants = clips.object(demonstration);
+      for (const std::string& variant : variants.all_keys()) {
+        file.clips_sha256[{demonstration, variant}] = variants.sha256(variant);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file_name) {
+  JsonObject object(document, file_name, "");
+  object.choice("format", {"pinchlab-answers"});
+  if (object.whole("version", 0, billion) != 1) {
+    object.fail("version", "this program reads version 1; use the program that wrote the file");
+  }
+  AnswerFile file;
+  file.participant = object.name("participant");
+  if (object.has("participant_number")) object.whole("participant_number", 0, billion);
+  if (object.has("seed")) object.whole("seed", 0, (long{1} << 53) - 1);
+  read_plan(object.object("plan"), file);
+  const std::string started = object.utc("started_utc");
+  if (object.utc("saved_utc").substr(0, 19) < started.substr(0, 19)) {
+    object.fail("saved_utc", fmt::format("is before started_utc ({})", started));
+  }
+  object.text("software_version", 256);
+  if (object.has("study")) read_study(object.object("study"), file);
+  if (object.has("language")) object.text("language", 64);
+  if (object.has("user_agent")) object.text("user_agent", 4096);
+  if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");
+  optional_count(object, "resumed_count");
+  read_texts(object, file);
+  read_trials(object.array("trials", 65535), file_name, file);
+  const bool answered = std::any_of(file.trials.begin(), file.trials.end(), [](const Trial& trial) {
+    return trial.kind == TrialKind::main;
+  });
+  if (!answered) object.fail("trials", "holds no answer of kind `main`; take the file out");
+  object.finish(format_cure);
+  return file;
+}
+
+void SameStudy::check(const AnswerFile& file, const std::string& name) {
+  if (study_of_.empty()) {
+    study_ = file.study;
+    study_of_ = name;
+  }
+  if (file.study != study_) {
+    const std::map<std::string, std::string> words = {{"language", "the language"},
+                                                      {"question", "the question"},
+                                                      {"consent_sha256", "the consent text"},
+                                                      {"texts_sha256", "the texts of the page"},
+                                                      {"clips_sha256", "the clips"}};
+    std::string what;
+    const auto value = [](const std::map<std::string, std::string>& study, const std::string& key) {
+      const auto found = study.find(key);
+      return found == study.end() ? "" : found->second;
+    };
+    for (const auto& [key, word] : words) {
+      if (value(file.study, key) != value(study_, key)) what += (what.empty() ? "" : ", ") + word;
+    }
+    throw InputError(name, fmt::format("was answered in another study than {}: {} differ; analyse "
+                                       "each study in a run of its own",
+                                       study_of_, what));
+  }
+  for (const auto& [clip, hash] : file.clips_sha256) {
+    const auto [before, is_new] = clips_.emplace(clip, std::pair(hash, name));
+    if (is_new || before->second.first == hash) continue;
+    throw InputError(
+        name, fmt::format("clip `{}` of `{}` is not the one of {} (other SHA-256); analyse the "
+                          "participants who saw the same clips in one run",
+                          clip.second, clip.first, before->second.second));
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/player.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "demos/scenes/scene_format.h"
+
+namespace pinchlab {
+namespace {
+
+void check_range(const char* what, int value, int high) {
+  if (value < 1 || value > high) {
+    throw std::invalid_argument(fmt::format("{} must be 1 to {}, not {}", what, high, value));
+  }
+}
+
+}  // namespace
+
+Scene with_timing(const Scene& scene, const Timing& timing) {
+  Scene changed = scene;
+  if (timing.frames_per_second) {
+    const int rate = *timing.frames_per_second;
+    check_range("frames per second", rate, 1000);
+    const auto frames = static_cast<std::int64_t>(scene.frame_count) * rate;
+    if (frames % scene.frames_per_second != 0) {
+      throw std::invalid_argument(fmt::format(
+          "{}: its {} s are not a whole number of frames at {} a second; its own rate is {}",
+          scene.name, static_cast<double>(scene.frame_count) / scene.frames_per_second, rate,
+          scene.frames_per_second));
+    }
+    const std::int64_t count = frames / scene.frames_per_second;
+    if (count > max_frame_count) {
+      throw std::invalid_argument(fmt::format("{}: {} frames are more than the {} that can be made",
+                                              scene.name, count, max_frame_count));
+    }
+    changed.frame_count = static_cast<int>(count);
+    changed.frames_per_second = rate;
+    changed.steps_per_frame = (scene.frames_per_second * scene.steps_per_frame + rate - 1) / rate;
+  }
+  if (timing.steps_per_frame) {
+    check_range("steps per frame", *timing.steps_per_frame, 1'000'000);
+    changed.steps_per_frame = *timing.steps_per_frame;
+  }
+  return changed;
+}
+
+std::string failure_report(const std::filesystem::path& path, const Scene& scene,
+                           const World& world, int frame) {
+  return fmt::format(
+      "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
+      "--steps-per-frame {4} --until {5} --out -",
+      path.string(), to_string(world.configuration), world.failure, scene.frames_per_second,
+      scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
+}
+
+void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print(stderr, "{}: note: {}\n", file, line);
+  if (!lines.empty()) {
+    fmt::print(stderr,
+               "{}: note: sim/README.md says what is promised and where the limits are; more "
+               "steps a frame often help\n",
+               file);
+  }
+}
+
+const char* in_words(const Configuration& configuration) {
+  if (configuration == thesis_configuration()) return "the thesis' pinch joints";
+  switch (configuration.method) {
+    case Method::pinch:
+      return "pinch joints";
+    case Method::pinch_no_contact:
+      return "pinch joints, no contact";
+    case Method::cable:
+      return "cable joints";
+  }
+  return "unknown";
+}
+
+Player::Player(const SceneFile& file, const Scene& scene, const Configuration& configuration)
+    : file_(file),
+      scene_(scene),
+      world_(start_world(scene, file.path, configuration)),
+      promises_(scene_, world_) {}
+
+void Player::give_up_after(std::optional<double> seconds) {
+  using std::chrono::steady_clock;
+  deadline_.reset();
+  if (!seconds) return;
+  time_limit_ = *seconds;
+  deadline_ = steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
+                                        std::chrono::duration<double>(*seconds));
+}
+
+void Player::advance_to(int frame) {
+  advance_to_step(std::int64_t{frame} * scene_.steps_per_frame);
+}
+
+void Player::advance_to_step(std::int64_t wanted) {
+  for (; step_ < wanted; ++step_) {
+    if (step(scene_, world_, work_) != StepStatus::ok) {
+      throw std::runtime_error(failure_report(file_.path, scene_, world_, frame() + 1));
+    }
+    promises_.note(scene_, world_);
+    if (on_step_) on_step_();
+    if (deadline_ && std::chrono::steady_clock::now() > *deadline_) {
+      throw std::runtime_error(fmt::format(
+          "{}: method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
+          "steps a frame or fewer bodies are faster",
+          file_.path.string(), to_string(world_.configuration), world_.time(), world_.step,
+          time_limit_));
+    }
+  }
+}
+
+std::vector<std::string> Player::broken_promises() const {
+  std::vector<std::string> lines = promises_.broken(scene_, world_);
+  for (std::string& line : lines) {
+    line = fmt::format("method {}: {}", to_string(world_.configuration), line);
+  }
+  return lines;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A scene under one method, frame by frame: frame i is step i * steps_per_frame, frame 0 the start.
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "demos/scenes/scene_json.h"
+#include "sim/promises.h"
+#include "sim/step.h"
+
+namespace pinchlab {
+
+/// What the command line may change about a scene's timing.
+struct Timing {
+  std::optional<int> frames_per_second;
+  std::optional<int> steps_per_frame;
+};
+
+/// The scene with another timing and the same duration. With another frame rate alone, a frame gets
+/// the fewest steps that make none longer than the scene's own. Throws std::invalid_argument, with
+/// the cure, where the duration is not a whole number of frames or a value is out of range.
+Scene with_timing(const Scene& scene, const Timing& timing);
+
+/// What is told of a world that became not finite on the way to `frame` of the scene from `path`:
+/// where and when, and the command that shows it again.
+std::string failure_report(const std::filesystem::path& path, const Scene& scene,
+                           const World& world, int frame);
+
+/// Writes what Player::broken_promises says of a file to standard error, and a line on what helps;
+/// nothing where there is nothing.
+void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines);
+/// What people call a way of simulating: "pinch joints", "cable joints".
+const char* in_words(const Configuration& configuration);
+
+class Player {
+ public:
+  /// `file` must outlive the player. Throws SceneFileError where the geometry cannot exist.
+  Player(const SceneFile& file, const Scene& scene, const Configuration& configuration);
+
+  /// Called after every step.
+  void on_step(std::function<void()> call) { on_step_ = std::move(call); }
+  /// Lets advance_to throw std::runtime_error at the first step that ends after `seconds` from now.
+  void give_up_after(std::optional<double> seconds);
+
+  /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with
+  /// a failure_report if a value is not finite.
+  void advance_to(int frame);
+  /// The same for a step, which may lie between two frames.
+  void advance_to_step(std::int64_t step);
+
+  /// What the simulation has not kept so far of what sim/README.md promises, one line each with the
+  /// method; none is good.
+  std::vector<std::string> broken_promises() const;
+
+  /// The frame that shows the present step, or the last one before it.
+  int frame() const { return static_cast<int>(step_ / scene_.steps_per_frame); }
+  /// s; free of the round-off of summing steps.
+  double time() const {
+    return static_cast<double>(step_) /
+           static_cast<double>(std::int64_t{scene_.frames_per_second} * scene_.steps_per_frame);
+  }
+  const Scene& scene() const { return scene_; }
+  const World& world() const { return world_; }
+  /// At the time of the frame.
+  Velocities velocities() const { return velocities_now(scene_, world_, work_); }
+
+ private:
+  const SceneFile& file_;
+  Scene scene_;
+  World world_;
+  mutable Workspace work_;  // changes no result
+  Promises promises_;
+  std::int64_t step_ = 0;
+  std::function<void()> on_step_;
+  std::optional<std::chrono::steady_clock::time_point> deadline_;
+  double time_limit_ = infinity;  // s, what the deadline came from
+};
+
+}  // namespace pinchlab

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/scene_format.h"
+
+namespace pinchlab {
+namespace {
+
+using enum KeyType;
+constexpr bool required = true, optional = false;
+
+// The limits are far outside of what a scene can mean and well inside of what doubles can hold.
+const ObjectFormat body_look_format = {
+    "body_look",
+    {{"colour", colour, optional},
+     {"label", text, optional, 0, 40},
+     {"label_side", choice, optional, 0, 0, {"automatic", "below", "above", "left", "right"}},
+     {"marks", boolean, optional}}};
+
+const ObjectFormat cable_look_format = {
+    "cable_look", {{"colour", colour, optional}, {"marks", boolean, optional}}};
+
+const ObjectFormat body_format = {
+    "body",
+    {{"name", name, required, 1, 64},
+     {"kind", choice, required, 0, 0, {"free", "rail", "fixed_axle", "fixed"}},
+     {"radius_m", number, required, 1e-6, 1e4},
+     {"mass_kg", number, optional, 1e-9, 1e12},
+     {"inertia_kg_m2", number, optional, 1e-18, 1e20},
+     {"position_m", vector, required, -1e6, 1e6},
+     {"angle_rad", number, optional, -1e6, 1e6},
+     {"velocity_m_s", vector, optional, -1e5, 1e5},
+     {"angular_velocity_rad_s", number, optional, -1e5, 1e5},
+     {"rail_axis", vector, optional, -1e6, 1e6},
+     {"driven_angular_velocity_rad_s", number, optional, -1e5, 1e5},
+     {"torque_n_m", number, optional, -1e12, 1e12},
+     {"linear_drag_per_s", number, optional, 0, 1e4},
+     {"angular_drag_per_s", number, optional, 0, 1e4},
+     {"cable_friction", friction, optional, 0, 100},
+     {"contact_friction", number, optional, 0, 100},
+     {"restitution", number, optional, 0, 1},
+     {"look", object, optional, 0, 0, {}, &body_look_format}}};
+
+const ObjectFormat attachment_format = {"attachment",
+                                        {{"world_m", vector, optional, -1e6, 1e6},
+                                         {"body", name, optional, 1, 64},
+                                         {"point_m", vector, optional, -1e4, 1e4},
+                                         {"rim_angle_rad", number, optional, -1e6, 1e6}}};
+
+const ObjectFormat wrap_format = {
+    "wrap",
+    {{"body", name, required, 1, 64},
+     {"turn", choice, required, 0, 0, {"counter_clockwise", "clockwise"}},
+     {"extra_turns", integer, optional, 0, 100}}};
+
+const ObjectFormat cable_format = {"cable",
+                                   {{"name", name, required, 1, 64},
+                                    {"half_width_m", number, required, 1e-6, 1e3},
+                                    {"closed", boolean, optional},
+                                    {"start", object, optional, 0, 0, {}, &attachment_format},
+                                    {"end", object, optional, 0, 0, {}, &attachment_format},
+                                    {"wraps", list, optional, 0, 10'000, {}, &wrap_format},
+                                    {"slack_m", number, optional, -1e6, 1e6},
+                                    {"axial_stiffness_n", number, optional, 1e-3, 1e15},
+                                    {"look", object, optional, 0, 0, {}, &cable_look_format}}};
+
+const ObjectFormat wall_format = {"wall",
+                                  {{"from_m", vector, required, -1e6, 1e6},
+                                   {"to_m", vector, required, -1e6, 1e6},
+                                   {"contact_friction", number, optional, 0, 100},
+                                   {"restitution", number, optional, 0, 1}}};
+
+const ObjectFormat view_format = {
+    "view", {{"low_m", vector, required, -1e6, 1e6}, {"high_m", vector, required, -1e6, 1e6}}};
+
+const ObjectFormat baseline_format = {
+    "baseline",
+    {{"method", choice, required, 0, 0, {"pinch_no_contact", "cable"}},
+     {"reason", text, required, 1, 1000}}};
+
+const ObjectFormat file_format = {"scene",
+                                  {{"$schema", text, optional, 1, 1000},
+                                   {"title", text, required, 1, 80},
+                                   {"notes", text, optional, 1, 4000},
+                                   {"gravity_m_s2", vector, optional, -1e4, 1e4},
+                                   {"bodies", list, required, 1, 10'000, {}, &body_format},
+                                   {"cables", list, optional, 0, 1'000, {}, &cable_format},
+                                   {"walls", list, optional, 0, 1'000, {}, &wall_format},
+                                   {"duration_s", number, required, 1e-3, 3600},
+                                   {"frames_per_second", integer, optional, 1, 1000},
+                                   {"steps_per_frame", integer, optional, 1, 1000},
+                                   {"poster_time_s", number, optional, 0, 3600},
+                                   {"view", object_or_word, required, 0, 0, {"fit"}, &view_format},
+                                   {"baseline", object, required, 0, 0, {}, &baseline_format}}};
+
+const ObjectFormat colours_format = {"theme",
+                                     {{"$schema", text, optional, 1, 1000},
+                                      {"notes", text, optional, 1, 4000},
+                                      {"background", colour, optional},
+                                      {"ink", colour, optional},
+                                      {"rail", colour, optional},
+                                      {"support", colour, optional},
+                                      {"cable", colour, optional},
+                                      {"cable_edge", colour, optional},
+                                      {"cable_mark", colour, optional},
+                                      {"body", colour, optional},
+                                      {"body_edge", colour, optional},
+                                      {"driven", colour, optional},
+                                      {"driven_edge", colour, optional},
+                                      {"fixed", colour, optional},
+                                      {"fixed_edge", colour, optional},
+                                      {"shadow", colour, optional},
+                                      {"line_width", number, optional, 0.1, 10},
+                                      {"text_height", number, optional, 0.5, 20}}};
+
+}  // namespace
+
+const ObjectFormat& theme_format() {
+  return colours_format;
+}
+
+const ObjectFormat& scene_format() {
+  return file_format;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/trajectory.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <string>
+
+#include "base/output_file.h"
+#include "base/progress.h"
+#include "demos/scenes/scene_format.h"
+
+namespace pinchlab {
+namespace {
+
+void add_bodies(const Player& player, std::string& rows) {
+  const Scene& scene = player.scene();
+  const World& world = player.world();
+  const Velocities velocity = player.velocities();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    fmt::format_to(std::back_inserter(rows), "{},{},{},{},{},{},{},{}\n", player.time(),
+                   scene.bodies[i].name, world.position[i].x(), world.position[i].y(),
+                   world.angle[i], velocity.linear[i].x(), velocity.linear[i].y(),
+                   velocity.angular[i]);
+  }
+}
+
+const char* body_name(const Scene& scene, const Link& link) {
+  return link.body < 0 ? "world" : scene.bodies[static_cast<std::size_t>(link.body)].name.c_str();
+}
+
+void add_segments(const Player& player, std::string& rows) {
+  const Scene& scene = player.scene();
+  const World& world = player.world();
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    const std::size_t first = cable.closed ? 0 : 1;
+    for (std::size_t i = first; i < cable.segments.size(); ++i) {
+      const Segment& segment = cable.segments[i];
+      const Link& from = cable.links[i == 0 ? cable.links.size() - 1 : i - 1];
+      const Link& to = cable.links[i];
+      fmt::format_to(std::back_inserter(rows), "{},{},{},{},{},{},{},{},{},{}\n", player.time(),
+                     scene.cables[c].name, i - first, body_name(scene, from), body_name(scene, to),
+                     segment.length, segment.rest_length, segment.tension, segment.pinched ? 1 : 0,
+                     static_cast<int>(to.slip));
+    }
+  }
+}
+
+// The last frame whose time is not after `until`.
+int last_frame(const Scene& scene, std::optional<double> until) {
+  if (!until) {
+    return scene.frame_count - 1;
+  }
+  const double frames = *until * scene.frames_per_second;
+  if (!(*until >= 0.0) || frames > max_frame_count) {
+    throw std::invalid_argument(
+        fmt::format("--until must be 0 to {} s, not {}",
+                    static_cast<double>(max_frame_count) / scene.frames_per_second, *until));
+  }
+  return static_cast<int>(std::floor(frames * (1.0 + 1e-12)));
+}
+
+}  // namespace
+
+void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
+  if (options.segments && *options.segments == options.out) {
+    throw std::invalid_argument("--out and --segments must be different files");
+  }
+  const Scene scene = with_timing(file.scene, options.timing);
+  const int last = last_frame(scene, options.until);
+  Player player(file, scene, options.configuration);
+  OutputFile bodies(options.out);
+  bodies.write("time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n");
+  std::optional<OutputFile> segments;
+  if (options.segments) {
+    segments.emplace(*options.segments);
+    segments->write(
+        "time_s,cable,segment,from_body,to_body,length_m,rest_length_m,tension_n,pinched,"
+        "slipping\n");
+  }
+  Progress progress("simulating " + scene.name, "steps",
+                    std::int64_t{last} * scene.steps_per_frame);
+  player.on_step([&progress] { progress.add(1); });
+  player.give_up_after(options.time_limit);
+  std::string rows;
+  for (int frame = 0; frame <= last; ++frame) {
+    player.advance_to(frame);
+    rows.clear();
+    add_bodies(player, rows);
+    bodies.write(rows);
+    if (segments) {
+      rows.clear();
+      add_segments(player, rows);
+      segments->write(rows);
+    }
+  }
+  bodies.finish();
+  if (segments) {
+    segments->finish();
+  }
+  progress.clear();
+  tell_broken_promises(file.path.string(), player.broken_promises());
+}
+
+}  // namespace pinchlab

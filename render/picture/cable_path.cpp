@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/picture/cable_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/picture/hanging.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+Vec2 unit_vector(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+/// Where the cable meets and leaves a link: directions (rad) and material coordinates (m).
+struct Bounds {
+  double tail_angle = 0.0, head_angle = 0.0;
+  double tail_material = 0.0, head_material = 0.0;
+};
+
+/// 1 at s = 0, falling smoothly to 0 at s = reach, and its derivative (1/m).
+struct Fade {
+  double value = 0.0, slope = 0.0;
+};
+Fade fade(double s, double reach) {
+  if (s >= reach) return {};
+  if (s <= 0.0) return {1.0, 0.0};
+  const double x = s / reach;
+  return {1.0 - x * x * (3.0 - 2.0 * x), -6.0 * x * (1.0 - x) / reach};
+}
+
+/// The centre line of one cable, built link by link.
+class PathBuilder {
+ public:
+  PathBuilder(const Scene& scene, const World& world, const CableState& cable, double smallest_sag,
+              std::vector<StripPoint>& points)
+      : world_(world),
+        cable_(cable),
+        smallest_sag_(smallest_sag),
+        points_(points),
+        begins_{points.size()} {
+    const double g = scene.gravity.norm();
+    up_ = g > 0.0 ? Vec2(-scene.gravity / g) : Vec2(0.0, 1.0);
+  }
+
+  std::vector<std::size_t> build() {
+    const std::size_t count = cable_.links.size();
+    if (count < 2) return {};
+    find_bounds();
+    if (cable_.closed) {
+      // Start behind the seam, on the first link, and come back to it.
+      for (std::size_t i = 0; i < count; ++i) {
+        add_arc(i);
+        add_span((i + 1) % count);
+      }
+    } else {
+      for (std::size_t i = 1; i < count; ++i) {
+        add_span(i);
+        add_arc(i);
+      }
+    }
+    return begins_;
+  }
+
+ private:
+  struct Span {
+    bool drawn = false;
+    bool hanging = false;
+    double slack = 0.0;  // m, by which it hangs
+    Catenary curve;
+  };
+
+  std::size_t tail_link(std::size_t segment) const {
+    return segment == 0 ? cable_.links.size() - 1 : segment - 1;
+  }
+
+  /// A hanging span may take as much off the wrap as the span on its other side has left.
+  SpanEnd span_end(std::size_t i) const {
+    const Link& link = cable_.links[i];
+    const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
+    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0)};
+  }
+
+  /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
+  /// hang, and a pinched one not at all; in between the straighter the shorter it is.
+  double room(std::size_t i) const {
+    const Segment& segment = cable_.segments[i];
+    if (segment.pinched || !spans_[i].drawn) return 0.0;
+    return 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
+  }
+
+  /// Material that span i holds beyond its straight length, m.
+  double slack(std::size_t i) const {
+    return std::max(cable_.segments[i].rest_length - cable_.segments[i].length, 0.0);
+  }
+
+  /// Hands on what a short span cannot show to the slack spans beside it, so that the drawn cable
+  /// keeps its length when the link between them goes. Most goes past the link with the smaller
+  /// wrap: that is the one about to go. A span that is taut takes nothing.
+  void share_slack() {
+    const std::size_t count = cable_.links.size(), first = first_segment(cable_);
+    for (std::size_t i = first; i < count; ++i) spans_[i].slack = room(i) * slack(i);
+    for (std::size_t i = first; i < count; ++i) {
+      const double hidden = (1.0 - room(i)) * slack(i);
+      if (hidden <= 0.0) continue;
+      const std::size_t before = tail_link(i), after = (i + 1) % count;
+      const double tail_wrap = arc(before), head_wrap = arc(i), both = tail_wrap + head_wrap;
+      const auto hand_on = [&](std::size_t to, double share) {
+        const double enough = 0.1 * cable_.half_width;
+        spans_[to].slack += hidden * share * room(to) * std::min(1.0, slack(to) / enough);
+      };
+      if (both <= 0.0) continue;
+      if (cable_.closed || before >= first) hand_on(before, head_wrap / both);
+      if (cable_.closed || after > i) hand_on(after, tail_wrap / both);
+    }
+  }
+
+  /// m of cable on link i.
+  double arc(std::size_t i) const { return cable_.links[i].radius * cable_.links[i].wrap; }
+
+  /// The shape of every span, and from it where each link's arc begins and ends.
+  void find_bounds() {
+    const std::size_t count = cable_.links.size();
+    bounds_.resize(count);
+    spans_.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = body_angle(world_, cable_.links[i]);
+      bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
+                    tail_material(cable_, i, angle), head_material(cable_, i, angle)};
+    }
+    const std::size_t first = first_segment(cable_);
+    for (std::size_t i = first; i < count; ++i) {
+      spans_[i].drawn = !cable_.links[tail_link(i)].pinch_middle && !cable_.links[i].pinch_middle;
+    }
+    share_slack();
+    for (std::size_t i = first; i < count; ++i) {
+      const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
+      const Segment& segment = cable_.segments[i];
+      Span& span = spans_[i];
+      // A chord of length l and slack d sags by sqrt(3 l d / 8).
+      span.hanging =
+          span.drawn && span.slack * segment.length > 2.0 * smallest_sag_ * smallest_sag_;
+      if (!span.hanging) continue;
+      const HangingSpan shape = hang(span_end(tail_link(i)), span_end(i), segment.alpha,
+                                     segment.length + span.slack, up_);
+      span.curve = shape.curve;
+      Bounds &before = bounds_[tail_link(i)], &after = bounds_[i];
+      const double seam = i == 0 ? cable_.turning : 0.0;
+      before.head_material += from.signed_radius() * (shape.tail_angle + seam - before.head_angle);
+      before.head_angle = shape.tail_angle + seam;
+      after.tail_material += to.signed_radius() * (shape.head_angle - after.tail_angle);
+      after.tail_angle = shape.head_angle;
+    }
+  }
+
+  void add_point(const Vec2& position, const Vec2& tangent, double material) {
+    if (points_.size() > begins_.back()) {
+      // A kink is a fan of points at one place: a round joint.
+      const StripPoint last = points_.back();
+      const double bend = std::atan2(cross(last.tangent, tangent), last.tangent.dot(tangent));
+      if (std::abs(bend) > 1.01 * most_turn) {
+        const int pieces = static_cast<int>(std::ceil(std::abs(bend) / most_turn));
+        for (int k = 1; k < pieces; ++k) {
+          const double a = bend * k / pieces;
+          const Vec2 t = std::cos(a) * last.tangent + std::sin(a) * left(last.tangent);
+          points_.push_back({position, t, material});
+        }
+      }
+    }
+    points_.push_back({position, tangent, material});
+  }
+
+  /// From the end of the arc before pinched segment i to the beginning of the one after it: zero
+  /// unless the two bodies clip.
+  Vec2 clipped(std::size_t i) const {
+    if (!spans_[i].drawn || spans_[i].hanging || cable_.segments[i].length > 0.0)
+      return Vec2::Zero();
+    const Vec2 overlap = cable_.segments[i].head - cable_.segments[i].tail;
+    return overlap.norm() > 0.2 * smallest_sag_ ? overlap : Vec2(Vec2::Zero());
+  }
+
+  /// Where two bodies clip, the arcs round them do not meet. Each gives way by half, smoothly,
+  /// along a few widths of cable; what is left at the end of a short arc moves the end of the span
+  /// beyond it.
+  struct GiveWay {
+    Vec2 at_tail = Vec2::Zero(), at_head = Vec2::Zero();  // m, at the ends of the arc
+    double length = 0.0, reach = 1.0;                     // m, of the arc; along which it fades
+    bool none() const { return at_tail.isZero(0.0) && at_head.isZero(0.0); }
+
+    Vec2 shift(double s) const {  // m, at s along the arc
+      return fade(s, reach).value * at_tail + fade(length - s, reach).value * at_head;
+    }
+    Vec2 slope(double s) const {  // its derivative
+      return fade(s, reach).slope * at_tail - fade(length - s, reach).slope * at_head;
+    }
+  };
+
+  GiveWay give_way(std::size_t i) const {
+    const Link& link = cable_.links[i];
+    if (link.orientation == 0 || link.pinch_middle) return {};
+    const bool last = !cable_.closed && i + 1 == cable_.links.size();
+    GiveWay way;
+    way.at_tail = -0.5 * clipped(i);
+    if (!last) way.at_head = 0.5 * clipped((i + 1) % cable_.links.size());
+    way.length = link.radius * std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
+    way.reach = 8.0 * cable_.half_width;
+    const bool both = !way.at_tail.isZero(0.0) && !way.at_head.isZero(0.0);
+    if (both) way.reach = std::min(way.reach, 0.5 * way.length);
+    return way;
+  }
+
+  void add_arc(std::size_t i) {
+    const Link& link = cable_.links[i];
+    if (link.orientation == 0 || link.pinch_middle) return;
+    const Bounds& b = bounds_[i];
+    const Vec2& centre = world_.position[static_cast<std::size_t>(link.body)];
+    const double sweep = b.head_angle - b.tail_angle;
+    // Where an arc gives way it is no circle: finer pieces come close enough.
+    const GiveWay way = give_way(i);
+    const double most = way.none() ? most_turn : 0.25 * most_turn;
+    // Of several turns the last one hides the others.
+    constexpr double full_turn = 2.0 * std::numbers::pi;
+    const double hidden = std::max(0.0, 1.0 - full_turn / std::max(std::abs(sweep), full_turn));
+    if (hidden > 0.0 && points_.size() > begins_.back()) begins_.push_back(points_.size());
+    const int pieces =
+        std::max(1, static_cast<int>(std::ceil((1.0 - hidden) * std::abs(sweep) / most)));
+    for (int k = 0; k <= pieces; ++k) {
+      const double share = hidden + (1.0 - hidden) * k / pieces, s = share * way.length;
+      const Vec2 e = unit_vector(b.tail_angle + share * sweep);
+      add_point(tangent_point(centre, link.signed_radius(), e) + way.shift(s),
+                (e + way.slope(s)).normalized(),
+                b.tail_material + share * (b.head_material - b.tail_material));
+    }
+  }
+
+  void add_span(std::size_t i) {
+    const Span& span = spans_[i];
+    if (!span.drawn) return;
+    const double from = bounds_[tail_link(i)].head_material;
+    const double to = bounds_[i].tail_material + (i == 0 ? cable_.length : 0.0);
+    const GiveWay before = give_way(tail_link(i)), after = give_way(i);
+    const Vec2 tail_shift = before.shift(before.length), head_shift = after.shift(0.0);
+    if (!span.hanging) {
+      // Pinched: nothing lies between the arcs.
+      const Segment& segment = cable_.segments[i];
+      if (segment.length <= 0.0) return;
+      const Vec2 tail = segment.tail + tail_shift, head = segment.head + head_shift;
+      const Vec2 e = (head - tail).normalized();
+      add_point(tail, e, from);
+      add_point(head, e, to);
+      return;
+    }
+    const double length = span.curve.length();
+    constexpr double most = 0.15;  // rad: a catenary is no circle
+    const int pieces = std::max(1, static_cast<int>(std::ceil(span.curve.turn() / most)));
+    for (int k = 0; k <= pieces; ++k) {
+      const double s = span.curve.arc_at_turn(static_cast<double>(k) / pieces), share = s / length;
+      const Vec2 slope = (head_shift - tail_shift) / length;
+      add_point(span.curve.point(s) + (1.0 - share) * tail_shift + share * head_shift,
+                (span.curve.tangent(s) + slope).normalized(), from + share * (to - from));
+    }
+  }
+
+  const World& world_;
+  const CableState& cable_;
+  double smallest_sag_;
+  std::vector<StripPoint>& points_;
+  std::vector<std::size_t> begins_;  // indices of the strips' first points
+  Vec2 up_;
+  std::vector<Bounds> bounds_;
+  std::vector<Span> spans_;
+};
+
+}  // namespace
+
+double mark_spacing(const CableState& cable) {
+  if (!cable.closed) return 8.0 * cable.half_width;
+  // A belt runs fast: marks that move by half their distance a frame seem to run backward.
+  const double wanted = 16.0 * cable.half_width;
+  return cable.length / std::max(1.0, std::round(cable.length / wanted));
+}
+
+std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
+                                           const CableState& cable, double smallest_sag,
+                                           std::vector<StripPoint>& points) {
+  return PathBuilder(scene, world, cable, smallest_sag, points).build();
+}
+
+}  // namespace pinchlab

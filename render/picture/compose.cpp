@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/picture/compose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/picture/cable_path.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+constexpr Colour clear{0, 0, 0, 0};
+
+Vec2 unit_vector(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+Stroke disc(const Vec2& centre, double radius, Colour fill) {
+  return {centre, centre, radius, 0.0, fill, clear};
+}
+
+Stroke line(const Vec2& a, const Vec2& b, double half_width, Colour colour) {
+  return {a, b, half_width, 0.0, colour, clear};
+}
+
+bool is_driven(const Body& body) {
+  return strongest_drive(body) != 0.0;
+}
+
+/// The edge that goes with a fill of the scene's choice.
+Colour shade(Colour fill) {
+  const auto darker = [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 2 / 5); };
+  return {darker(fill.red), darker(fill.green), darker(fill.blue), 255};
+}
+
+class Composer {
+ public:
+  Composer(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture)
+      : scene_(scene), scenery_(scenery), theme_(scenery.theme), world_(world), picture_(picture) {}
+
+  void run() {
+    picture_.clear();
+    picture_.view = scenery_.view;
+    picture_.background = theme_.background;
+    // Each change between strokes, strips and labels costs a canvas some time: like goes by like.
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
+    for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
+    if (theme_.shadow.alpha > 0) add_shadows();
+    for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
+    for (const Wall& wall : scene_.walls) {
+      picture_.add(line(wall.a, wall.b, 2.5 * scenery_.line(), theme_.fixed.edge));
+    }
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
+    for (const CableState& cable : world_.cables) add_fastenings(cable);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_head(i);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_shaft(i);
+    for (const SceneryLabel& label : scenery_.labels) {
+      picture_.add(Label{world_.position[label.body] + label.offset, scenery_.text(), label.text,
+                         theme_.ink});
+    }
+  }
+
+ private:
+  /// What is fixed to the ground: a line from a to b, hatched on its left.
+  void add_hatched(const Vec2& a, const Vec2& b, double spacing) {
+    const double width = 1.1 * scenery_.line();
+    picture_.add(line(a, b, 1.3 * width, theme_.support));
+    const double length = (b - a).norm();
+    const Vec2 along = (b - a) / length;
+    const int count = std::max(2, static_cast<int>(std::lround(length / spacing)));
+    for (int k = 0; k < count; ++k) {
+      const Vec2 foot = a + (k + 0.75) / count * (b - a);
+      picture_.add(line(foot, foot + 0.7 * spacing * (left(along) - along), width, theme_.support));
+    }
+  }
+
+  /// Where the body's centre goes in the clips, with a bracket at each end.
+  void add_rail(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    if (body.kind != BodyKind::rail || !scenery_.travel[i].own) return;
+    const Vec2 low = body.position + (scenery_.travel[i].low - body.radius) * body.rail_axis;
+    const Vec2 high = body.position + (scenery_.travel[i].high + body.radius) * body.rail_axis;
+    picture_.add(line(low, high, 1.5 * scenery_.line(), theme_.rail));
+    const Vec2 across = 0.9 * scenery_.unit() * left(body.rail_axis);
+    add_hatched(low + across, low - across, 0.7 * scenery_.unit());
+    add_hatched(high - across, high + across, 0.7 * scenery_.unit());
+  }
+
+  void add_anchor_plate(const Anchor& anchor) {
+    const double r = anchor_radius(anchor.half_width);
+    const Vec2 across = 1.3 * r * left(anchor.outward),
+               foot = anchor.point + 1.1 * r * anchor.outward;
+    add_hatched(foot + across, foot - across, 0.65 * r);
+  }
+
+  double anchor_radius(double half_width) const {
+    return std::max(1.7 * half_width, 0.6 * scenery_.unit());
+  }
+
+  void add_shadows() {
+    const Vec2 shift = scenery_.unit() * Vec2(0.5, -0.5);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      picture_.add(disc(world_.position[i] + shift, scene_.bodies[i].radius, theme_.shadow));
+    }
+  }
+
+  void add_cable(std::size_t c) {
+    const CableState& cable = world_.cables[c];
+    const CableLook look = scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
+    Strip strip;
+    strip.half_width = cable.half_width;
+    strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * scenery_.line());
+    strip.mark_spacing = mark_spacing(cable);
+    strip.mark_length = look.marks ? (cable.closed ? 0.4 : 0.25) * strip.mark_spacing : 0.0;
+    strip.fill = look.colour.value_or(theme_.cable.fill);
+    strip.edge = look.colour ? shade(*look.colour) : theme_.cable.edge;
+    strip.mark = look.colour ? shade(*look.colour) : theme_.cable_mark;
+    const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
+    std::vector<std::size_t> begins =
+        append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
+    begins.push_back(picture_.points.size());
+    for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
+      strip.first = begins[i];
+      strip.count = begins[i + 1] - begins[i];
+      picture_.add(strip);
+    }
+  }
+
+  /// The background, of which holes are made; opaque even where the page is not.
+  Colour paper() const {
+    Colour colour = theme_.background;
+    colour.alpha = 255;
+    return colour;
+  }
+
+  Paint paint_of(std::size_t i) const {
+    const Body& body = scene_.bodies[i];
+    Paint paint = body.kind == BodyKind::fixed ? theme_.fixed
+                  : is_driven(body)            ? theme_.driven
+                                               : theme_.body;
+    if (!scenery_.look.bodies.empty() && scenery_.look.bodies[i].colour) {
+      paint = {*scenery_.look.bodies[i].colour, shade(*scenery_.look.bodies[i].colour)};
+    }
+    return paint;
+  }
+
+  void add_body(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    const Vec2& centre = world_.position[i];
+    const double r = body.radius, angle = world_.angle[i];
+    const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
+    const auto [fill, edge] = paint_of(i);
+    picture_.add(Stroke{centre, centre, r, std::min(0.09 * r, 4.0 * scenery_.line()), fill, edge});
+    if (held) {
+      // A bracket from the axle down to the ground, inside of the rim where no cable runs.
+      const Vec2 foot = centre + Vec2(0.0, -0.6 * r), half(0.34 * r, 0.0);
+      for (const double side : {-0.6, 0.6}) {
+        picture_.add(line(centre, foot + side * half, 1.3 * scenery_.line(), theme_.support));
+      }
+      add_hatched(foot + half, foot - half, 0.2 * r);
+    }
+
+    // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
+    // like none.
+    if (scenery_.look.bodies.empty() || scenery_.look.bodies[i].marks) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec2 e = unit_vector(angle + k * turn / 3.0);
+        picture_.add(line(centre, centre + 0.9 * r * e, 0.045 * r * theme_.line_width, edge));
+      }
+      picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
+    }
+    picture_.add(disc(centre, 0.17 * r, edge));
+    if (held) {
+      picture_.add(disc(centre, 0.11 * r, paper()));
+      picture_.add(disc(centre, 0.055 * r, theme_.ink));
+    }
+  }
+
+  /// What holds the ends of an open cable: a bolt in the world, a pin on a body.
+  void add_fastenings(const CableState& cable) {
+    if (cable.closed || cable.links.size() < 2) return;
+    for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
+      if (link->body >= 0) {
+        picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
+      } else {
+        const double r = anchor_radius(cable.half_width);
+        picture_.add(disc(link->offset, r, theme_.ink));
+        picture_.add(disc(link->offset, 0.4 * r, paper()));
+      }
+    }
+  }
+
+  /// The arrow beside a driven body's rim shows the sense in which it is driven and does not turn
+  /// with it.
+  struct Arrow {
+    double sense = 0.0;         // +1 counter-clockwise, -1 clockwise, 0 none
+    double radius, half_width;  // m
+    double from, to;            // rad
+  };
+  Arrow arrow(std::size_t i) const {
+    const Body& body = scene_.bodies[i];
+    if (!is_driven(body)) return {};
+    const double sense = strongest_drive(body) > 0.0 ? 1.0 : -1.0;
+    const double r = arrow_radius(scene_, scenery_, i);
+    const double reach = sense * std::clamp(5.0 * scenery_.unit() / r, 0.35, 0.8);  // rad
+    return {sense, r, 3.0 * scenery_.line(), scenery_.arrow_middle[i] - reach,
+            scenery_.arrow_middle[i] + reach};
+  }
+
+  void add_arrow_head(std::size_t i) {
+    const Arrow a = arrow(i);
+    if (a.sense == 0.0) return;
+    const Vec2& centre = world_.position[i];
+    const Vec2 radial = unit_vector(a.to), tip = centre + a.radius * radial;
+    for (const double side : {-1.0, 1.0}) {
+      const Vec2 barb = tip + 1.1 * scenery_.unit() * (side * radial - a.sense * left(radial));
+      picture_.add(line(tip, barb, a.half_width, theme_.ink));
+    }
+  }
+
+  void add_arrow_shaft(std::size_t i) {
+    const Arrow a = arrow(i);
+    if (a.sense == 0.0) return;
+    Strip shaft;
+    shaft.first = picture_.points.size();
+    constexpr int pieces = 10;
+    for (int k = 0; k <= pieces; ++k) {
+      const Vec2 e = unit_vector(a.from + (a.to - a.from) * k / pieces);
+      picture_.points.push_back({world_.position[i] + a.radius * e, a.sense * left(e), 0.0});
+    }
+    shaft.count = picture_.points.size() - shaft.first;
+    shaft.half_width = a.half_width;
+    shaft.fill = theme_.ink;
+    picture_.add(shaft);
+  }
+
+  const Scene& scene_;
+  const Scenery& scenery_;
+  const Theme& theme_;
+  const World& world_;
+  Picture& picture_;
+};
+
+}  // namespace
+
+void compose(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture) {
+  Composer(scene, scenery, world, picture).run();
+}
+
+Label time_label(const Scenery& scenery, double time) {
+  const double text = scenery.text();
+  return {scenery.view.low + Vec2(2.6 * text, 1.2 * text), text, fmt::format("{:6.3f} s", time),
+          scenery.theme.ink};
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/picture/hanging.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/cable/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// sinh(x) / x - 1, without cancellation.
+double excess(double x) {
+  const double q = x * x;
+  if (x < 0.3) return q / 6.0 * (1.0 + q / 20.0 * (1.0 + q / 42.0 * (1.0 + q / 72.0)));
+  return std::sinh(x) / x - 1.0;
+}
+
+/// d/dx of it.
+double excess_slope(double x) {
+  const double q = x * x;
+  if (x < 0.3) return x / 3.0 * (1.0 + q / 10.0 * (1.0 + q / 28.0 * (1.0 + q / 54.0)));
+  return (std::cosh(x) - std::sinh(x) / x) / x;
+}
+
+/// The x > 0 with sinh(x) / x - 1 = e. Newton's method from above on a convex function cannot
+/// overshoot; x + x^3/6 < sinh x bounds the root for small e, sinh(2 ln 2c) > 2 c ln 2c (c = 1 + e)
+/// for large e.
+double inverse_excess(double e) {
+  double x = std::min(std::sqrt(6.0 * e), 2.0 * std::log(2.0 + 2.0 * e));
+  for (int i = 0; i < 100; ++i) {
+    const double change = (excess(x) - e) / excess_slope(x);
+    x -= change;
+    if (std::abs(change) <= 1e-14 * x) break;
+  }
+  return x;
+}
+
+Vec2 unit(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+// With h and v the horizontal and vertical distance and x = h / 2a, a chain of length l satisfies
+//     sinh(x) / x = sqrt(l^2 - v^2) / h,
+// and its lowest point lies a artanh(v / l) before the middle of h.
+Catenary::Catenary(const Vec2& from, const Vec2& to, double length, const Vec2& up)
+    : from_(from), up_(up), length_(length) {
+  const Vec2 d = to - from;
+  const double distance = d.norm();
+  constexpr double smallest_slack = 1e-12;  // of the length: a sag of 1e-6 of it
+  straight_ = length <= distance + smallest_slack * distance;
+  if (straight_) {
+    length_ = distance;
+    if (distance > 0.0) across_ = d / distance;
+    return;
+  }
+  across_ = Vec2(up.y(), -up.x());
+  if (across_.dot(d) < 0.0) across_ = -across_;
+  constexpr double narrowest = 1e-6;  // of the length: both halves of the chain hang side by side
+  const double h = std::max(across_.dot(d), narrowest * length), v = up.dot(d);
+  const double root = std::sqrt((length - v) * (length + v));
+  const double slack = std::max((length - distance) * (length + distance), 1e-24 * length * length);
+  const double x = inverse_excess(slack / (h * (root + h)));
+  parameter_ = 0.5 * h / x;
+  start_ = -parameter_ * std::sinh(x - std::atanh(v / length));
+}
+
+Vec2 Catenary::point(double s) const {
+  if (straight_) return from_ + s * across_;
+  const double a = parameter_, end = start_ + s;
+  const double horizontal = a * (std::asinh(end / a) - std::asinh(start_ / a));
+  const double vertical = s * (start_ + end) / (std::hypot(a, start_) + std::hypot(a, end));
+  return from_ + horizontal * across_ + vertical * up_;
+}
+
+Vec2 Catenary::tangent(double s) const {
+  if (straight_) return across_;
+  return (parameter_ * across_ + (start_ + s) * up_) / std::hypot(parameter_, start_ + s);
+}
+
+double Catenary::turn() const {
+  if (straight_) return 0.0;
+  return std::atan((start_ + length_) / parameter_) - std::atan(start_ / parameter_);
+}
+
+double Catenary::arc_at_turn(double share) const {
+  if (straight_) return share * length_;
+  const double from = std::atan(start_ / parameter_), angle = from + share * turn();
+  const double s = parameter_ * std::tan(angle) - start_;
+  // Exact at the ends, where the difference would lose digits of a nearly straight chain.
+  return share <= 0.0 ? 0.0 : share >= 1.0 ? length_ : std::clamp(s, 0.0, length_);
+}
+
+HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double rest_length,
+                 const Vec2& up) {
+  // The angles at which the cable leaves and arrives must be those of the curve between the points
+  // where it does. Moving such a point along its circle leaves the slack unchanged to first order,
+  // so plain substitution converges quickly; damping keeps it safe where the slack is large.
+  HangingSpan span{alpha, alpha, {}};
+  const auto limited = [alpha](const SpanEnd& end, double angle, double wrap_sense) {
+    if (end.signed_radius == 0.0) return angle;
+    const double grow = wrap_sense * std::copysign(1.0, end.signed_radius) * (angle - alpha);
+    const double kept = std::clamp(grow, -end.most_unwrap, std::numbers::pi);
+    return alpha + wrap_sense * std::copysign(1.0, end.signed_radius) * kept;
+  };
+  constexpr int most_rounds = 60;
+  constexpr double damping = 0.7, close_enough = 1e-9;
+  for (int round = 0;; ++round) {
+    const Vec2 e_tail = unit(span.tail_angle), e_head = unit(span.head_angle);
+    const Vec2 from = tangent_point(tail.centre, tail.signed_radius, e_tail);
+    const Vec2 to = tangent_point(head.centre, head.signed_radius, e_head);
+    const double length = rest_length - tail.signed_radius * (span.tail_angle - alpha) +
+                          head.signed_radius * (span.head_angle - alpha);
+    span.curve = Catenary(from, to, length, up);
+    const auto turned = [alpha](const Vec2& t) {  // rad, from alpha to t
+      const Vec2 e = unit(alpha);
+      return std::atan2(cross(e, t), e.dot(t));
+    };
+    const double tail_angle = limited(tail, alpha + turned(span.curve.tangent(0.0)), 1.0);
+    const double head_angle =
+        limited(head, alpha + turned(span.curve.tangent(span.curve.length())), -1.0);
+    const double tail_change = tail.signed_radius != 0.0 ? tail_angle - span.tail_angle : 0.0;
+    const double head_change = head.signed_radius != 0.0 ? head_angle - span.head_angle : 0.0;
+    if (round == most_rounds ||
+        std::max(std::abs(tail_change), std::abs(head_change)) < close_enough) {
+      return span;
+    }
+    span.tail_angle += damping * tail_change;
+    span.head_angle += damping * head_change;
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/picture/scenery.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "render/picture/cable_path.h"
+#include "sim/cable/tangent.h"
+#include "sim/step.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr int most_snapshots = 40;       // a configuration
+constexpr std::size_t most_labels = 40;  // that are kept out of the way; more stand below
+
+bool is_driven(const Body& body) {
+  return strongest_drive(body) != 0.0;
+}
+
+/// A moment of the rehearsal.
+struct Snapshot {
+  std::vector<Vec2> position;  // m, one a body
+  struct Line {
+    Vec2 a, b;          // m
+    double half_width;  // m
+  };
+  std::vector<Line> lines;  // the cables' centre lines
+};
+
+struct Box {
+  Vec2 low = Vec2::Constant(infinity), high = Vec2::Constant(-infinity);
+  void add(const Vec2& p, double r) {
+    low = low.cwiseMin(p - Vec2::Constant(r));
+    high = high.cwiseMax(p + Vec2::Constant(r));
+  }
+  bool is_empty() const { return low.x() > high.x(); }
+  bool touches(const Box& other) const {
+    return (low.array() < other.high.array()).all() && (other.low.array() < high.array()).all();
+  }
+  bool within(const Box& other) const {
+    return (low.array() >= other.low.array()).all() && (high.array() <= other.high.array()).all();
+  }
+  bool touches_disc(const Vec2& centre, double radius) const {
+    return (centre.cwiseMax(low).cwiseMin(high) - centre).norm() < radius;
+  }
+  /// Whether a line of some width runs through it: the line is cut to the widened box.
+  bool touches_line(const Snapshot::Line& line) const {
+    double from = 0.0, to = 1.0;
+    for (int axis = 0; axis < 2; ++axis) {
+      const double d = line.b[axis] - line.a[axis];
+      double enter = (low[axis] - line.half_width - line.a[axis]) / d;
+      double leave = (high[axis] + line.half_width - line.a[axis]) / d;
+      if (d == 0.0) {
+        const bool beside = line.a[axis] < low[axis] - line.half_width ||
+                            line.a[axis] > high[axis] + line.half_width;
+        if (beside) return false;
+        continue;
+      }
+      if (enter > leave) std::swap(enter, leave);
+      from = std::max(from, enter);
+      to = std::min(to, leave);
+    }
+    return from < to;
+  }
+};
+
+/// m across.
+double widest_cable(const Scene& scene) {
+  double width = 0.0;
+  for (const Cable& cable : scene.cables) width = std::max(width, 2.0 * cable.half_width);
+  return width;
+}
+
+class Rehearsal {
+ public:
+  Rehearsal(const Scene& scene, Scenery& scenery) : scene_(scene), scenery_(scenery) {}
+
+  void play(const Configuration& configuration) {
+    World world = make_world(scene_, configuration);
+    Workspace work;
+    const int every = std::max(1, scene_.frame_count / most_snapshots);
+    for (int frame = 0; frame < scene_.frame_count; ++frame) {
+      look(world, frame % every == 0);
+      for (int i = 0; i < scene_.steps_per_frame; ++i) {
+        if (step(scene_, world, work) != StepStatus::ok) return;
+      }
+    }
+  }
+
+  void fit_view();
+  void fit_labels();
+  void place_arrows();
+  void place_labels();
+
+ private:
+  void look(const World& world, bool keep);
+  double overlap(const Box& box, const Vec2& offset, std::size_t body, double own_radius) const;
+  Box label_box(const SceneryLabel& label) const;
+  Vec2 arrow_centre(std::size_t body) const;
+  std::vector<Vec2> label_places(std::size_t body, const Box& box, bool choose) const;
+
+  const Scene& scene_;
+  Scenery& scenery_;
+  std::vector<Snapshot> snapshots_;
+  Box all_;  // bodies and cables at all times
+};
+
+void Rehearsal::look(const World& world, bool keep) {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const Body& body = scene_.bodies[i];
+    all_.add(world.position[i], body.radius);
+    if (body.kind != BodyKind::rail) continue;
+    const double along = body.rail_axis.dot(world.position[i] - body.position);
+    scenery_.travel[i].low = std::min(scenery_.travel[i].low, along);
+    scenery_.travel[i].high = std::max(scenery_.travel[i].high, along);
+  }
+  if (!keep) return;
+  Snapshot snapshot;
+  snapshot.position = world.position;
+  std::vector<StripPoint> points;
+  for (const CableState& cable : world.cables) {
+    points.clear();
+    append_cable_path(scene_, world, cable, 0.1 * cable.half_width, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      all_.add(points[i].position, cable.half_width);
+      if (i == 0) continue;
+      snapshot.lines.push_back({points[i - 1].position, points[i].position, cable.half_width});
+    }
+  }
+  snapshots_.push_back(std::move(snapshot));
+}
+
+/// The motion's extent with a margin of a twentieth.
+void Rehearsal::fit_view() {
+  for (const Wall& wall : scene_.walls) {
+    all_.add(wall.a, 0.0);
+    all_.add(wall.b, 0.0);
+  }
+  if (all_.is_empty()) return;
+  const double margin = 0.05 * std::max((all_.high - all_.low).maxCoeff(), 1e-3);
+  scenery_.view = {all_.low - Vec2::Constant(margin), all_.high + Vec2::Constant(margin)};
+}
+
+/// The same for labels, once they have their places.
+void Rehearsal::fit_labels() {
+  Box frame{scenery_.view.low, scenery_.view.high};
+  for (const SceneryLabel& label : scenery_.labels) {
+    const Box box = label_box(label);
+    for (const Snapshot& snapshot : snapshots_) {
+      const Vec2 centre = snapshot.position[label.body] + label.offset;
+      frame.add(centre + box.low, 0.2 * scenery_.text());
+      frame.add(centre + box.high, 0.2 * scenery_.text());
+    }
+  }
+  scenery_.view = {frame.low, frame.high};
+}
+
+/// Share of the snapshots in which a box that goes with a body would lie on a cable or on another
+/// body; out of the view counts three times.
+double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
+                          double own_radius) const {
+  const Box frame{scenery_.view.low, scenery_.view.high};
+  double sum = 0.0;
+  for (const Snapshot& snapshot : snapshots_) {
+    const Vec2 centre = snapshot.position[body] + offset;
+    const Box there{centre + box.low, centre + box.high};
+    if (!there.within(frame)) sum += 3.0;
+    sum += static_cast<double>(
+        std::any_of(snapshot.lines.begin(), snapshot.lines.end(),
+                    [&](const Snapshot::Line& line) { return there.touches_line(line); }));
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const double radius = i == body ? own_radius : scene_.bodies[i].radius;
+      sum += static_cast<double>(there.touches_disc(snapshot.position[i], radius));
+    }
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(1, snapshots_.size()));
+}
+
+Box Rehearsal::label_box(const SceneryLabel& label) const {
+  // A character of DejaVu Sans is about 0.6 em wide.
+  const double height = scenery_.text();
+  const Vec2 half(0.5 * 0.6 * height * static_cast<double>(label.text.size()), 0.6 * height);
+  return {-half, half};
+}
+
+/// A motor's arrow stands beside its rim, where cables leave room.
+void Rehearsal::place_arrows() {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    if (!is_driven(scene_.bodies[i])) continue;
+    double least = infinity;
+    for (int k = 0; k < 8; ++k) {
+      constexpr std::array<int, 8> order = {2, 1, 3, 0, 4, 7, 5, 6};  // from the top down
+      const double middle = order[static_cast<std::size_t>(k)] * 0.25 * std::numbers::pi;
+      double sum = 0.0;
+      for (int j = -2; j <= 2; ++j) {
+        const double angle = middle + 0.28 * j;
+        const double r = arrow_radius(scene_, scenery_, i);
+        const Vec2 half = Vec2::Constant(1.2 * scenery_.unit());
+        sum += overlap({-half, half}, r * Vec2(std::cos(angle), std::sin(angle)), i, 0.0);
+      }
+      if (sum < least - 1e-9) {
+        least = sum;
+        scenery_.arrow_middle[i] = middle;
+      }
+    }
+  }
+}
+
+/// The middle of a motor's arrow, m from the body's centre.
+Vec2 Rehearsal::arrow_centre(std::size_t body) const {
+  const double angle = scenery_.arrow_middle[body];
+  return arrow_radius(scene_, scenery_, body) * Vec2(std::cos(angle), std::sin(angle));
+}
+
+/// Where a label may stand beside its body, the best place first: near its rim, then beyond the
+/// cable that may run round it.
+std::vector<Vec2> Rehearsal::label_places(std::size_t i, const Box& box, bool choose) const {
+  using enum LabelSide;
+  const Body& body = scene_.bodies[i];
+  const LabelSide wanted = scenery_.look.bodies.empty() ? automatic : scenery_.look.bodies[i].side;
+  const double gap = 0.5 * scenery_.text();
+  std::vector<Vec2> places;
+  for (const double beyond : {0.0, widest_cable(scene_)}) {
+    const double reach = body.radius + beyond;
+    const double down = reach + gap + box.high.y(), across = reach + gap + box.high.x();
+    const Vec2 diagonal = box.high + Vec2::Constant(0.72 * reach + 0.5 * gap);
+    const std::array<std::pair<LabelSide, Vec2>, 8> sides = {
+        {{below, {0.0, -down}},
+         {right, {across, 0.0}},
+         {left, {-across, 0.0}},
+         {above, {0.0, down}},
+         {automatic, {diagonal.x(), -diagonal.y()}},
+         {automatic, {-diagonal.x(), -diagonal.y()}},
+         {automatic, diagonal},
+         {automatic, {-diagonal.x(), diagonal.y()}}}};
+    for (const auto& [side, offset] : sides) {
+      if (wanted != automatic ? side == wanted : choose || side == below) places.push_back(offset);
+    }
+  }
+  return places;
+}
+
+void Rehearsal::place_labels() {
+  const bool choose = scenery_.labels.size() <= most_labels;
+  std::vector<std::pair<std::size_t, Box>> placed;
+  for (SceneryLabel& label : scenery_.labels) {
+    const Box box = label_box(label);
+    double least = infinity;
+    for (const Vec2& offset : label_places(label.body, box, choose)) {
+      double sum =
+          choose ? overlap(box, offset, label.body, scene_.bodies[label.body].radius) : 0.0;
+      const Box here{offset + box.low, offset + box.high};
+      if (is_driven(scene_.bodies[label.body]) &&
+          here.touches_disc(arrow_centre(label.body), 5.2 * scenery_.unit())) {
+        sum += 2.0;
+      }
+      for (const auto& [other, other_box] : placed) {
+        for (const Snapshot& snapshot : snapshots_) {
+          const Vec2 apart = snapshot.position[other] - snapshot.position[label.body];
+          const bool both = here.touches({apart + other_box.low, apart + other_box.high});
+          sum += static_cast<double>(both) / static_cast<double>(snapshots_.size());
+        }
+      }
+      if (sum >= least - 1e-9) continue;
+      least = sum;
+      label.offset = offset;
+    }
+    if (choose) {
+      placed.push_back({label.body, {label.offset + box.low, label.offset + box.high}});
+    }
+  }
+}
+
+/// By default the mass of what can move: it matters for what the cable does.
+std::vector<SceneryLabel> find_labels(const Scene& scene, const SceneLook& look) {
+  std::vector<SceneryLabel> labels;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    std::string text = can_move(body) ? fmt::format("{:.4g} kg", body.mass) : "";
+    if (!look.bodies.empty() && look.bodies[i].label) text = *look.bodies[i].label;
+    if (!text.empty()) labels.push_back({i, text, Vec2::Zero()});
+  }
+  return labels;
+}
+
+std::vector<Anchor> find_anchors(const Scene& scene) {
+  std::vector<Anchor> anchors;
+  if (scene.cables.empty()) return anchors;
+  const World world = make_world(scene, scene.baseline);
+  for (const CableState& cable : world.cables) {
+    if (cable.closed || cable.links.size() < 2) continue;
+    const Segment &first = cable.segments[1], &last = cable.segments.back();
+    if (cable.links.front().body < 0) {
+      anchors.push_back({cable.links.front().offset, -first.direction, cable.half_width});
+    }
+    if (cable.links.back().body < 0) {
+      anchors.push_back({cable.links.back().offset, last.direction, cable.half_width});
+    }
+  }
+  return anchors;
+}
+
+/// Bodies on one line run on one rail.
+void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      if (a.kind != BodyKind::rail || b.kind != BodyKind::rail || !travel[j].own) continue;
+      constexpr double same = 1e-6;
+      const Vec2 d = b.position - a.position;
+      if (std::abs(cross(a.rail_axis, b.rail_axis)) > same ||
+          std::abs(cross(a.rail_axis, d)) > same * near) {
+        continue;
+      }
+      const double shift = a.rail_axis.dot(d), sense = a.rail_axis.dot(b.rail_axis);
+      const double low = std::min(sense * travel[j].low, sense * travel[j].high) + shift;
+      const double high = std::max(sense * travel[j].low, sense * travel[j].high) + shift;
+      travel[i] = {std::min(travel[i].low, low), std::max(travel[i].high, high), true};
+      travel[j].own = false;
+    }
+  }
+}
+
+}  // namespace
+
+double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body) {
+  return scene.bodies[body].radius + widest_cable(scene) + 1.6 * scenery.unit();
+}
+
+Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
+                    std::span<const Configuration> configurations) {
+  Scenery scenery;
+  scenery.theme = theme;
+  scenery.look = look;
+  scenery.view = scene.view;
+  scenery.travel.resize(scene.bodies.size());
+  scenery.arrow_middle.assign(scene.bodies.size(), 0.5 * std::numbers::pi);
+  scenery.labels = find_labels(scene, look);
+  scenery.anchors = find_anchors(scene);
+  const bool asks = look.fit_view || !scenery.labels.empty() ||
+                    std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
+                      return body.kind == BodyKind::rail || is_driven(body);
+                    });
+  if (!asks) return scenery;
+  Rehearsal rehearsal(scene, scenery);
+  for (const Configuration& configuration : configurations) rehearsal.play(configuration);
+  share_rails(scene, scenery.travel, scenery.unit());
+  if (look.fit_view) rehearsal.fit_view();
+  rehearsal.place_arrows();
+  rehearsal.place_labels();
+  if (look.fit_view) rehearsal.fit_labels();
+  return scenery;
+}
+
+Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme) {
+  const std::array<Configuration, 2> pair = {Method::pinch, scene.baseline};
+  return set_scenery(scene, look, theme, pair);
+}
+
+}  // namespace pinchlab

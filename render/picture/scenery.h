@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What stays the same from frame to frame of a scene's clips: the view, how far rails are used,
+// where labels and arrows keep out of the way. Found by a rehearsal, so that both clips of a pair
+// have the same.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/picture/look.h"
+#include "sim/configuration.h"
+
+namespace pinchlab {
+
+/// A label that goes with a body.
+struct SceneryLabel {
+  std::size_t body = 0;
+  std::string text;
+  Vec2 offset = Vec2::Zero();  // m, of the text's centre from the body's
+};
+
+/// How far a body on a rail comes, m along its axis from where it starts.
+struct Travel {
+  double low = 0.0, high = 0.0;
+  bool own = true;  // not: another body's rail is this one's too, and longer
+};
+
+/// A cable's end in the world.
+struct Anchor {
+  Vec2 point = Vec2::Zero();      // m
+  Vec2 outward = Vec2(0.0, 1.0);  // unit, away from the cable at the start
+  double half_width = 0.0;        // m, the cable's
+};
+
+struct Scenery {
+  Theme theme;
+  SceneLook look;
+  View view;
+  std::vector<Travel> travel;        // one a body
+  std::vector<double> arrow_middle;  // rad, one a body: where a motor's arrow stands
+  std::vector<SceneryLabel> labels;
+  std::vector<Anchor> anchors;
+
+  /// Sizes that belong to the page rather than to the scene, m.
+  double unit() const { return 0.01 * (view.high - view.low).maxCoeff(); }
+  double line() const { return 0.1 * unit() * theme.line_width; }
+  double text() const { return theme.text_height * unit(); }
+};
+
+/// Plays the scene once under each configuration and sets the scenery for all of them. The scene is
+/// not played where nothing in it asks for it (no rail, no label, no motor, no fitted view). Where
+/// a value becomes not finite the rehearsal ends early. Throws as make_world.
+Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
+                    std::span<const Configuration> configurations);
+
+/// m from a driven body's centre to its arrow, outside of its rim and of the cables round it.
+double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body);
+
+/// set_scenery for the pair that the scene asks for.
+Scenery set_scenery(const Scene& scene, const SceneLook& look = {}, const Theme& theme = {});
+
+}  // namespace pinchlab

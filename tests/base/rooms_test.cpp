@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms know each other one way only, and outside of sim/ no two files need each other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "base/read_file.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+using Graph = std::map<std::string, std::set<std::string>>;
+
+// The rooms that each may know, besides itself. README.md tells the same.
+const Graph may_know = {
+    {"base", {}},
+    {"sim", {"base", "sim/cable", "sim/detect", "sim/solve", "sim/thesis"}},
+    {"sim/cable", {"base", "sim"}},
+    {"sim/detect", {"base", "sim", "sim/cable"}},
+    {"sim/solve", {"base", "sim", "sim/cable"}},
+    {"sim/thesis", {"base", "sim", "sim/cable", "sim/solve"}},
+    {"render/picture", {"base", "sim", "sim/cable"}},
+    {"demos/scenes", {"base", "sim", "render/picture"}},
+    {"render", {"base", "sim", "sim/cable", "render/picture"}},
+    {"demos", {"base", "sim", "sim/cable", "render/picture", "demos/scenes", "render"}},
+    {"analysis", {"base"}},
+    {"study", {"base"}},
+    {"analysis/experiments",
+     {"base", "sim", "sim/cable", "sim/detect", "sim/solve", "render/picture", "demos/scenes",
+      "render", "demos", "analysis"}},
+};
+
+// The longest of the rooms' names that begins the path; empty if it is in none.
+std::string room_of(const std::string& path) {
+  std::string longest;
+  for (const auto& [room, known] : may_know) {
+    if (path.starts_with(room + "/") && room.size() > longest.size()) longest = room;
+  }
+  return longest;
+}
+
+// Source and header of one name are one unit.
+std::string unit_of(const fs::path& path) {
+  return (path.parent_path() / path.stem()).string();
+}
+
+// What each file of ours includes of ours: path to paths.
+Graph includes() {
+  const fs::path root = PINCHLAB_SOURCE_DIR;
+  const std::regex line(R"re(^#include "([^"]+)")re");
+  Graph graph;
+  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path& path = entry.path();
+      const bool is_source = path.extension() == ".cpp" || path.extension() == ".h";
+      if (!is_source || path.string().find("node_modules") != std::string::npos) continue;
+      std::set<std::string>& of_file = graph[fs::relative(path, root).string()];
+      std::istringstream text(read_whole(path));
+      std::smatch found;
+      for (std::string l; std::getline(text, l);) {
+        if (std::regex_search(l, found, line)) of_file.insert(found[1]);
+      }
+    }
+  }
+  return graph;
+}
+
+TEST(Rooms, KnowEachOtherOneWay) {
+  const Graph graph = includes();
+  ASSERT_GT(graph.size(), 100U);
+  for (const auto& [file, included] : graph) {
+    for (const std::string& other : included) {
+      const std::string from = room_of(file), to = room_of(other);
+      ASSERT_NE(from, "") << file;
+      EXPECT_NE(to, "") << file << " includes " << other << " by a path that is not the project's";
+      if (to.empty() || from == to) continue;
+      EXPECT_TRUE(may_know.at(from).contains(to)) << file << " includes " << other;
+    }
+  }
+}
+
+// The table above has no circle but the one between sim/ and its sub-rooms, whose step() calls them
+// and whose data they read.
+TEST(Rooms, TheTableHasNoCircles) {
+  Graph rooms = may_know;
+  for (const char* inside : {"sim/cable", "sim/detect", "sim/solve", "sim/thesis"}) {
+    rooms.at("sim").erase(inside);
+  }
+  while (std::erase_if(rooms, [&rooms](const auto& room) {
+    return std::ranges::none_of(room.second,
+                                [&](const std::string& other) { return rooms.contains(other); });
+  })) {
+  }
+  EXPECT_TRUE(rooms.empty()) << rooms.begin()->first;
+}
+
+// Takes away again and again what includes nothing that is left; what stays goes round in a circle,
+// or includes what does.
+TEST(Rooms, NoIncludesGoRoundInACircle) {
+  Graph units;
+  for (const auto& [file, included] : includes()) {
+    if (file.starts_with("sim/")) continue;  // whose data and stages still need each other
+    std::set<std::string>& of_unit = units[unit_of(file)];
+    for (const std::string& other : included) {
+      if (unit_of(other) != unit_of(file)) of_unit.insert(unit_of(other));
+    }
+  }
+  ASSERT_GT(units.size(), 50U);
+  while (std::erase_if(units, [&units](const auto& unit) {
+    return std::ranges::none_of(unit.second,
+                                [&](const std::string& other) { return units.contains(other); });
+  })) {
+  }
+  std::string circles;
+  for (const auto& [unit, others] : units) {
+    for (const std::string& other : others) {
+      if (units.contains(other)) circles += "\n" + unit + " -> " + other;
+    }
+  }
+  EXPECT_EQ(circles, "");
+}
+
+}  // namespace
+}  // namespace pinchlab
