@@ -26,7 +26,9 @@
 #include "demos/help_pages.h"
 #include "demos/scenes/find_scenes.h"
 #include "demos/scenes/trajectory.h"
+#include "demos/series_sheet.h"
 #include "demos/still.h"
+#include "demos/sweep_command.h"
 #include "demos/version.h"
 #include "study/commands.h"
 
@@ -161,6 +163,7 @@ void add_render(CLI::App& app) {
 void add_still(CLI::App& app) {
   struct Options : StillOptions {
     std::string scene, method = "pinch";
+    std::vector<std::string> table;
     bool both = false;
     Size size;
   };
@@ -183,9 +186,18 @@ void add_still(CLI::App& app) {
       ->required();
   add_method(*command, options->method,
              "pinch, pinch_no_contact, cable, baseline (the scene's own) or thesis [pinch]");
-  command->add_flag("--both", options->both, "A row of pinch over a row of the baseline")
-      ->excludes("--method");
-  command->add_flag("--neutral", options->neutral, "Label the rows A and B, not by method");
+  CLI::Option* both =
+      command->add_flag("--both", options->both, "A row of pinch over a row of the baseline");
+  both->excludes("--method");
+  CLI::Option* neutral =
+      command->add_flag("--neutral", options->neutral, "Label the rows A and B, not by method");
+  command
+      ->add_option("--table", options->table,
+                   "SCENE has placeholders: a column of pictures for each row of this table, as "
+                   "`sweep` takes it")
+      ->type_name("TABLE")
+      ->excludes(both)
+      ->excludes(neutral);
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
   add_time_limit(*command, options->time_limit, "Give up");
@@ -195,16 +207,24 @@ void add_still(CLI::App& app) {
       "  pinchlab still demos/03-drop.json --time 0,1,2,3 --both --neutral --out drop-sheet.pdf\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --theme demos/themes/print.json --out "
       "drop.svg\n"
-      "  pinchlab still demos/03-drop.json --time 0.4:0.8 --out frames/#.png");
+      "  pinchlab still demos/03-drop.json --time 0.4:0.8 --out frames/#.png\n"
+      "  pinchlab still demos/sweep/drop.json --table squeeze=0:1:5 mass=1 height=0.9 --time 1 "
+      "--out graded.svg");
   command->callback([options] {
+    const Size of_sheet = options->size.width > 0 ? options->size : Size{480, 480};
+    if (!options->table.empty()) {
+      options->width = of_sheet.width;
+      options->height = of_sheet.height;
+      return write_series(read_sweep(options->scene, options->table), options->method, *options);
+    }
     const SceneFile file = read_scene_file(options->scene);
     options->methods = {method_of(file.scene, options->method)};
     if (options->both) options->methods = {Method::pinch, file.scene.baseline};
     const bool sheet = frames_at(file.scene, options->times).size() * options->methods.size() > 1 &&
                        options->out.filename().string().find('#') == std::string::npos;
-    const Size usual = sheet ? Size{480, 480} : Size{960, 960};
-    options->width = options->size.width > 0 ? options->size.width : usual.width;
-    options->height = options->size.height > 0 ? options->size.height : usual.height;
+    const Size single = options->size.width > 0 ? options->size : Size{960, 960};
+    options->width = sheet ? of_sheet.width : single.width;
+    options->height = sheet ? of_sheet.height : single.height;
     write_still(file, *options);
   });
 }
@@ -520,6 +540,7 @@ int run(int argc, char** argv) {
   add_still(app);
   add_simulate(app);
   add_baseline(app);
+  add_sweep_commands(app);
   experiments::add_bench_commands(app);
   experiments::add_advise_command(app);
   add_analyse(app);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "analysis/csv_reader.h"
+#include "base/csv_reader.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"

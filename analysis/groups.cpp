@@ -8,7 +8,7 @@
 #include <optional>
 #include <set>
 
-#include "analysis/csv_reader.h"
+#include "base/csv_reader.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "analysis/csv_inputs.h"
-#include "analysis/csv_reader.h"
 #include "analysis/groups.h"
+#include "base/csv_reader.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"

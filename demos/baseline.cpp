@@ -13,8 +13,6 @@
 namespace pinchlab {
 namespace {
 
-constexpr double most_stretch = 1e-3;  // of a cable's length: rope from nothing
-
 /// A method's motion, frame by frame.
 struct Motion {
   std::vector<std::vector<Vec2>> position;
@@ -23,21 +21,14 @@ struct Motion {
 };
 
 Motion play(const SceneFile& file, MethodFigures& figures) {
-  Configuration configuration = figures.method;
-  configuration.diagnostics = true;
-  Player player(file, file.scene, configuration);
+  Player player(file, file.scene, figures.method);
   Motion motion;
-  double stretch = 0.0, stretched_at = 0.0;  // m, s
   try {
     for (int frame = 0; frame < file.scene.frame_count; ++frame) {
       player.advance_to(frame);
       const World& world = player.world();
       motion.position.push_back(world.position);
       motion.angle.push_back(world.angle);
-      if (frame > 0 && !(world.diagnostics.largest_stretch <= stretch)) {
-        stretch = world.diagnostics.largest_stretch;
-        stretched_at = player.time();
-      }
       motion.at_wall.emplace_back(world.position.size(), 0);
       for (const Contact& contact : world.contacts) {
         if (contact.wall < 0 || !contact.touching) continue;
@@ -47,11 +38,9 @@ Motion play(const SceneFile& file, MethodFigures& figures) {
   } catch (const std::runtime_error& error) {
     figures.problems.emplace_back(error.what());
   }
-  double shortest = infinity;  // m
-  for (const CableState& cable : player.world().cables) shortest = std::min(shortest, cable.length);
-  if (!(stretch <= most_stretch * shortest)) {
-    figures.problems.push_back(fmt::format(
-        "a span is {:.3g} m longer than its material at {:.2f} s", stretch, stretched_at));
+  const std::string prefix = fmt::format("method {}: ", to_string(figures.method));
+  for (const std::string& broken : player.broken_promises()) {
+    figures.problems.push_back(broken.starts_with(prefix) ? broken.substr(prefix.size()) : broken);
   }
   return motion;
 }

@@ -18,7 +18,7 @@ struct MethodFigures {
   double roughness = 0.0;
   double largest_distance = 0.0;      ///< m, of a body from where pinch joints have it
   double largest_turn = 0.0;          ///< rad, likewise
-  std::vector<std::string> problems;  ///< a cable that stretches, or why it ended early
+  std::vector<std::string> problems;  ///< promises broken (sim/promises.h), or why it ended early
 };
 
 struct BaselineAdvice {

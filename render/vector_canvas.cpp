@@ -236,6 +236,14 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
     cairo_svg_surface_set_document_unit(surface.get(), CAIRO_SVG_UNIT_PX);
   }
   Owned<cairo_t> cairo(cairo_create(surface.get()));
+  const auto paint = [&cairo](const Colour& paper) {
+    if (paper.alpha == 0) return;
+    cairo_set_source_rgba(cairo.get(), paper.red / 255.0, paper.green / 255.0, paper.blue / 255.0,
+                          paper.alpha / 255.0);
+    cairo_paint(cairo.get());
+  };
+  const Colour& behind = frames.front().picture.background;
+  if (count > 1 && behind.alpha == 255) paint(behind);  // under the labels
   for (int i = 0; i < count; ++i) {
     const VectorFrame& frame = frames[static_cast<std::size_t>(i)];
     const double left = page.gap + i % page.columns * (width + page.gap);
@@ -244,11 +252,7 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
     cairo_translate(cairo.get(), left, top);
     cairo_rectangle(cairo.get(), 0.0, 0.0, width, height);
     cairo_clip(cairo.get());
-    if (const Colour& paper = frame.picture.background; paper.alpha > 0) {
-      cairo_set_source_rgba(cairo.get(), paper.red / 255.0, paper.green / 255.0, paper.blue / 255.0,
-                            paper.alpha / 255.0);
-      cairo_paint(cairo.get());
-    }
+    paint(frame.picture.background);
     const Fit fit(frame.picture.view, 0, width, height);
     Pen(cairo.get(), fit).draw(frame.picture);
     cairo_restore(cairo.get());

@@ -324,7 +324,8 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   t.lag = world.lag;
   t.clamps = true;
   t.kick = world.lag + 0.5 * length;
-  apply_forces(scene, world, t.kick, work);
+  t.start = work.start.time;
+  apply_forces(scene, world, t, work);
   watch.lap(Stage::apply_forces);
   work.local_error = 0.0;
   work.settled = true;
@@ -447,8 +448,8 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
 }
 
 /// Brings the velocities to the positions' time.
-void catch_up(const Scene& scene, World& world, Workspace& work) {
-  find_present_velocities(scene, world, work);
+void catch_up(const Scene& scene, World& world, double time, Workspace& work) {
+  find_present_velocities(scene, world, time, work);
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
     const PartSystem& s = at(work.systems, part.system);
@@ -575,8 +576,11 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
 
 }  // namespace
 
-void find_present_velocities(const Scene& scene, const World& world, Workspace& work) {
-  apply_forces(scene, world, world.lag, work);
+void find_present_velocities(const Scene& scene, const World& world, double time, Workspace& work) {
+  Interval instant;
+  instant.start = time;
+  instant.kick = instant.lag = world.lag;
+  apply_forces(scene, world, instant, work);
   for (const Part& part : work.parts.list) {
     if (!part.asleep) solve_present(scene, world, work, part);
   }
@@ -589,6 +593,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   int events = 0;
   for (int interval = 0; left > 0.0; ++interval) {
     note_start(world, work.start);
+    work.start.time = world.time() + (world.step_length - left);
     work.first_link.clear();
     int links = 0;
     for (const CableState& cable : world.cables) {
@@ -624,6 +629,9 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     world.diagnostics.total_solves += world.diagnostics.active_set_solves;
     left = length < left ? left - length : 0.0;
     world.lag = 0.5 * length;
+    const double now = work.start.time + length;
+    Interval instant;
+    instant.start = now;
     const bool happened = !work.events.empty();
     if (getenv("PL_TRACE")) {
       if (happened || !met) {
@@ -650,11 +658,11 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (happened) {
       ++world.diagnostics.events;
       ++events;
-      catch_up(scene, world, work);
+      catch_up(scene, world, now, work);
       change_courses(world, work);
     }
     for (const Part& part : work.parts.list) {
-      if (left == 0.0 && !part.asleep) note_rest(work.parts, part, world);
+      if (left == 0.0 && !part.asleep) note_rest(scene, work.parts, part, world);
     }
     detect_after_moving(scene, world, work, times);
     if (happened) empty_pinches(world);
@@ -664,19 +672,19 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
         [&world](const Contact& c) { return c.gap < c.target - 10.0 * reach_at(world, c.a); });
     bool repaired = false;
     const bool changed = changes_of_cables(world) != changes;
-    if (!met || happened || changed || squeezed) apply_forces(scene, world, 0.0, work);
+    if (!met || happened || changed || squeezed) apply_forces(scene, world, instant, work);
     for (Part& part : work.parts.list) {
       if (part.asleep || (met && !happened && !changed && !squeezed)) continue;
       repaired = repair(scene, world, work, part) || repaired;
     }
-    if (repaired && world.lag > 0.0) catch_up(scene, world, work);
+    if (repaired && world.lag > 0.0) catch_up(scene, world, now, work);
     if (getenv("PL_TRACE") && happened)
       for (size_t b = 0; b < world.bodies.size(); ++b)
         if (can_move(world.bodies[b]))
           fprintf(stderr, "    before v%zu %.6f %.6f %.6f\n", b, world.velocity[b].x(),
                   world.velocity[b].y(), world.angular_velocity[b]);
     if (happened || repaired) {
-      apply_forces(scene, world, 0.0, work);
+      apply_forces(scene, world, instant, work);
       for (const Part& part : work.parts.list) {
         if (!part.asleep) strike(scene, world, work, part);
       }

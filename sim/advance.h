@@ -32,8 +32,8 @@ struct Workspace;
 /// StepStatus::not_finite: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
-/// Velocities of all bodies that are awake at the time of their positions, `world.lag` after those
+/// Velocities of all bodies that are awake at the time of their positions (`time`), `world.lag` after those
 /// that the world has, in their parts' systems.
-void find_present_velocities(const Scene& scene, const World& world, Workspace& work);
+void find_present_velocities(const Scene& scene, const World& world, double time, Workspace& work);
 
 }  // namespace pinchlab

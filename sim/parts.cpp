@@ -246,12 +246,14 @@ void find_parts(const World& world, Workspace& work) {
   }
 }
 
-void note_rest(const Parts& parts, const Part& part, World& world) {
+void note_rest(const Scene& scene, const Parts& parts, const Part& part, World& world) {
   if (!world.configuration.sleep) return;
   const bool still = rests(parts, part, world);
   for (const int b : bodies_of(parts, part)) {
+    const std::vector<MotorPoint>& motor = at(scene.bodies, b).motor;
+    const bool driven_on = !motor.empty() && world.time() <= motor.back().time;
     int& steps = at(world.still_steps, b);
-    steps = still ? steps + 1 : 0;
+    steps = still && !driven_on ? steps + 1 : 0;
   }
 }
 

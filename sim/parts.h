@@ -76,6 +76,6 @@ inline bool sleeps(const Parts& parts, std::size_t cable) {
 
 /// Counts for how many steps the bodies of a part have been at rest, after the solve. A part with a
 /// body that is faster is wide awake.
-void note_rest(const Parts& parts, const Part& part, World& world);
+void note_rest(const Scene& scene, const Parts& parts, const Part& part, World& world);
 
 }  // namespace pinchlab

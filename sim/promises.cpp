@@ -19,7 +19,7 @@ std::size_t at(int index) {
 /// Nothing but gravity and elastic cables gives energy to the scene.
 bool is_undriven(const Scene& scene) {
   return std::none_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
-    return body.driven_angular_velocity.has_value() || body.torque != 0.0;
+    return body.driven_angular_velocity.has_value() || body.torque != 0.0 || !body.motor.empty();
   });
 }
 

@@ -45,6 +45,12 @@ struct BodyProperties {
   double restitution = 0.0;          ///< 0..1, of bodies that hit each other or a wall
 };
 
+/// A corner of a motor's time table.
+struct MotorPoint {
+  double time = 0.0;   ///< s, >= 0
+  double value = 0.0;  ///< rad/s of a driven body, N m of any other
+};
+
 /// A circular body and its state at time 0.
 struct Body : BodyProperties {
   std::string name;               ///< unique in the scene
@@ -52,6 +58,10 @@ struct Body : BodyProperties {
   double angle = 0.0;             ///< rad, counter-clockwise
   Vec2 velocity = Vec2::Zero();   ///< m/s
   double angular_velocity = 0.0;  ///< rad/s; a driven body has its driven one instead
+  /// What stands in place of `driven_angular_velocity`, where that is given, or of `torque`:
+  /// straight lines between these points, of ascending times, and constant before the first and
+  /// after the last.
+  std::vector<MotorPoint> motor;
 };
 
 /// Where an end of an open cable is held.
@@ -67,6 +77,12 @@ struct Wrap {
   int extra_turns = 0;  ///< whole turns beyond the one wrap in [0, 2 pi) that the tangents ask for
 };
 
+// squeeze and grip make a pinch weaker by degrees. A sheath that yields to any force surrounds a
+// core that yields to none: bodies that pinch the cable come as near to each other as (1 - squeeze)
+// times its width, and their force N acts there. At 1 it is Method::pinch_no_contact, exactly. The
+// friction of a pinch is at most grip * mu * N of either body. Arcs keep their capstan law, spans
+// their length, and a body without slip that lies on the pinched cable's way does not slip.
+
 /// A massless cable, from `start` over `wraps` to `end`; a closed one has wraps only (at least
 /// two).
 struct Cable {
@@ -78,6 +94,8 @@ struct Cable {
   double slack = 0.0;                 ///< m, total length beyond the taut path at time 0; >= 0,
                                       ///< negative (pre-stretched) only with finite stiffness
   double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
+  double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
+  double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
 };
 
 /// A static straight wall: bodies cannot pass it from either side. Cables ignore walls.
@@ -117,6 +135,13 @@ struct Scene {
 inline double step_length(const Scene& scene) {  // s
   return 1.0 / (static_cast<double>(scene.frames_per_second) * scene.steps_per_frame);
 }
+
+/// The mean of what the motor's table says from `begin` to `end` (s), exactly. The table has a
+/// point, and end > begin.
+double mean_drive(const std::vector<MotorPoint>& motor, double begin, double end);
+
+/// What drives the body when it is driven most, rad/s or N m; 0: it has no motor.
+double strongest_drive(const Body& body);
 
 /// Whether the body's centre can move.
 inline bool can_move(const BodyProperties& body) {

@@ -21,11 +21,15 @@ namespace pinchlab {
 
 namespace {
 
-/// Velocity kick of forces alone. Positions are at the step's start, velocities `lag` before: half a
-/// step, or none at time 0, so that the first kick is half as long. That makes semi-implicit Euler a
-/// leapfrog.
-double kick_length(const World& world) {
-  return world.lag + 0.5 * world.step_length;
+/// Positions are at the step's start, velocities `lag` before: half a step, or none at time 0, so
+/// that the first kick is half as long. That makes semi-implicit Euler a leapfrog.
+Interval whole_step(const World& world) {
+  Interval interval;
+  interval.start = world.time();
+  interval.length = interval.repair = world.step_length;
+  interval.lag = world.lag;
+  interval.kick = world.lag + 0.5 * world.step_length;
+  return interval;
 }
 
 /// Positions, and the material that slides over bodies, with the velocities just found.
@@ -55,14 +59,10 @@ bool all_asleep(const Parts& parts) {
 bool solve_part(const Scene& scene, const World& world, Workspace& work, const Part& part,
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
-  const double kick = kick_length(world);
-  Interval interval;
-  interval.length = interval.repair = world.step_length;
-  interval.kick = kick;
-  interval.lag = world.lag;
+  const Interval interval = whole_step(world);
   work.solve.step_length = world.step_length;
   work.solve.reach = infinity;
-  steady_light_bodies(world, work.parts, part, kick, s);
+  steady_light_bodies(world, work.parts, part, interval.kick, s);
   make_segment_rows(scene, world, work.parts, part, interval, s);
   watch.lap(Stage::init_segments);
   make_contact_rows(scene, world, work.parts, part, interval, s, work.solve);
@@ -82,13 +82,13 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
     if (!solve_part(scene, world, work, part, watch)) ++d.fallbacks;
     const PartSystem& s = at(work.systems, part.system);
     store_solution(work.parts, part, at(work.systems, part.system), work.solve.capstan,
-                   kick_length(world), world);
+                   whole_step(world).kick, world);
     if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
       store_middles(s, work.solve, work.sweeps, world);
     }
     part.slides = !work.solve.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
     d.active_set_solves = std::max(d.active_set_solves, work.solve.solves);
-    note_rest(work.parts, part, world);
+    note_rest(scene, work.parts, part, world);
     watch.lap(Stage::solve);
   }
   d.total_solves += d.active_set_solves;
@@ -135,13 +135,13 @@ namespace {
 /// A step in one: events take effect in the step in which they fall.
 StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
-  apply_forces(scene, world, kick_length(world), work);
+  apply_forces(scene, world, whole_step(world), work);
   watch.lap(Stage::apply_forces);
   solve_parts(scene, world, work, watch);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
   if (world.configuration.diagnostics) {
     work.lag_before = world.lag;
-    work.kick_before = kick_length(world);
+    work.kick_before = whole_step(world).kick;
     world.diagnostics.energy += kinetic_energy(world, work);
   }
   watch.lap(Stage::diagnose);
@@ -185,9 +185,9 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   const bool located = locates_events(world.configuration);
   Stopwatch untimed(nullptr);
   if (located) {
-    find_present_velocities(scene, world, work);
+    find_present_velocities(scene, world, world.time(), work);
   } else {
-    apply_forces(scene, world, kick_length(world), work);
+    apply_forces(scene, world, whole_step(world), work);
   }
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;

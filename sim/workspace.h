@@ -40,6 +40,7 @@ struct Event {
 
 /// Where things were when an interval began.
 struct Start {
+  double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
   std::vector<double> material, wrap;  // of the links, cable after cable
@@ -72,7 +73,7 @@ struct Workspace {
 
   Start start;                  // of the last interval
   std::vector<int> first_link;  // of each cable, in `start`
-  bool settled = true;         // every solve of the last trial; by move_part
+  bool settled = true;          // every solve of the last trial; by move_part
   double local_error = 0.0;     // m, of the last trial; by move_part
   std::vector<Event> events;    // of the interval being tried
 

@@ -86,7 +86,8 @@ void lay_tangents(const Scene& scene, const World& world, std::size_t c, CableSt
     const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(i)));
     const Link &from = cable.links[tail], &to = cable.links[i];
     const double distance = (link_centre(world, to) - link_centre(world, from)).norm();
-    const double needed = std::abs(to.signed_radius() - from.signed_radius());
+    const double pressed = opposite(from, to) ? 2.0 * cable.half_width - cable.least_gap : 0.0;
+    const double needed = std::abs(to.signed_radius() - from.signed_radius()) - pressed;
     if (wound_end(from, to) && std::abs(distance - needed) > allowed) {
       throw SceneError(
           place_of(cable, c, from.orientation == 0 ? 0 : i),
@@ -175,6 +176,10 @@ CableState make_cable(const Scene& scene, const World& world, std::size_t c) {
   const Cable& given = scene.cables[c];
   CableState cable;
   cable.half_width = given.half_width;
+  if (world.configuration.method == Method::pinch) {
+    cable.least_gap = 2.0 * given.half_width * (1.0 - given.squeeze);
+  }
+  cable.grip = given.grip;
   cable.closed = given.closed;
   if (!given.closed) cable.links.push_back(attached_link(given.start));
   for (const Wrap& wrap : given.wraps) cable.links.push_back(rolling_link(scene, given, wrap));
@@ -275,6 +280,13 @@ void refuse_impossible_figures(const Scene& scene) {
     refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
     refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
            "position and velocity must be finite");
+    for (std::size_t i = 0; i < body.motor.size(); ++i) {
+      const MotorPoint& point = body.motor[i];
+      const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
+      refuse(!std::isfinite(point.value) || !(point.time < infinity) ||
+                 !(i == 0 ? point.time >= 0.0 : point.time > before),
+             place, "a motor's table must have finite values at ascending times from 0 on");
+    }
     refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
            "the rail's axis must have a direction");
   }
@@ -283,6 +295,8 @@ void refuse_impossible_figures(const Scene& scene) {
     const std::string place = pointer("cables", c);
     refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
     refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+    refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
+    refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
     refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
     for (const Attachment* end : {&cable.start, &cable.end}) {
       const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
@@ -301,6 +315,16 @@ void refuse_impossible_figures(const Scene& scene) {
   }
 }
 
+/// What a motor's table says at time t.
+double drive_at(const std::vector<MotorPoint>& motor, double t) {
+  if (t <= motor.front().time) return motor.front().value;
+  for (std::size_t i = 1; i < motor.size(); ++i) {
+    const MotorPoint &a = motor[i - 1], &b = motor[i];
+    if (t < b.time) return a.value + (b.value - a.value) * (t - a.time) / (b.time - a.time);
+  }
+  return motor.back().value;
+}
+
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
@@ -313,7 +337,10 @@ World bodies_of_scene(const Scene& scene) {
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
     world.velocity.push_back(v);
     const double turning = body.kind == BodyKind::fixed ? 0.0 : body.angular_velocity;
-    world.angular_velocity.push_back(body.driven_angular_velocity.value_or(turning));
+    const bool is_driven = body.driven_angular_velocity.has_value();
+    world.angular_velocity.push_back(!is_driven           ? turning
+                                     : body.motor.empty() ? *body.driven_angular_velocity
+                                                          : drive_at(body.motor, 0.0));
   }
   return world;
 }
@@ -342,6 +369,28 @@ void find_first_tensions(const Scene& scene, World& world) {
 }
 
 }  // namespace
+
+// A line's mean is its value at the middle; the table's corners divide the time into lines.
+double mean_drive(const std::vector<MotorPoint>& motor, double begin, double end) {
+  double sum = 0.0, from = begin;
+  const auto add_until = [&](double to) {
+    sum += (to - from) * drive_at(motor, 0.5 * (from + to));
+    from = to;
+  };
+  for (const MotorPoint& corner : motor) {
+    if (corner.time > from && corner.time < end) add_until(corner.time);
+  }
+  add_until(end);
+  return sum / (end - begin);
+}
+
+double strongest_drive(const Body& body) {
+  double most = body.motor.empty() ? body.driven_angular_velocity.value_or(body.torque) : 0.0;
+  for (const MotorPoint& point : body.motor) {
+    if (std::abs(point.value) > std::abs(most)) most = point.value;
+  }
+  return most;
+}
 
 const char* to_string(Method method) {
   switch (method) {

@@ -59,6 +59,9 @@ struct Segment {
 
 struct CableState {
   double half_width = 0.0;  // m
+  double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
+                            // Method::pinch_no_contact
+  double grip = 1.0;        // factor on the friction of its pinches
   double length = 0.0;      // m of material, constant
   bool closed = false;
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi

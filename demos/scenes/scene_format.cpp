@@ -18,6 +18,11 @@ const ObjectFormat body_look_format = {
 const ObjectFormat cable_look_format = {
     "cable_look", {{"colour", colour, optional}, {"marks", boolean, optional}}};
 
+const ObjectFormat motor_point_format = {"motor_point",
+                                         {{"time_s", number, required, 0, 3600},
+                                          {"angular_velocity_rad_s", number, optional, -1e5, 1e5},
+                                          {"torque_n_m", number, optional, -1e12, 1e12}}};
+
 const ObjectFormat body_format = {
     "body",
     {{"name", name, required, 1, 64},
@@ -32,6 +37,7 @@ const ObjectFormat body_format = {
      {"rail_axis", vector, optional, -1e6, 1e6},
      {"driven_angular_velocity_rad_s", number, optional, -1e5, 1e5},
      {"torque_n_m", number, optional, -1e12, 1e12},
+     {"motor", list, optional, 1, 1'000, {}, &motor_point_format},
      {"linear_drag_per_s", number, optional, 0, 1e4},
      {"angular_drag_per_s", number, optional, 0, 1e4},
      {"cable_friction", friction, optional, 0, 100},
@@ -60,6 +66,8 @@ const ObjectFormat cable_format = {"cable",
                                     {"wraps", list, optional, 0, 10'000, {}, &wrap_format},
                                     {"slack_m", number, optional, -1e6, 1e6},
                                     {"axial_stiffness_n", number, optional, 1e-3, 1e15},
+                                    {"squeeze", number, optional, 0, 1},
+                                    {"grip", number, optional, 0, 1},
                                     {"look", object, optional, 0, 0, {}, &cable_look_format}}};
 
 const ObjectFormat wall_format = {"wall",

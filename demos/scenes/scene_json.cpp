@@ -81,6 +81,8 @@ class Reader {
   Body read_body(const json& from, const std::string& place);
   void check_kind(const json& from, const std::string& place);
   void read_rail(const json& from, Body& body, const std::string& place);
+  void read_motor(const json& from, Body& body, const std::string& place);
+  void check_grip(const json& cables, const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
                              double half_width);
   std::vector<Wrap> read_wraps(const json& from, const std::string& place, bool closed);
@@ -130,11 +132,11 @@ int Reader::body_index(const json& name, const std::string& place) {
 void Reader::check_kind(const json& from, const std::string& place) {
   const std::string& kind = from["kind"].get_ref<const std::string&>();
   if (kind == "fixed") {
-    refuse_keys(
-        from, place,
-        {"mass_kg", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s",
-         "driven_angular_velocity_rad_s", "torque_n_m", "linear_drag_per_s", "angular_drag_per_s"},
-        "a fixed body");
+    refuse_keys(from, place,
+                {"mass_kg", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s",
+                 "driven_angular_velocity_rad_s", "torque_n_m", "motor", "linear_drag_per_s",
+                 "angular_drag_per_s"},
+                "a fixed body");
   } else if (!from.contains("mass_kg")) {
     problem(place, fmt::format("mass_kg is missing (a {} body needs one)", kind));
   }
@@ -145,9 +147,10 @@ void Reader::check_kind(const json& from, const std::string& place) {
     refuse_keys(from, place, {"rail_axis"}, "a body that is not on a rail");
   }
   if (kind != "fixed" && from.contains("driven_angular_velocity_rad_s")) {
-    refuse_keys(from, place,
-                {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"},
-                "a body whose angular velocity is driven");
+    refuse_keys(
+        from, place,
+        {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "motor", "angular_drag_per_s"},
+        "a body whose angular velocity is driven");
   }
 }
 
@@ -166,6 +169,37 @@ void Reader::read_rail(const json& from, Body& body, const std::string& place) {
       body.rail_axis.x() * body.velocity.y() - body.rail_axis.y() * body.velocity.x();
   if (std::abs(across) > 1e-9 * body.velocity.norm()) {
     problem(place + "/velocity_m_s", "must point along rail_axis");
+  }
+}
+
+// A table of angular velocities makes the body a driven one, a table of torques does not.
+void Reader::read_motor(const json& from, Body& body, const std::string& place) {
+  const json& points = from["motor"];
+  const bool is_speed = points[0].contains("angular_velocity_rad_s");
+  const char* wanted = is_speed ? "angular_velocity_rad_s" : "torque_n_m";
+  const char* other = is_speed ? "torque_n_m" : "angular_velocity_rad_s";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const json& point = points[i];
+    const std::string at = fmt::format("{}/motor/{}", place, i);
+    if (point.contains(other) || !point.contains(wanted)) {
+      problem(at, "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all");
+      return;
+    }
+    body.motor.push_back({point["time_s"].get<double>(), point[wanted].get<double>()});
+    if (i > 0 && body.motor[i].time <= body.motor[i - 1].time) {
+      problem(at + "/time_s", fmt::format("must be after the one before, {}; a jump takes two "
+                                          "points a little apart",
+                                          body.motor[i - 1].time));
+      return;
+    }
+  }
+  if (is_speed) {
+    refuse_keys(from, place,
+                {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"},
+                "a body whose angular velocity is driven");
+    body.driven_angular_velocity = body.motor.front().value;
+  } else {
+    refuse_keys(from, place, {"torque_n_m"}, "a body whose motor has a table of torques");
   }
 }
 
@@ -200,6 +234,9 @@ Body Reader::read_body(const json& from, const std::string& place) {
   check_kind(from, place);
   if (body.kind == BodyKind::rail) {
     read_rail(from, body, place);
+  }
+  if (from.contains("motor") && body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    read_motor(from, body, place);
   }
   return body;
 }
@@ -273,6 +310,8 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "half_width_m", cable.half_width);
   take(from, "slack_m", cable.slack);
   take(from, "axial_stiffness_n", cable.axial_stiffness);
+  take(from, "squeeze", cable.squeeze);
+  take(from, "grip", cable.grip);
   cable.closed = from.value("closed", false);
   for (const char* end : {"start", "end"}) {
     if (cable.closed && from.contains(end)) {
@@ -300,6 +339,20 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
         "a cable that cannot stretch cannot be shorter than its path; give axial_stiffness_n too");
   }
   return cable;
+}
+
+// Without slip, all of a pinch's friction and half of it are the same.
+void Reader::check_grip(const json& cables, const Scene& scene) {
+  const bool slips = std::ranges::any_of(scene.bodies, [](const Body& body) {
+    return body.cable_friction > 0.0 && std::isfinite(body.cable_friction);
+  });
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const double grip = scene.cables[i].grip;
+    if (!cables[i].contains("grip") || slips || grip == 0.0 || grip == 1.0) continue;
+    problem(fmt::format("/cables/{}/grip", i),
+            "has no effect but as 0 or 1 where no body has a cable_friction above 0 other than "
+            "\"no_slip\"; give one to the body that is to slip");
+  }
 }
 
 Wall Reader::read_wall(const json& from, const std::string& place) {
@@ -394,6 +447,7 @@ void Reader::read(const json& file, SceneFile& to) {
     scene.cables.push_back(read_cable(cables[i], fmt::format("/cables/{}", i), scene));
     claim_name(cable_names_, scene.cables[i].name, static_cast<int>(i), "cables");
   }
+  check_grip(cables, scene);
   const json walls = file.value("walls", json::array());
   for (std::size_t i = 0; i < walls.size(); ++i) {
     scene.walls.push_back(read_wall(walls[i], fmt::format("/walls/{}", i)));

@@ -83,7 +83,7 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
   }
   Progress progress("simulating " + scene.name, "steps",
                     std::int64_t{last} * scene.steps_per_frame);
-  player.on_step([&progress] { progress.add(1); });
+  if (!options.quiet) player.on_step([&progress] { progress.add(1); });
   player.give_up_after(options.time_limit);
   std::string rows;
   for (int frame = 0; frame <= last; ++frame) {
@@ -102,7 +102,7 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
     segments->finish();
   }
   progress.clear();
-  tell_broken_promises(file.path.string(), player.broken_promises());
+  if (!options.quiet) tell_broken_promises(file.path.string(), player.broken_promises());
 }
 
 }  // namespace pinchlab

@@ -16,6 +16,7 @@ struct TrajectoryOptions {
   std::optional<double> time_limit;  ///< s of work, after which it is given up
   std::filesystem::path out;         ///< one row a body and frame; "-": standard output
   std::optional<std::filesystem::path> segments;  ///< one row a cable's segment and frame
+  bool quiet = false;                             ///< tells nothing on standard error
 };
 
 /// Simulates a scene and writes what it did, numbers in the shortest form that reads back exactly:

@@ -32,7 +32,7 @@ Stroke line(const Vec2& a, const Vec2& b, double half_width, Colour colour) {
 }
 
 bool is_driven(const Body& body) {
-  return body.driven_angular_velocity.value_or(body.torque) != 0.0;
+  return strongest_drive(body) != 0.0;
 }
 
 /// The edge that goes with a fill of the scene's choice.
@@ -208,7 +208,7 @@ class Composer {
   Arrow arrow(std::size_t i) const {
     const Body& body = scene_.bodies[i];
     if (!is_driven(body)) return {};
-    const double sense = body.driven_angular_velocity.value_or(body.torque) > 0.0 ? 1.0 : -1.0;
+    const double sense = strongest_drive(body) > 0.0 ? 1.0 : -1.0;
     const double r = arrow_radius(scene_, scenery_, i);
     const double reach = sense * std::clamp(5.0 * scenery_.unit() / r, 0.35, 0.8);  // rad
     return {sense, r, 3.0 * scenery_.line(), scenery_.arrow_middle[i] - reach,

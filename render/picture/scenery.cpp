@@ -20,7 +20,7 @@ constexpr int most_snapshots = 40;       // a configuration
 constexpr std::size_t most_labels = 40;  // that are kept out of the way; more stand below
 
 bool is_driven(const Body& body) {
-  return body.driven_angular_velocity.value_or(body.torque) != 0.0;
+  return strongest_drive(body) != 0.0;
 }
 
 /// A moment of the rehearsal.

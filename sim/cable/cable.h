@@ -52,6 +52,11 @@ inline int next_link(const CableState& cable, int link) {
   return cable.closed ? 0 : -1;
 }
 
+/// Whether bodies that pinch the cable sink into it.
+inline bool yields(const CableState& cable) {
+  return cable.least_gap < 2.0 * cable.half_width;
+}
+
 /// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
 inline bool opposite(const Link& a, const Link& b) {
   return a.orientation * b.orientation < 0;

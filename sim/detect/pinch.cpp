@@ -36,8 +36,10 @@ double normal_speed(const World& world, const Contact& contact) {
 }
 
 /// Whether the bodies press what lies between them: they did in the last step, or will in the next.
-bool presses(const World& world, const Contact& contact, double gap) {
-  if (world.configuration.method == Method::pinch_no_contact) return contact.gap <= gap;
+/// A cable that yields is pressed where it is narrower than its width.
+bool presses(const World& world, const CableState& cable, const Contact& contact) {
+  const double gap = 2.0 * cable.half_width;
+  if (yields(cable)) return contact.gap <= gap;
   return contact.touching || contact.gap <= gap * (1.0 + 1e-12) ||
          contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
 }
@@ -103,9 +105,8 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
               (before_other && cable.segments[static_cast<std::size_t>(after)].pinched))) {
     return;  // the pinch is there
   }
-  const double width = 2.0 * cable.half_width;
-  if (world.configuration.method == Method::pinch && over_adjacent_span(world, cable, i, other)) {
-    contact.target = std::max(contact.target, width);
+  if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, i, other)) {
+    contact.target = std::max(contact.target, cable.least_gap);
     contact.pinch_linked = true;
   }
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
@@ -118,10 +119,9 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
     if (arc > link.wrap && arc < link.wrap + end) arc = link.wrap;
     if (after_other && arc < near_end) continue;
     if (before_other && link.wrap - arc < near_end) continue;
-    if (world.configuration.method == Method::pinch)
-      contact.target = std::max(contact.target, width);
+    contact.target = std::max(contact.target, cable.least_gap);
     contact.pinch_linked = true;
-    if (arc >= 0.0 && arc <= link.wrap && presses(world, contact, width)) {
+    if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }
   }
@@ -140,7 +140,7 @@ void remove_open_pinches(World& world, const Parts& parts) {
       const Contact* contact = find_contact(world, link.body, pressed, link.contact);
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
-          (!presses(world, *contact, width) && contact->gap > width * (1.0 + 5e-4))) {
+          (!presses(world, cable, *contact) && contact->gap > width * (1.0 + 5e-4))) {
         remove_link(world, cable, i);
       }
     }
@@ -310,7 +310,6 @@ void assign_contacts(World& world, const Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (parts.list[static_cast<std::size_t>(parts.of_cable[c])].kept) continue;
     CableState& cable = world.cables[c];
-    const double width = 2.0 * cable.half_width;
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       Link& to = cable.links[s];
       const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
@@ -321,8 +320,7 @@ void assign_contacts(World& world, const Workspace& work) {
       if (!opposite(from, to) || from.pinch_middle) continue;
       Contact* contact = find_contact(world, from.body, to.body, hint);
       if (contact == nullptr) continue;
-      if (world.configuration.method == Method::pinch)
-        contact->target = std::max(contact->target, width);
+      contact->target = std::max(contact->target, cable.least_gap);
       contact->pinch_linked = true;
       const int index = static_cast<int>(contact - world.contacts.data());
       ++contact->pinch_points;

@@ -48,9 +48,23 @@ Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, co
   return {free.x(), free.y(), omega};
 }
 
+/// The body with what its motor's table says for the interval: the angular velocity of the motion
+/// that follows, or the torque of the kick, each the mean over its time. Both are exact integrals.
+BodyProperties driven_now(const Body& body, const Interval& t, BodyProperties now) {
+  constexpr double instant = 1e-9;  // s
+  if (now.driven_angular_velocity) {
+    const double length = t.length > 0.0 ? t.length : instant;
+    now.driven_angular_velocity = mean_drive(body.motor, t.start, t.start + length);
+  } else if (t.kick > 0.0) {
+    now.torque = mean_drive(body.motor, t.start - t.lag, t.start - t.lag + t.kick);
+  }
+  return now;
+}
+
 }  // namespace
 
-void apply_forces(const Scene& scene, const World& world, double k, Workspace& work) {
+void apply_forces(const Scene& scene, const World& world, const Interval& t, Workspace& work) {
+  const double k = t.kick;
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
@@ -60,8 +74,13 @@ void apply_forces(const Scene& scene, const World& world, double k, Workspace& w
     s.extent = 0.0;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto b = index(bodies[i]);
+      const Body& given = scene.bodies[b];
+      const Vec2& v = world.velocity[b];
+      const double omega = world.angular_velocity[b];
       s.free_velocity[i] =
-          free_velocity(scene, world.bodies[b], world.velocity[b], world.angular_velocity[b], k);
+          given.motor.empty()
+              ? free_velocity(scene, world.bodies[b], v, omega, k)
+              : free_velocity(scene, driven_now(given, t, world.bodies[b]), v, omega, k);
       s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
     }
     for (const int c : cables_of(work.parts, part)) {

@@ -3,12 +3,14 @@
 
 namespace pinchlab {
 
+struct Interval;
 struct Scene;
 struct Workspace;
 struct World;
 
-/// Velocities of all bodies that are awake after forces alone have acted for `kick` seconds, and
+/// Velocities of all bodies that are awake after forces alone have acted for the interval's kick, and
 /// what moves the bodies, into their parts' systems.
-void apply_forces(const Scene& scene, const World& world, double kick, Workspace& work);
+void apply_forces(const Scene& scene, const World& world, const Interval& interval,
+                  Workspace& work);
 
 }  // namespace pinchlab

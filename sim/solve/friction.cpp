@@ -28,7 +28,13 @@ double share(double mu, const Contact& contact) {
   return mu / std::max(1, contact.pinch_points);
 }
 
-/// The transitional pinch of a segment, as seen by a body of friction mu at one of its ends.
+/// A body's coefficient mu at a pinch of the cable.
+double gripped(const CableState& cable, double mu) {
+  return cable.grip == 0.0 ? 0.0 : cable.grip * mu;  // of no slip too: 0 times infinity
+}
+
+/// The transitional pinch of a segment, as seen by a body whose friction there is mu at one of its
+/// ends.
 void append_pressed_end(const World& world, const SolveScratch& scratch, const Segment& segment,
                         double mu, std::vector<Passage>& passages) {
   if (segment.contact < 0 || mu == 0.0) return;
@@ -61,10 +67,10 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   const Contact* contact = middle.contact >= 0 ? &at(world.contacts, middle.contact) : nullptr;
   const int normal = contact ? at(scratch.normal_row_of_contact, middle.contact) : -1;
   const bool clamped = contact && (normal < 0 || at(system.rows, normal).diagonal == 0.0);
-  const double mu = at(world.bodies, middle.body).cable_friction;
+  const double mu = gripped(cable, at(world.bodies, middle.body).cable_friction);
   Friction friction;
   friction.row = number;
-  const bool held = clamped || world.configuration.method == Method::pinch_no_contact;
+  const bool held = clamped || yields(cable);  // however little a soft sheath presses
   if (mu == infinity && held) {
     friction.coefficient = infinity;
     return friction;
@@ -72,7 +78,7 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   if (clamped || normal < 0) return friction;
   friction.normal = normal;
   friction.coefficient = share(mu, *contact);
-  friction.wrapped = share(at(world.bodies, wrapped.body).cable_friction, *contact);
+  friction.wrapped = share(gripped(cable, at(world.bodies, wrapped.body).cable_friction), *contact);
   return friction;
 }
 
@@ -132,24 +138,25 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
                      std::vector<Passage>& passages) {
   const CableState& cable = at(world.cables, cable_number);
   const double mu = at(world.bodies, at(cable.links, first).body).cable_friction;
+  const double pinched_mu = gripped(cable, mu);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
-  if (!three) append_pressed_end(world, scratch, at(cable.segments, first), mu, passages);
+  if (!three) append_pressed_end(world, scratch, at(cable.segments, first), pinched_mu, passages);
   for (int i = first;; i = next_link(cable, i)) {
     const Link& part = at(cable.links, i);
     Passage passage;
     if (part.pinch_middle && first == last) {
-      passage.factor = capstan_factor(mu, middle_arc);
+      passage.factor = capstan_factor(pinched_mu, middle_arc);
     } else if (part.pinch_middle) {
       passage.middle = row_of_segment[i];
       if (three) {
         passage.middle_out = row_of_segment[next_link(cable, i)];
         passage.middle_factor =
-            capstan_factor(at(world.bodies, part.body).cable_friction, middle_arc);
+            capstan_factor(gripped(cable, at(world.bodies, part.body).cable_friction), middle_arc);
       } else {
         at(system.frictions, at(system.rows, passage.middle).friction).run = run;
         if (part.contact >= 0) {
           passage.normal = at(scratch.normal_row_of_contact, part.contact);
-          passage.friction = share(mu, at(world.contacts, part.contact));
+          passage.friction = share(pinched_mu, at(world.contacts, part.contact));
         }
       }
     } else {
@@ -160,7 +167,7 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
   }
   if (three) return;
   const int after = next_link(cable, last);
-  append_pressed_end(world, scratch, at(cable.segments, after), mu, passages);
+  append_pressed_end(world, scratch, at(cable.segments, after), pinched_mu, passages);
 }
 
 }  // namespace pinchlab

@@ -25,6 +25,7 @@ struct Mobility {
 /// What a solve is for. Positions move on by `length` with the velocities that it finds, after
 /// forces have acted for `kick`.
 struct Interval {
+  double start = 0.0;         // s, the positions' time
   double length = 0.0;        // s; 0: the velocities of an instant
   double kick = 0.0;          // s, from the velocities' time on
   double lag = 0.0;           // s, the part of the kick before the positions' time

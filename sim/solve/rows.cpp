@@ -42,9 +42,19 @@ double lever(const World& world, const Link& link, const Vec2& e) {
 
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
 /// tension (p >= 0) shortens the segment.
+///
+/// Where the bodies have sunk into a pinched cable, their distance D is less than |Delta| = R_A +
+/// R_B. There L is 0 and e, across the centre line, turns at e.(v_B - v_A) / D: dC/dt has |Delta| /
+/// D times e.(v_B - v_A). So J says how rest lengths change, and its forces have no moment: neither
+/// energy nor angular momentum comes from a pinch.
 void set_segment_bodies(const World& world, const Link& from, const Link& to,
-                        const Segment& segment, RowBodies& row) {
-  const Vec2& e = segment.direction;
+                        const Segment& segment, bool sunk, RowBodies& row) {
+  Vec2 e = segment.direction;
+  if (sunk) {
+    const double distance = (segment.head_centre - segment.tail_centre).norm();
+    const double delta = std::abs(to.signed_radius() - from.signed_radius());
+    if (distance > 0.0) e *= delta / distance;
+  }
   row.ja = {e.x(), e.y(), lever(world, from, e)};
   row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
 }
@@ -287,7 +297,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       const bool stands = again && !segment.moved && has_fixed_lever(from) && has_fixed_lever(to);
       if (!stands || on_centre_line) {
         s.rows_stand = false;
-        set_segment_bodies(world, from, to, segment, bodies);
+        const bool sunk = segment.pinched && yields(cable);
+        set_segment_bodies(world, from, to, segment, sunk, bodies);
         if (on_centre_line) turn_to_centre_line(world, from, to, segment, interval, bodies, row);
       }
       const bool changed = !stands || on_centre_line || s.mobility_changed;

@@ -88,11 +88,11 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x1480f10c1cc50bd6, 0x1e7aa22b9b3c930e},
-    {"02-stack", 0xdc4dca8c384ccb15, 0x6108cc8c405ab6f2},
+    {"01-roll-over", 0x1480f10c1cc50bd6, 0xb9fa8f669d78b7e2},
+    {"02-stack", 0xdc4dca8c384ccb15, 0x43d7bdde6af84c5a},
     {"03-drop", 0x2f19eab5e670cea2, 0x506cc218cee0dcd8},
-    {"04-two-blocking", 0x07a155f3a79649e7, 0xf10cfa63aec2d77c},
-    {"05-notch", 0x44830abeb74b3fcd, 0x2911db5285586e85},
+    {"04-two-blocking", 0x07a155f3a79649e7, 0xdb8e3a7463a6e34f},
+    {"05-notch", 0x44830abeb74b3fcd, 0xb061c2294836e7d8},
     {"06-windlass", 0x75c990b37d4c0f3c, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
     {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},

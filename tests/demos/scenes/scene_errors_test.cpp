@@ -44,7 +44,7 @@ const BadScene bad_scenes[] = {
      "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, mass_kg, "
      "inertia_kg_m2, "
      "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, "
-     "driven_angular_velocity_rad_s, torque_n_m, linear_drag_per_s, angular_drag_per_s, "
+     "driven_angular_velocity_rad_s, torque_n_m, motor, linear_drag_per_s, angular_drag_per_s, "
      "cable_friction, "
      "contact_friction, restitution, look)"},
     {"/cables/0/wraps/0/orientation", "1",
@@ -319,6 +319,61 @@ TEST(SceneErrors, KeysWithoutEffectAreRefused) {
     EXPECT_EQ(refused("fixed_axle", key, "1", true),
               message(key, "a body whose angular velocity is driven"));
   }
+}
+
+TEST(SceneErrors, MotorsAreTablesOfOneThingInOrder) {
+  const auto error = [](const char* key, const char* value) {
+    json scene = small_scene();
+    scene["bodies"][0][key] = json::parse(value);
+    if (std::string(key) != "motor") {
+      scene["bodies"][0]["motor"] = {{{"time_s", 0}, {"angular_velocity_rad_s", 1}}};
+    }
+    return error_of(scene.dump());
+  };
+  const std::string one_thing =
+      "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all";
+  EXPECT_EQ(error("motor", "[]"), "s.json: /bodies/0/motor: must have 1 to 1000 entries, not 0");
+  EXPECT_EQ(error("motor", R"([{"time_s": 0}])"), "s.json: /bodies/0/motor/0: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1},
+                               {"time_s": 1, "angular_velocity_rad_s": 1}])"),
+            "s.json: /bodies/0/motor/1: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1, "angular_velocity_rad_s": 1}])"),
+            "s.json: /bodies/0/motor/0: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 1, "torque_n_m": 1}, {"time_s": 1, "torque_n_m": 2}])"),
+            "s.json: /bodies/0/motor/1/time_s: must be after the one before, 1; a jump takes two "
+            "points a little apart");
+  EXPECT_EQ(error("motor", R"([{"time_s": -1, "torque_n_m": 1}])"),
+            "s.json: /bodies/0/motor/0/time_s: must be 0 to 3600, not -1");
+  for (const char* key :
+       {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"}) {
+    EXPECT_EQ(error(key, "1"),
+              fmt::format("s.json: /bodies/0/{}: has no effect on a body whose angular velocity is "
+                          "driven; leave it out",
+                          key));
+  }
+  EXPECT_EQ(error("driven_angular_velocity_rad_s", "1"),
+            "s.json: /bodies/0/motor: has no effect on a body whose angular velocity is driven; "
+            "leave it out");
+}
+
+TEST(SceneErrors, GripNeedsABodyThatSlips) {
+  json scene = small_scene();
+  for (json& body : scene["bodies"]) body.erase("cable_friction");
+  for (const double grip : {0.0, 1.0}) {
+    scene["cables"][0]["grip"] = grip;
+    EXPECT_EQ(error_of(scene.dump()), "no error");
+  }
+  scene["cables"][0]["grip"] = 0.5;
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /cables/0/grip: has no effect but as 0 or 1 where no body has a "
+            "cable_friction above 0 other than \"no_slip\"; give one to the body that is to slip");
+  scene["bodies"][0]["cable_friction"] = 0.1;
+  EXPECT_EQ(error_of(scene.dump()), "no error");
+  scene["cables"][0]["grip"] = 1.5;
+  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/grip: must be 0 to 1, not 1.5");
+  scene["cables"][0]["squeeze"] = -0.5;
+  scene["cables"][0].erase("grip");
+  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/squeeze: must be 0 to 1, not -0.5");
 }
 
 TEST(SceneErrors, AllMistakesOfFormAreReportedAtOnce) {

@@ -72,12 +72,13 @@ TEST(SceneJson, EveryKeyReachesItsPlace) {
        "restitution": 0.16},
       {"name": "railed", "kind": "rail", "rail_axis": [3, 4], "radius_m": 0.2, "mass_kg": 1, "position_m": [0, 0],
        "velocity_m_s": [0.6, 0.8], "driven_angular_velocity_rad_s": -3.5, "cable_friction": "no_slip"},
-      {"name": "axle", "kind": "fixed_axle", "radius_m": 0.2, "mass_kg": 1, "position_m": [9, 9]},
+      {"name": "axle", "kind": "fixed_axle", "radius_m": 0.2, "mass_kg": 1, "position_m": [9, 9],
+       "motor": [{"time_s": 0.5, "angular_velocity_rad_s": 2}, {"time_s": 1, "angular_velocity_rad_s": -3}]},
       {"name": "post", "kind": "fixed", "radius_m": 0.2, "position_m": [-9, 9], "angle_rad": 1}],
     "cables": [
       {"name": "open", "half_width_m": 0.02, "start": {"world_m": [1, 1]}, "end": {"body": "post", "point_m": [0.1, 0.1]},
        "wraps": [{"body": "axle", "turn": "clockwise"}, {"body": "railed", "turn": "counter_clockwise", "extra_turns": 2}],
-       "slack_m": -0.5, "axial_stiffness_n": 1000},
+       "slack_m": -0.5, "axial_stiffness_n": 1000, "squeeze": 0.25, "grip": 0.75},
       {"name": "loop", "half_width_m": 0.03, "closed": true, "slack_m": 0.25,
        "wraps": [{"body": "axle", "turn": "clockwise"}, {"body": "post", "turn": "clockwise"}]}],
     "walls": [{"from_m": [1, 2], "to_m": [3, 4], "contact_friction": 0.6, "restitution": 0.7}],
@@ -115,7 +116,13 @@ TEST(SceneJson, EveryKeyReachesItsPlace) {
   EXPECT_TRUE(railed.rail_axis.isApprox(Vec2(0.6, 0.8), 1e-15));
   EXPECT_EQ(railed.driven_angular_velocity, -3.5);
   EXPECT_EQ(railed.cable_friction, infinity);
-  EXPECT_EQ(scene.bodies.at(2).kind, BodyKind::fixed_axle);
+  const Body& axle = scene.bodies.at(2);
+  EXPECT_EQ(axle.kind, BodyKind::fixed_axle);
+  EXPECT_EQ(axle.driven_angular_velocity, 2.0);
+  ASSERT_EQ(axle.motor.size(), 2U);
+  EXPECT_EQ(axle.motor[1].time, 1.0);
+  EXPECT_EQ(axle.motor[1].value, -3.0);
+  EXPECT_TRUE(railed.motor.empty());
   EXPECT_EQ(scene.bodies.at(3).kind, BodyKind::fixed);
 
   const Cable& open = scene.cables.at(0);
@@ -126,6 +133,8 @@ TEST(SceneJson, EveryKeyReachesItsPlace) {
   EXPECT_EQ(open.start.point, Vec2(1, 1));
   EXPECT_EQ(open.end.body, 3);
   EXPECT_EQ(open.end.point, Vec2(0.1, 0.1));
+  EXPECT_EQ(open.squeeze, 0.25);
+  EXPECT_EQ(open.grip, 0.75);
   ASSERT_EQ(open.wraps.size(), 2U);
   EXPECT_EQ(open.wraps[0].body, 2);
   EXPECT_EQ(open.wraps[0].orientation, -1);

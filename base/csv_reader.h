@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace pinchlab::analysis {
+namespace pinchlab {
 
 /// Reads a CSV file (RFC 4180) record by record through one fixed buffer, so that memory does not
 /// grow with the file. Quoted fields, CRLF, a UTF-8 byte-order mark and blank lines are understood;
@@ -50,4 +50,4 @@ class CsvReader {
   size_t record_line_ = 0;  // line number of the last record
 };
 
-}  // namespace pinchlab::analysis
+}  // namespace pinchlab

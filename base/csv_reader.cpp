@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "analysis/csv_reader.h"
+#include "base/csv_reader.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/input_error.h"
 
-namespace pinchlab::analysis {
+namespace pinchlab {
 
 namespace {
 constexpr size_t buffer_size = size_t{1} << 20;
@@ -127,4 +127,4 @@ bool CsvReader::next(std::vector<std::string_view>& fields) {
   }
 }
 
-}  // namespace pinchlab::analysis
+}  // namespace pinchlab
