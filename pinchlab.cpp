@@ -47,6 +47,12 @@ void add_fps(CLI::App& command, Timing& timing) {
                   "Frames a second [the scene's]; the steps get no longer than the scene's")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--error", timing.error,
+                  "About how far bodies may be from their exact places, m; steps are divided where "
+                  "that takes it, 0: nowhere [the scene's error_m, or 0]")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1.0));
 }
 
 void add_theme(CLI::App& command, ThemeFile& theme, bool& burn_time) {

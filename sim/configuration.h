@@ -52,9 +52,11 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// Whether events are located: the iterative solver has no use for it.
+/// Whether events are located. Sweeps have no exact lengths to locate them by, and neither has a plain
+/// cable joint whose bodies have crossed.
 inline bool locates_events(const Configuration& configuration) {
-  return configuration.events == Events::located && configuration.solver == Solver::direct;
+  return configuration.events == Events::located && configuration.solver == Solver::direct &&
+         configuration.method != Method::cable;
 }
 
 /// The whole of what the thesis describes: cables solved by projected Gauss-Seidel sweeps,

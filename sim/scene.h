@@ -127,6 +127,7 @@ struct Scene {
   int frame_count = 600;
   int frames_per_second = 60;
   int steps_per_frame = 4;
+  double error = 0.0;  ///< m, >= 0: Configuration::error, where that is 0
   View view;
   Method baseline = Method::pinch_no_contact;  ///< what the pinch method is paired with
   std::string baseline_reason;

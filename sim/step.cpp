@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "base/at.h"
-#include "sim/advance.h"
 #include "sim/cable/cable.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/advance.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
@@ -23,8 +23,8 @@ namespace {
 
 /// Positions are at the step's start, velocities `lag` before: half a step, or none at time 0, so
 /// that the first kick is half as long. That makes semi-implicit Euler a leapfrog.
-Interval whole_step(const World& world) {
-  Interval interval;
+TimeSpan whole_step(const World& world) {
+  TimeSpan interval;
   interval.start = world.time();
   interval.length = interval.repair = world.step_length;
   interval.lag = world.lag;
@@ -59,7 +59,7 @@ bool all_asleep(const Parts& parts) {
 bool solve_part(const Scene& scene, const World& world, Workspace& work, const Part& part,
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
-  const Interval interval = whole_step(world);
+  const TimeSpan interval = whole_step(world);
   work.solve.step_length = world.step_length;
   work.solve.reach = infinity;
   steady_light_bodies(world, work.parts, part, interval.kick, s);
@@ -100,35 +100,6 @@ void note_velocities(const World& world, Workspace& work) {
 }
 
 }  // namespace
-
-void find_pairs(const Scene& scene, const World& world, Workspace& work, Stopwatch& watch) {
-  const bool sweep = world.configuration.detection == Detection::sweep;
-  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world, work);
-  watch.lap(Stage::broad_phase);
-  (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
-}
-
-void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
-  Stopwatch watch(times);
-  update_segments(world, work);
-  watch.lap(Stage::update_segments);
-  detect_after_moving(scene, world, work, times);
-}
-
-void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
-  Stopwatch watch(times);
-  remove_links(world, work);
-  watch.lap(Stage::remove_links);
-  find_pairs(scene, world, work, watch);
-  add_hit_links(world, work);
-  watch.lap(Stage::intersect_segments);
-  find_contacts(scene, world, work);
-  watch.lap(Stage::find_contacts);
-  configure_pinches(world, work);
-  find_parts(world, work);
-  assign_contacts(world, work);
-  watch.lap(Stage::configure_pinches);
-}
 
 namespace {
 

@@ -2,6 +2,7 @@
 #pragma once
 // START HERE: one step of the simulation.
 
+#include "sim/detect/detect.h"
 #include "sim/stages.h"
 #include "sim/workspace.h"
 
@@ -24,14 +25,5 @@ struct Velocities {
   std::vector<double> angular;
 };
 Velocities velocities_now(const Scene& scene, const World& world, Workspace& work);
-
-/// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
-void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
-
-/// The same where the segments are up to date.
-void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times);
-
-/// The pairs that may touch or hit.
-void find_pairs(const Scene& scene, const World& world, Workspace& work, Stopwatch& watch);
 
 }  // namespace pinchlab

@@ -24,7 +24,7 @@ struct Release {
 /// What may happen within an interval, and then ends it: advance.h.
 enum class EventKind : std::int8_t { catches, link_gone, hit };
 
-struct Event {
+struct Happening {
   EventKind kind;
   int part = -1;        // catches: of its row
   int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight
@@ -71,11 +71,11 @@ struct Workspace {
   ContactScratch contacts;
   SweepScratch sweeps;  // of the iterative solver
 
-  Start start;                  // of the last interval
-  std::vector<int> first_link;  // of each cable, in `start`
-  bool settled = true;          // every solve of the last trial; by move_part
-  double local_error = 0.0;     // m, of the last trial; by move_part
-  std::vector<Event> events;    // of the interval being tried
+  Start start;                    // of the last interval
+  std::vector<int> first_link;    // of each cable, in `start`
+  bool settled = true;            // every solve of the last trial; by move_part
+  double local_error = 0.0;       // m, of the last trial; by move_part
+  std::vector<Happening> events;  // of the interval being tried
 
   std::vector<Vec2> velocity_before;  // m/s, at the start of the step; with diagnostics
   std::vector<double> angular_velocity_before;

@@ -271,6 +271,7 @@ void refuse_impossible_figures(const Scene& scene) {
   const int bodies = static_cast<int>(scene.bodies.size());
   refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
          "frames per second and steps per frame must be at least 1");
+  refuse(!(scene.error >= 0.0), "/error_m", "the error must be a number of at least 0");
   for (int b = 0; b < bodies; ++b) {
     const Body& body = at(scene.bodies, b);
     const std::string place = pointer("bodies", index(b));
@@ -409,6 +410,9 @@ World make_world(const Scene& scene, Configuration configuration) {
     throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
                                             configuration.iterations));
   }
+  if (!(configuration.error >= 0.0)) {
+    throw std::invalid_argument("configuration: error must be at least 0");
+  }
   refuse_impossible_figures(scene);
   World world = bodies_of_scene(scene);
   Workspace work;
@@ -428,6 +432,9 @@ World make_world(const Scene& scene, Configuration configuration) {
   assign_contacts(world, work);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
+  if (configuration.error == 0.0 && locates_events(configuration)) {
+    world.configuration.error = scene.error;
+  }
   if (configuration.method != Method::pinch) {
     world.cables.clear();
     for (std::size_t c = 0; c < scene.cables.size(); ++c) {

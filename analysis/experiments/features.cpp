@@ -113,8 +113,8 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
       difference(scene, ours, configured(Method::cable, false), effort));
   add("contacts", "`make_contact_rows`, `find_contacts`, `configure_pinches`", call([&] {
         for (const Part& part : work.parts.list) {
-          make_contact_rows(scene, world, work.parts, part, at(work.systems, part.system),
-                            work.solve);
+          make_contact_rows(scene, world, work.parts, part, TimeSpan{},
+                            at(work.systems, part.system), work.solve);
         }
         find_contacts(scene, world, work);
         configure_pinches(world, work);

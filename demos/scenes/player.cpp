@@ -45,6 +45,7 @@ Scene with_timing(const Scene& scene, const Timing& timing) {
     check_range("steps per frame", *timing.steps_per_frame, 1'000'000);
     changed.steps_per_frame = *timing.steps_per_frame;
   }
+  if (timing.error) changed.error = *timing.error;
   return changed;
 }
 

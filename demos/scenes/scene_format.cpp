@@ -95,6 +95,7 @@ const ObjectFormat file_format = {"scene",
                                    {"duration_s", number, required, 1e-3, 3600},
                                    {"frames_per_second", integer, optional, 1, 1000},
                                    {"steps_per_frame", integer, optional, 1, 1000},
+                                   {"error_m", number, optional, 0, 1},
                                    {"poster_time_s", number, optional, 0, 3600},
                                    {"view", object_or_word, required, 0, 0, {"fit"}, &view_format},
                                    {"baseline", object, required, 0, 0, {}, &baseline_format}}};

@@ -410,6 +410,7 @@ void Reader::read_timing(const json& from, SceneFile& to) {
   Scene& scene = to.scene;
   take(from, "frames_per_second", scene.frames_per_second);
   take(from, "steps_per_frame", scene.steps_per_frame);
+  take(from, "error_m", scene.error);
   const double duration = from["duration_s"].get<double>();  // s
   const double frames = duration * scene.frames_per_second;
   const double whole = std::round(frames);

@@ -113,7 +113,7 @@ double span_clearance(const World& world, const CableState& cable, std::size_t s
   return orientation * cross(segment.direction, x) - margin;
 }
 
-void find_hits(const World& world, Workspace& work, std::vector<Event>& events) {
+void find_hits(const World& world, Workspace& work, std::vector<Happening>& events) {
   for (const SpanPair& pair : work.broad_phase.span_pairs) {
     const CableState& cable = at(world.cables, pair.cable);
     const auto s = index(pair.segment);
@@ -121,7 +121,7 @@ void find_hits(const World& world, Workspace& work, std::vector<Event>& events) 
     if (!may_hit(world, cable, s, pair.body)) continue;
     const Hit hit = test_span(world, work, cable, s, pair.body);
     if (!hit.found) continue;
-    Event event{EventKind::hit};
+    Happening event{EventKind::hit};
     event.cable = pair.cable;
     event.item = pair.segment;
     event.body = pair.body;

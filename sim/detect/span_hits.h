@@ -8,7 +8,7 @@
 
 namespace pinchlab {
 
-struct Event;
+struct Happening;
 struct Workspace;
 
 /// Gives every body that has met a free span a link on it. A body meets a span when its margin
@@ -18,7 +18,7 @@ struct Workspace;
 void add_hit_links(World& world, const Workspace& work);
 
 /// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to `events`.
-void find_hits(const World& world, Workspace& work, std::vector<Event>& events);
+void find_hits(const World& world, Workspace& work, std::vector<Happening>& events);
 
 /// How far a body's margin is from a span's centre line, on the side on which a cable that ran round
 /// it would have that orientation (m); below 0 where it is deeper, whether beside the span or not.

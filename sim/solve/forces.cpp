@@ -50,7 +50,7 @@ Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, co
 
 /// The body with what its motor's table says for the interval: the angular velocity of the motion
 /// that follows, or the torque of the kick, each the mean over its time. Both are exact integrals.
-BodyProperties driven_now(const Body& body, const Interval& t, BodyProperties now) {
+BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties now) {
   constexpr double instant = 1e-9;  // s
   if (now.driven_angular_velocity) {
     const double length = t.length > 0.0 ? t.length : instant;
@@ -63,7 +63,7 @@ BodyProperties driven_now(const Body& body, const Interval& t, BodyProperties no
 
 }  // namespace
 
-void apply_forces(const Scene& scene, const World& world, const Interval& t, Workspace& work) {
+void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Workspace& work) {
   const double k = t.kick;
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;

@@ -3,14 +3,14 @@
 
 namespace pinchlab {
 
-struct Interval;
+struct TimeSpan;
 struct Scene;
 struct Workspace;
 struct World;
 
 /// Velocities of all bodies that are awake after forces alone have acted for the interval's kick, and
 /// what moves the bodies, into their parts' systems.
-void apply_forces(const Scene& scene, const World& world, const Interval& interval,
+void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   Workspace& work);
 
 }  // namespace pinchlab

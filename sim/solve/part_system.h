@@ -24,7 +24,7 @@ struct Mobility {
 
 /// What a solve is for. Positions move on by `length` with the velocities that it finds, after
 /// forces have acted for `kick`.
-struct Interval {
+struct TimeSpan {
   double start = 0.0;         // s, the positions' time
   double length = 0.0;        // s; 0: the velocities of an instant
   double kick = 0.0;          // s, from the velocities' time on
@@ -123,7 +123,7 @@ struct PartSystem {
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
   double extent = 0.0;                         // m, coordinates and cable lengths at most
-  double reach = 0.0;                          // m, Interval::reach where events are located
+  double reach = 0.0;                          // m, TimeSpan::reach where events are located
 
   // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
   std::vector<RowBodies> bodies;

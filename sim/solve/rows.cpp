@@ -60,7 +60,7 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
 }
 
 /// What the row has left before it bears force, and what its speed must therefore be.
-void set_clearance(double clearance, const Interval& interval, Row& row) {
+void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
   row.clearance = clearance;
   row.idle = clearance > interval.reach || (interval.held_only && !row.on);
   row.on = row.on && !row.idle;
@@ -71,7 +71,7 @@ void set_clearance(double clearance, const Interval& interval, Row& row) {
 }
 
 /// All of a segment's row but its bodies, as it is before a solve.
-void set_segment_values(const World& world, const Segment& segment, const Interval& interval,
+void set_segment_values(const World& world, const Segment& segment, const TimeSpan& interval,
                         Row& row) {
   row.kind = RowKind::segment;
   row.on = !segment.slack;
@@ -110,7 +110,7 @@ double speed_of(const World& world, const Link& link, const Eigen::Vector3d& j) 
 /// Makes the row of an inextensible segment that of an elastic one (`stiffness` is EA, N). At an
 /// instant its impulse up to then is known: it has acted on the free velocities, and the row idles.
 void make_elastic(const World& world, const Link& from, const Link& to, const Segment& segment,
-                  double stiffness, const Interval& t, PartSystem& s, int number) {
+                  double stiffness, const TimeSpan& t, PartSystem& s, int number) {
   Row& row = at(s.rows, number);
   const RowBodies& bodies = at(s.bodies, number);
   const double h = t.length > 0.0 ? t.length : world.step_length;
@@ -144,7 +144,7 @@ void make_elastic(const World& world, const Link& from, const Link& to, const Se
 /// attachment points along the centre line, backwards (thesis 4.2.1, Figure 4.3). It then pushes
 /// the bodies apart, but leaves their rolling alone: the origin of the method's jitter.
 void turn_to_centre_line(const World& world, const Link& from, const Link& to,
-                         const Segment& segment, const Interval& interval, RowBodies& bodies,
+                         const Segment& segment, const TimeSpan& interval, RowBodies& bodies,
                          Row& row) {
   const Vec2 d = link_centre(world, to) - link_centre(world, from);
   const double distance = d.norm();
@@ -157,7 +157,7 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
 }
 
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
-                    const Interval& interval, RowBodies& bodies, Row& row) {
+                    const TimeSpan& interval, RowBodies& bodies, Row& row) {
   const Vec2& n = contact.normal;
   row.kind = RowKind::normal;
   row.on = contact.touching;
@@ -250,7 +250,7 @@ Mobility mobility_of(const BodyProperties& body, double kick) {
 }
 
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       const Interval& interval, PartSystem& s) {
+                       const TimeSpan& interval, PartSystem& s) {
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   const bool plain = world.configuration.method == Method::cable;
   RowsMade made{0, interval.kick};
@@ -319,7 +319,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       const Interval& interval, PartSystem& s, SolveScratch& scratch) {
+                       const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   scratch.normal_row_of_contact.resize(world.contacts.size());
   for (const int number : contacts_of(parts, part)) {
     const Contact& contact = at(world.contacts, number);

@@ -22,11 +22,11 @@ Mobility mobility_of(const BodyProperties& body, double kick);
 /// Where the rows made last were for the same links and the same kick, only those of segments that
 /// have moved are made anew.
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       const Interval& interval, PartSystem& system);
+                       const TimeSpan& interval, PartSystem& system);
 
 /// Adds the rows of a part's contacts (thesis: ContactsInit), and bounds all friction. Bodies that
 /// cannot give way to one another get none.
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                       const Interval& interval, PartSystem& system, SolveScratch& scratch);
+                       const TimeSpan& interval, PartSystem& system, SolveScratch& scratch);
 
 }  // namespace pinchlab

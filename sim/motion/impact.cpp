@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/impact.h"
+#include "sim/motion/impact.h"
 
 #include "base/at.h"
 #include "sim/solve/active_set.h"
@@ -88,7 +88,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
-  Interval instant;
+  TimeSpan instant;
   instant.reach = s.reach;
   instant.clamps = true;
   set.step_length = world.step_length;

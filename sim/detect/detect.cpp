@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/detect/detect.h"
+
+#include "sim/cable/cable.h"
+#include "sim/detect/pinch.h"
+#include "sim/detect/span_hits.h"
+#include "sim/thesis/all_pairs.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+void find_pairs(const Scene& scene, const World& world, Workspace& work) {
+  const bool sweep = world.configuration.detection == Detection::sweep;
+  (sweep ? find_body_pairs : find_all_body_pairs)(scene, world, work);
+  (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
+}
+
+void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
+  update_segments(world, work);
+  watch.lap(Stage::update_segments);
+  detect_after_moving(scene, world, work, times);
+}
+
+void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
+  remove_links(world, work);
+  watch.lap(Stage::remove_links);
+  find_pairs(scene, world, work);
+  watch.lap(Stage::broad_phase);
+  add_hit_links(world, work);
+  watch.lap(Stage::intersect_segments);
+  find_contacts(scene, world, work);
+  watch.lap(Stage::find_contacts);
+  configure_pinches(world, work);
+  find_parts(world, work);
+  assign_contacts(world, work);
+  watch.lap(Stage::configure_pinches);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What touches what, and the course that the cables take.
+
+#include "sim/stages.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Workspace;
+
+/// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
+void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
+
+/// The same where the segments are up to date.
+void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times);
+
+/// The pairs that may touch or hit.
+void find_pairs(const Scene& scene, const World& world, Workspace& work);
+
+}  // namespace pinchlab

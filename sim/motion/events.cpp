@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/events.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/detect/detect.h"
+#include "sim/detect/span_hits.h"
+#include "sim/motion/clearance.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// The event of that key, or a new one.
+Happening& note(std::vector<Happening>& events, const Happening& key) {
+  for (Happening& e : events) {
+    if (e.kind == key.kind && e.part == key.part && e.row == key.row && e.cable == key.cable &&
+        e.item == key.item && e.body == key.body) {
+      return e;
+    }
+  }
+  events.push_back(key);
+  return events.back();
+}
+
+/// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0: or
+/// nearly there).
+void measure(std::vector<Happening>& events, const Happening& key, double clearance, double late) {
+  if (events.empty() && clearance >= -late) return;
+  bool known = false;
+  for (const Happening& e : events) {
+    known = known || (e.kind == key.kind && e.part == key.part && e.row == key.row &&
+                      e.cable == key.cable && e.item == key.item && e.body == key.body);
+  }
+  if (!known && clearance >= -late) return;
+  Happening& event = note(events, key);
+  event.clearance = clearance;
+  event.seen = true;
+}
+
+}  // namespace
+
+void find_catches(const Scene& scene, const World& world, Workspace& work, int number) {
+  const Part& part = at(work.parts.list, number);
+  const PartSystem& s = at(work.systems, part.system);
+  const CapstanScratch& capstan = work.solve.capstan;
+  const bool slides = !capstan.runs.empty();
+  const double late = 0.5 * s.reach;
+  Happening key{EventKind::catches};
+  key.part = number;
+  key.reach = s.reach;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    if (!row.idle || row.compliance > 0.0) continue;
+    if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
+    if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
+    key.row = static_cast<int>(r);
+    const double clearance = clearance_of(scene, world, row);
+    measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
+  }
+  if (!slides) return;
+  for (const Group& group : capstan.groups) {
+    if (group.slack < 0) continue;
+    double before = 0.0, now = 0.0;
+    for (int k = group.slack_begin; k < group.slack_end; ++k) {
+      const Term& term = at(capstan.slack_terms, k);
+      const Row& row = at(s.rows, term.index);
+      if (row.compliance > 0.0) continue;
+      before += term.coefficient * row.clearance;
+      now += term.coefficient * clearance_of(scene, world, row);
+    }
+    key.row = at(capstan.members, group.slack);
+    if (before > s.reach) measure(work.events, key, now, -late);
+  }
+}
+
+void find_gone_links(const World& world, Workspace& work, int number) {
+  const Part& part = at(work.parts.list, number);
+  const PartSystem& s = at(work.systems, part.system);
+  Happening key{EventKind::link_gone};
+  key.part = number;
+  key.reach = s.reach;
+  for (const int c : cables_of(work.parts, part)) {
+    const CableState& cable = at(world.cables, c);
+    key.cable = c;
+    for (int i = 0; index(i) < cable.links.size(); ++i) {
+      const Link& link = at(cable.links, i);
+      if (link.orientation == 0 || link.pinch_middle) continue;
+      if (needed(cable, index(i))) continue;
+      key.item = i;
+      measure(work.events, key, link.wrap * link.radius, 0.5 * s.reach);
+    }
+  }
+}
+
+void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
+  for (Happening& event : work.events) {
+    if (event.kind != EventKind::hit) continue;
+    event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
+                                     event.body, event.orientation);
+    event.seen = true;
+  }
+  find_pairs(scene, world, work);
+  const std::size_t known = work.events.size();
+  find_hits(world, work, work.events);
+  std::size_t kept = known;
+  for (std::size_t i = known; i < work.events.size(); ++i) {
+    Happening event = work.events[i];
+    event.reach =
+        std::max(reach_at(world, event.body), within_reach * at(world.cables, event.cable).length);
+    event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
+                                     event.body, event.orientation);
+    event.seen = true;
+    bool again = event.clearance >= -0.5 * event.reach;
+    for (std::size_t j = 0; j < known; ++j) {
+      const Happening& old = work.events[j];
+      again = again || (old.kind == EventKind::hit && old.cable == event.cable &&
+                        old.item == event.item && old.body == event.body);
+    }
+    if (!again) work.events[kept++] = event;
+  }
+  work.events.resize(kept);
+}
+
+double least_clearance(const std::vector<Happening>& events) {
+  double least = infinity;
+  for (const Happening& event : events) {
+    const double wanted = event.kind == EventKind::catches ? aim : -aim;
+    least = std::min(least, event.clearance / event.reach - wanted);
+  }
+  return least;
+}
+
+void change_courses(World& world, Workspace& work) {
+  // From the last link on, so that the indices of others stay.
+  std::sort(work.events.begin(), work.events.end(), [](const Happening& p, const Happening& q) {
+    return std::tie(p.cable, p.item) > std::tie(q.cable, q.item);
+  });
+  int cable_changed = -1, item_changed = -1;
+  for (const Happening& event : work.events) {
+    if (event.cable < 0 || event.clearance > event.reach) continue;
+    CableState& cable = at(world.cables, event.cable);
+    if (event.cable == cable_changed && item_changed - event.item < 2) continue;
+    if (event.kind == EventKind::link_gone) {
+      work.released.push_back({event.cable, at(cable.links, event.item).body});
+      remove_link(world, cable, event.item);
+    } else {
+      insert_link(world, cable, index(event.item), event.body, event.orientation);
+    }
+    cable_changed = event.cable;
+    item_changed = event.item;
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What may happen within an interval and then ends it: Workspace::events.
+
+#include <vector>
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Happening;
+struct Workspace;
+
+/// Catches of a part: rows that idle and would have to bear force at the present positions, contacts
+/// that close and cables that are pulled tight. New ones are listed, known ones measured anew.
+void find_catches(const Scene& scene, const World& world, Workspace& work, int part);
+
+/// Links of a part that have come off, likewise.
+void find_gone_links(const World& world, Workspace& work, int part);
+
+/// Bodies that have met spans, likewise.
+void find_span_hits(const Scene& scene, const World& world, Workspace& work);
+
+/// What closes is met early rather than late, by this share of its reach, so that nothing is ever
+/// squeezed or stretched; what changes a cable's course late, so that it has happened.
+constexpr double aim = 0.25;
+
+/// Of the events the one of least clearance, over its reach; 0 where it is aimed at.
+double least_clearance(const std::vector<Happening>& events);
+
+/// Changes the cables' courses as the events have it that have been met.
+void change_courses(World& world, Workspace& work);
+
+}  // namespace pinchlab

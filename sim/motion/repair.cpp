@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/repair.h"
+
+#include <algorithm>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/motion/clearance.h"
+#include "sim/solve/active_set.h"
+#include "sim/solve/rows.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr int most_repairs = 8;
+
+/// The most that a part's constraints are violated by (m).
+double violation(const Scene& scene, const World& world, const PartSystem& s) {
+  double most = 0.0;
+  for (const Row& row : s.rows) {
+    if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
+    if (row.compliance == 0.0) most = std::max(most, -clearance_of(scene, world, row));
+  }
+  return most;
+}
+
+/// Moves a part's bodies by `share` of the displacements that were just solved for.
+void displace(World& world, Workspace& work, const Part& part, double share) {
+  const PartSystem& s = at(work.systems, part.system);
+  const std::span<const int> bodies = bodies_of(work.parts, part);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    at(world.position, bodies[i]) += share * s.velocity[i].head<2>();
+    at(world.angle, bodies[i]) += share * s.velocity[i].z();
+  }
+  for (const Run& run : work.solve.capstan.runs) {
+    CableState& cable = at(world.cables, run.cable);
+    for (int i = run.first_link;; i = next_link(cable, i)) {
+      if (!at(cable.links, i).pinch_middle) at(cable.links, i).material -= share * run.speed;
+      if (i == run.last_link) break;
+    }
+  }
+  for (const int c : cables_of(work.parts, part)) update_cable(world, at(world.cables, c), false);
+}
+
+}  // namespace
+
+void empty_pinches(World& world) {
+  for (CableState& cable : world.cables) {
+    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
+      const Segment& segment = at(cable.segments, i);
+      if (!segment.pinched || segment.contact < 0 || segment.rest_length <= 0.0) continue;
+      const Contact& contact = at(world.contacts, segment.contact);
+      if (contact.gap - contact.target > 10.0 * reach_at(world, contact.a)) continue;
+      const int from = previous_link(cable, i), after = next_link(cable, i);
+      if (after < 0) continue;
+      const bool before_slack = at(cable.segments, from).slack;
+      const bool after_slack = at(cable.segments, after).slack;
+      const double share = before_slack == after_slack ? 0.5 : before_slack ? 1.0 : 0.0;
+      const double slack = segment.rest_length;
+      at(cable.links, from).material += share * slack;
+      at(cable.links, i).material -= (1.0 - share) * slack;
+      update_wraps_and_rest_lengths(world, cable);
+    }
+  }
+}
+
+bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
+  constexpr double longest = 0.05;  // of a body's radius
+  PartSystem& s = at(work.systems, part.system);
+  TimeSpan t;
+  t.length = t.repair = t.kick = 1.0;
+  work.solve.step_length = 1.0;
+  work.solve.reach = infinity;
+  double share = 0.0, before = infinity;
+  bool any = false;
+  for (int k = 0; k < most_repairs; ++k) {
+    if (k > 0 && violation(scene, world, s) >= before) {
+      displace(world, work, part, -share);
+      return k > 1;
+    }
+    std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
+    make_segment_rows(scene, world, work.parts, part, t, s);
+    make_contact_rows(scene, world, work.parts, part, t, s, work.solve);
+    before = violation(scene, world, s);
+    if (before <= s.reach) break;
+    any = true;
+    for (Friction& friction : s.frictions) {
+      if (at(s.rows, friction.row).kind == RowKind::tangent) friction.dropped = true;
+    }
+    solve_direct(world, work.parts, part, s, work.solve);
+    share = 1.0;
+    const std::span<const int> bodies = bodies_of(work.parts, part);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const double radius = at(world.bodies, bodies[i]).radius,
+                   way = s.velocity[i].head<2>().norm();
+      if (way * share > longest * radius) share = longest * radius / way;
+    }
+    displace(world, work, part, share);
+  }
+  return any;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What is put right in the positions alone: a repair never becomes velocity.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Part;
+struct Workspace;
+
+/// Slack that a closing pinch would enclose goes to the spans beside it: to those that are slack
+/// already, or to both.
+void empty_pinches(World& world);
+
+/// Puts right what is too long or too near in a part by moving its bodies, the heavier the less;
+/// their velocities stay. A step of this Newton's method is no longer than a small share of a body,
+/// and one that makes nothing better is taken back: where a constraint has hardly any gradient, its
+/// violation stays. Returns whether anything has been moved.
+bool repair(const Scene& scene, World& world, Workspace& work, Part& part);
+
+}  // namespace pinchlab
