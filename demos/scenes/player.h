@@ -20,7 +20,7 @@ namespace pinchlab {
 struct Timing {
   std::optional<int> frames_per_second;
   std::optional<int> steps_per_frame;
-  std::optional<double> error;  ///< m, of Scene::error
+  std::optional<double> error{};  ///< m, of Scene::error
 };
 
 /// The scene with another timing and the same duration. With another frame rate alone, a frame gets
