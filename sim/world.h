@@ -94,11 +94,12 @@ struct Diagnostics {
                                              // cables' lengths
   int active_set_solves = 0;                 // in the last step
   std::int64_t total_solves = 0;             // since the start
-  std::int64_t fallbacks = 0;                // parts of steps whose active set did not settle
-  std::int64_t events = 0;                   // located since the start
-  std::int64_t intervals = 0;                // into which steps have been divided, since the start
-  double local_errors = 0.0;                 // m, sum of the intervals' estimates since the start
-  std::int64_t clusters = 0;                 // steps with more events than are located in one
+  std::int64_t fallbacks =
+      0;  // parts of steps (Events::located: steps) whose active set did not settle
+  std::int64_t events = 0;     // located since the start
+  std::int64_t intervals = 0;  // into which steps have been divided, since the start
+  double local_errors = 0.0;   // m, sum of the intervals' estimates since the start
+  std::int64_t clusters = 0;   // steps with more events than are located in one
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same

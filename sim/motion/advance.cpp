@@ -29,6 +29,7 @@ constexpr int most_events = 24;              // that are located in one step
 constexpr double share_of_error = 2e-4;      // of Configuration::error that an interval may take
 constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
 constexpr double shortest_corrected = 1e-6;  // of a step
+constexpr double sound = 1e-3;  // of a part's extent: more than friction that cycles may miss
 constexpr int shake_rounds = 12;
 constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
@@ -77,12 +78,14 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
 
 /// Adds to the rows' biases what their conditions have missed at the present positions; returns the
 /// most (m).
-double add_missed(const Scene& scene, const World& world, const CapstanScratch& capstan,
-                  const TimeSpan& t, PartSystem& s) {
+double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
+                  PartSystem& s) {
+  const CapstanScratch& capstan = work.solve.capstan;
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     if (row.idle || !is_exact_row(row)) continue;
+    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0);
     if (!row.on && row.kind == RowKind::pinch_middle) continue;
     const bool grouped = !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
     if (grouped && !row.on) continue;
@@ -144,12 +147,13 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(scene, world, set.capstan, t, s);
+    const double missed = add_missed(scene, world, work, t, s);
     watch.lap(Stage::update_segments);
     if (round == 1) work.local_error = std::max(work.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.
     if (missed <= exact * s.reach || t.length < shortest_corrected * t.repair) return true;
     // Where states flip it may get worse for a round.
+    work.missed = std::max(work.missed, missed / s.extent);
     if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
       return false;
     before_last = last;
@@ -172,6 +176,8 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   watch.lap(Stage::apply_forces);
   work.local_error = 0.0;
   work.settled = true;
+  work.violated = false;
+  work.missed = 0.0;
   for (Happening& event : work.events) event.seen = false;
   bool met = true;
   for (int p = 0; index(p) < work.parts.list.size(); ++p) {
@@ -222,7 +228,8 @@ double find_interval(const Scene& scene, World& world, Workspace& work, double l
     length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
     met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
   }
-  for (int halvings = 0; !met && work.settled && halvings < most_halvings; ++halvings) {
+  const auto unsound = [&work, &met] { return !met && (work.settled || work.missed > sound); };
+  for (int halvings = 0; unsound() && halvings < most_halvings; ++halvings) {
     go_back(world, work);
     work.events.clear();
     length *= 0.5;
@@ -306,6 +313,7 @@ void find_present_velocities(const Scene& scene, const World& world, double time
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
   world.diagnostics.active_set_solves = 0;
+  const std::int64_t fallbacks = world.diagnostics.fallbacks;
   double left = world.step_length;
   int events = 0;
   for (int interval = 0; left > 0.0; ++interval) {
@@ -362,9 +370,11 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     detect_after_moving(scene, world, work, times);
     if (happened) empty_pinches(world);
     watch = Stopwatch(times);
-    const bool squeezed = std::any_of(
-        world.contacts.begin(), world.contacts.end(),
-        [&world](const Contact& c) { return c.gap < c.target - 10.0 * reach_at(world, c.a); });
+    const bool squeezed =
+        work.violated ||
+        std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
+          return c.gap < c.target - 10.0 * reach_at(world, c.a);
+        });
     bool repaired = false;
     const bool changed = changes_of_cables(world) != changes;
     if (!met || happened || changed || squeezed) apply_forces(scene, world, instant, work);
@@ -381,6 +391,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     }
     watch.lap(Stage::solve);
   }
+  world.diagnostics.fallbacks = std::min(world.diagnostics.fallbacks, fallbacks + 1);
   return StepStatus::ok;
 }
 
