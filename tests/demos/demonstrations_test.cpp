@@ -34,8 +34,7 @@ void add_to_hash(std::uint64_t& hash, double value, double unit) {
     hash = (hash ^ (rounded & 0xff)) * 1099511628211u;
 }
 
-Motion play(const Scene& scene, Method method) {
-  Configuration configuration = method;
+Motion play(const Scene& scene, Configuration configuration) {
   configuration.diagnostics = true;
   World world = make_world(scene, configuration);
   Workspace work;

@@ -225,7 +225,7 @@ TEST(Simulate, GivesUpAfterTheTimeLimit) {
       0);
 }
 
-// sim/README.md, "Limits": a body of some hundred sizes a step is not to be trusted.
+// Plain joints meet a body of some hundred sizes a step in the step after.
 TEST(Program, TellsWhatIsNotKept) {
   const fs::path folder = scratch_folder();
   nlohmann::json scene = small_scene();
@@ -237,19 +237,20 @@ TEST(Program, TellsWhatIsNotKept) {
                              {"velocity_m_s", {10000, 0}}});
   scene["steps_per_frame"] = 1;
   std::ofstream(folder / "01-fast.json") << scene;
-  const std::string said = "method pinch: cable 'rope' was stretched by ";
-  const RunResult simulated = run_program(folder, {"simulate", "01-fast.json", "--out", "x.csv"});
+  const std::string said = "method cable: cable 'rope' was stretched by ";
+  const RunResult simulated =
+      run_program(folder, {"simulate", "01-fast.json", "--method", "cable", "--out", "x.csv"});
   EXPECT_EQ(simulated.exit_code, 0);
   EXPECT_NE(simulated.err.find("01-fast.json: note: " + said), std::string::npos) << simulated.err;
-  const RunResult still = run_program(
-      folder, {"still", "01-fast.json", "--time", "1", "--out", "x.png", "--size", "64x64"});
+  const RunResult still = run_program(folder, {"still", "01-fast.json", "--method", "cable",
+                                               "--time", "1", "--out", "x.png", "--size", "64x64"});
   EXPECT_EQ(still.exit_code, 0);
   EXPECT_NE(still.err.find("01-fast.json: note: " + said), std::string::npos) << still.err;
   for (const char* made : {"1 made, 0 up to date", "0 made, 1 up to date"}) {
     const RunResult rendered =
-        run_program(folder, {"render", "01-fast.json", "--method", "pinch", "--size", "64x64"});
+        run_program(folder, {"render", "01-fast.json", "--method", "cable", "--size", "64x64"});
     EXPECT_EQ(rendered.exit_code, 0);
-    EXPECT_NE(rendered.err.find("clips/01-fast.pinch.mp4: note: " + said), std::string::npos)
+    EXPECT_NE(rendered.err.find("clips/01-fast.cable.mp4: note: " + said), std::string::npos)
         << rendered.err;
     EXPECT_NE(rendered.err.find(made), std::string::npos) << rendered.err;
   }
