@@ -16,9 +16,9 @@
 namespace pinchlab {
 namespace {
 
+using test::TemporaryFolder;
 using testing::atwood;
 using testing::body;
-using test::TemporaryFolder;
 
 Scene short_atwood() {
   Scene scene = atwood();
