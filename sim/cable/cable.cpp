@@ -52,7 +52,8 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   const Link& to = cable.links[i];
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
-  const double parting = !opposite(from, to) ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
+  const bool exact = locates_events(world.configuration);  // and so round-off matters
+  const double parting = !opposite(from, to) || !exact ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
     const bool arrives = from.orientation == 0;  // at the body, from its rim

@@ -112,7 +112,7 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
   // A body that has just lost its own link lies at the very end of the arc.
-  constexpr double end = 1e-6;  // rad
+  const double end = locates_events(world.configuration) ? 1e-6 : 0.0;  // rad
   for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
     double arc = least + k * turn;
     if (arc < 0.0 && arc > -end) arc = 0.0;

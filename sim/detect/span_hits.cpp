@@ -77,7 +77,9 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   // What was beside the span's line before has come past its end: it is in front of the cable, not
   // in its way.
   constexpr double in_touch = 1e-6;
-  if (std::abs(side_before) < margin * (1.0 - in_touch)) return hit;
+  if (locates_events(world.configuration) && std::abs(side_before) < margin * (1.0 - in_touch)) {
+    return hit;
+  }
   bool reached = within;
   if (!reached && side * side_before < 0.0) {
     const double t = side_before / (side_before - side);  // of the crossing, 0..1 within the step

@@ -87,12 +87,12 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x1480f10c1cc50bd6, 0xb9fa8f669d78b7e2},
-    {"02-stack", 0xdc4dca8c384ccb15, 0x43d7bdde6af84c5a},
-    {"03-drop", 0x2f19eab5e670cea2, 0x506cc218cee0dcd8},
-    {"04-two-blocking", 0x07a155f3a79649e7, 0xdb8e3a7463a6e34f},
-    {"05-notch", 0x44830abeb74b3fcd, 0xb061c2294836e7d8},
-    {"06-windlass", 0x75c990b37d4c0f3c, 0x9e4cc8b161dc2ea5},
+    {"01-roll-over", 0xf924414fc747a9ff, 0x75be8c6b50056422},
+    {"02-stack", 0x5eccc582e570a9a2, 0x02b07284710a1622},
+    {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
+    {"04-two-blocking", 0x331c67c923469af5, 0xd023f030d581e77c},
+    {"05-notch", 0x22933451bab780b4, 0x36d90430265e5a15},
+    {"06-windlass", 0x55aada682ff9689b, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
     {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},
 };
