@@ -64,6 +64,7 @@ struct AnswersTable {
   std::vector<Answer> answers;                ///< empty if only counts are known
   std::vector<Counts> counts;                 ///< one a demonstration
   std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
+  bool is_pilot = false;                      ///< answers of a trial run
   bool has_session_records = false;  ///< some input records focus, frames and playback errors
   std::vector<Exclusion> exclusions;
   int answers_per_demonstration = 1;    ///< that a complete participant gave

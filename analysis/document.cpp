@@ -465,6 +465,7 @@ class Writer {
 
 std::string p_text(double p) {
   if (p >= 0.99995) return "1";
+  if (p == 0.0) return "<1e-300";
   return p >= 0.001 ? fmt::format("{:.4f}", p) : fmt::format("{:.1e}", p);
 }
 

@@ -21,7 +21,8 @@ struct LevelsTable {
   std::vector<std::string> sources;
   std::vector<Series> series;  ///< in natural order
   std::vector<Exclusion> exclusions;
-  bool correct = false;  ///< hits are correct answers; otherwise choices of the method under test
+  bool is_pilot = false;  ///< answers of a trial run
+  bool correct = false;   ///< hits are correct answers; otherwise choices of the method under test
 };
 
 /// Does the first line of this CSV file have a column of levels? False for other kinds of files.

@@ -103,7 +103,7 @@ std::string groups_in_words(const Report& report) {
 }  // namespace
 
 std::string plain_words(const Report& report, const AnswersTable& table) {
-  std::string text = verdict(report);
+  std::string text = (table.is_pilot ? "Answers of a pilot. " : "") + verdict(report);
   if (report.demonstrations.size() > 1) {
     text += demonstrations_in_words(report);
     text += groups_in_words(report);

@@ -24,62 +24,11 @@ void check(bool good, const char* flag, const char* message) {
   if (!good) throw InputError(flag, message);
 }
 
-void check_question(const PowerQuestion& q) {
-  check(q.share > 0.0 && q.share < 1.0, "--share", "must be between 0 and 1");
-  check(q.share != 0.5, "--share",
-        "one half is what the test takes for granted; no number of participants "
-        "shows it to be otherwise");
-  check(q.alpha > 0.0 && q.alpha < 1.0, "--alpha", "must be between 0 and 1");
-  check(q.power > q.alpha && q.power < 1.0, "--power", "must be between alpha and 1");
-  check(q.trials >= 1 && q.trials <= 1000, "--trials", "must be from 1 to 1000");
-  check(q.icc >= 0.0 && q.icc <= 1.0, "--icc", "must be from 0 to 1");
-}
-
 // The normal approximation, only to know where to begin and how far to look.
 double approximate_answers(const PowerQuestion& q) {
   const double z = gsl_cdf_ugaussian_Qinv(q.alpha / 2.0) * 0.5 +
                    gsl_cdf_ugaussian_Pinv(q.power) * std::sqrt(q.share * (1.0 - q.share));
   return std::pow(z / (q.share - 0.5), 2.0);
-}
-
-// Probability of k choices of one method among `trials` answers of one participant, k = 0..trials.
-std::vector<double> answers_of_one(const PowerQuestion& q) {
-  const auto n = static_cast<unsigned>(q.trials);
-  std::vector<double> probability(n + 1U, 0.0);
-  if (q.icc >= 1.0) {
-    probability.front() = 1.0 - q.share;
-    probability.back() = q.share;
-    return probability;
-  }
-  const double scale = q.icc > 0.0 ? 1.0 / q.icc - 1.0 : 0.0;
-  const double a = q.share * scale, b = (1.0 - q.share) * scale;
-  for (unsigned k = 0; k <= n; ++k) {
-    probability[k] = q.icc > 0.0 ? std::exp(gsl_sf_lnchoose(n, k) +
-                                            gsl_sf_lnbeta(a + k, b + n - k) - gsl_sf_lnbeta(a, b))
-                                 : gsl_ran_binomial_pdf(k, q.share, n);
-  }
-  return probability;
-}
-
-// Does the sign-flip test find a preference? drawn[k] participants chose one method k times. Many
-// participants: the sum of flipped scores is normal (with a continuity correction: it moves in
-// steps of 2).
-bool sign_flips_reject(const std::vector<unsigned>& drawn, std::int64_t participants,
-                       double alpha) {
-  const auto trials = static_cast<std::int64_t>(drawn.size()) - 1;
-  const bool exact = participants <= 20 || participants * participants * trials <= 100000;
-  std::vector<std::int64_t> scores;
-  double sum = 0.0, squares = 0.0;
-  for (std::int64_t k = 0; k <= trials; ++k) {
-    const std::int64_t score = 2 * k - trials;
-    const unsigned count = drawn[static_cast<size_t>(k)];
-    if (exact) scores.insert(scores.end(), count, score);
-    sum += static_cast<double>(score) * count;
-    squares += static_cast<double>(score * score) * count;
-  }
-  if (exact) return sign_flip_test(std::move(scores), RandomUse::power, 0).p.value <= alpha;
-  const double away = std::max(0.0, std::abs(sum) - 1.0);
-  return 2.0 * gsl_cdf_ugaussian_Q(away / std::sqrt(squares)) <= alpha;
 }
 
 constexpr int simulated_studies = 4000;
@@ -106,6 +55,55 @@ void find_participants(const PowerQuestion& question, PowerAnswer& answer) {
 }
 
 }  // namespace
+
+void check_question(const PowerQuestion& q) {
+  check(q.share > 0.0 && q.share < 1.0, "--share", "must be between 0 and 1");
+  check(q.share != 0.5, "--share",
+        "one half is what the test takes for granted; no number of participants "
+        "shows it to be otherwise");
+  check(q.alpha > 0.0 && q.alpha < 1.0, "--alpha", "must be between 0 and 1");
+  check(q.power > q.alpha && q.power < 1.0, "--power", "must be between alpha and 1");
+  check(q.trials >= 1 && q.trials <= 1000, "--trials", "must be from 1 to 1000");
+  check(q.icc >= 0.0 && q.icc <= 1.0, "--icc", "must be from 0 to 1");
+}
+
+std::vector<double> answers_of_one(const PowerQuestion& q) {
+  const auto n = static_cast<unsigned>(q.trials);
+  std::vector<double> probability(n + 1U, 0.0);
+  if (q.icc >= 1.0) {
+    probability.front() = 1.0 - q.share;
+    probability.back() = q.share;
+    return probability;
+  }
+  const double scale = q.icc > 0.0 ? 1.0 / q.icc - 1.0 : 0.0;
+  const double a = q.share * scale, b = (1.0 - q.share) * scale;
+  for (unsigned k = 0; k <= n; ++k) {
+    probability[k] = q.icc > 0.0 ? std::exp(gsl_sf_lnchoose(n, k) +
+                                            gsl_sf_lnbeta(a + k, b + n - k) - gsl_sf_lnbeta(a, b))
+                                 : gsl_ran_binomial_pdf(k, q.share, n);
+  }
+  return probability;
+}
+
+// Many participants: the sum of flipped scores is normal (with a continuity correction: it moves in
+// steps of 2).
+bool sign_flips_reject(const std::vector<unsigned>& drawn, std::int64_t participants,
+                       double alpha) {
+  const auto trials = static_cast<std::int64_t>(drawn.size()) - 1;
+  const bool exact = participants <= 20 || participants * participants * trials <= 100000;
+  std::vector<std::int64_t> scores;
+  double sum = 0.0, squares = 0.0;
+  for (std::int64_t k = 0; k <= trials; ++k) {
+    const std::int64_t score = 2 * k - trials;
+    const unsigned count = drawn[static_cast<size_t>(k)];
+    if (exact) scores.insert(scores.end(), count, score);
+    sum += static_cast<double>(score) * count;
+    squares += static_cast<double>(score * score) * count;
+  }
+  if (exact) return sign_flip_test(std::move(scores), RandomUse::power, 0).p.value <= alpha;
+  const double away = std::max(0.0, std::abs(sum) - 1.0);
+  return 2.0 * gsl_cdf_ugaussian_Q(away / std::sqrt(squares)) <= alpha;
+}
 
 double sign_flip_power(std::int64_t participants, const PowerQuestion& question, int studies,
                        std::uint64_t seed) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pinchlab::analysis {
 
@@ -30,6 +31,17 @@ struct PowerQuestion {
 /// agree as question.icc says: beta-binomial), from `studies` simulated studies.
 double sign_flip_power(std::int64_t participants, const PowerQuestion& question, int studies,
                        std::uint64_t seed);
+
+/// Throws InputError for a question out of range.
+void check_question(const PowerQuestion& question);
+
+/// Probability of k choices of one method among the answers of one participant, k = 0 .. trials:
+/// beta-binomial.
+std::vector<double> answers_of_one(const PowerQuestion& question);
+
+/// Does the sign-flip test find a preference at this level? drawn[k] participants chose one method k
+/// times.
+bool sign_flips_reject(const std::vector<unsigned>& drawn, std::int64_t participants, double alpha);
 
 struct PowerAnswer {
   ExactTest first;  ///< the smallest number of independent answers that reaches the power

@@ -11,34 +11,12 @@
 #include "analysis/table_builder.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
-#include "base/strict_json.h"
 
 namespace pinchlab::analysis {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr size_t answer_file_limit_bytes = size_t{16} << 20;
-
-// The answer files of a folder: every *.json but the description that the Psych-DS layout puts
-// there.
-std::vector<fs::path> files_of_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    const bool hidden = name.starts_with('.');
-    if (!entry.is_regular_file() || hidden || entry.path().extension() != ".json") continue;
-    if (name != "dataset_description.json") files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
-  if (files.empty()) {
-    throw InputError(folder.string(),
-                     "no answer files (*.json) in this folder; name the folder that the study "
-                     "page saves to");
-  }
-  return files;
-}
 
 // Reads answer files into the builder and watches over what must agree between them.
 class AnswerFiles {
@@ -47,43 +25,24 @@ class AnswerFiles {
       : builder_(builder), allow_missing_(allow_missing) {}
 
   void read(const fs::path& path) {
-    const std::string name = path.string();
-    const AnswerFile file = parse_answer_file(read_json_file(path, answer_file_limit_bytes), name);
-    const auto [before, is_new] = file_of_.emplace(file.participant, name);
-    if (!is_new) {
-      throw InputError(name,
-                       fmt::format("participant `{}` has a file already: {}; keep one of the two",
-                                   file.participant, before->second));
+    const auto excluded = [&](const std::string& name) { return builder_.excluded(name); };
+    for (const NamedAnswerFile& named :
+         read_answer_files(path, allow_missing_, same_study_, excluded)) {
+      const AnswerFile& file = named.file;
+      if (!file.methods.empty() || !file.graded_hit.empty()) {
+        throw InputError(named.name,
+                         "compares other methods than the rest of the inputs; analyse "
+                         "each study in a run of its own");
+      }
+      builder_.begin_source(named.name);
+      builder_.expect_answers_per_demonstration(file.answers_per_demonstration, named.name);
+      builder_.note_session_records(file.is_pilot);
+      for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
+      if (!file.free_text.empty()) builder_.session(file.participant).free_text = file.free_text;
     }
-    if (builder_.excluded(file.participant)) return;
-    check_plan(file, name);
-    same_study_.check(file, name);
-    builder_.begin_source(name);
-    builder_.expect_answers_per_demonstration(file.answers_per_demonstration, name);
-    builder_.note_session_records();
-    for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
-    if (!file.free_text.empty()) builder_.session(file.participant).free_text = file.free_text;
   }
 
  private:
-  // The page saves whole sessions only, so the answers are those of the plan.
-  void check_plan(const AnswerFile& file, const std::string& name) const {
-    for (const std::string& demonstration : file.planned) {
-      const auto count =
-          std::count_if(file.trials.begin(), file.trials.end(), [&](const Trial& trial) {
-            return trial.kind == TrialKind::main && trial.demonstration == demonstration;
-          });
-      const bool fewer = count < file.answers_per_demonstration;
-      if (count == file.answers_per_demonstration || (fewer && allow_missing_)) continue;
-      throw InputError(
-          name,
-          fmt::format("participant `{}` gave {} answers to demonstration `{}`, but the plan has "
-                      "{}; leave the participant out with --exclude{}",
-                      file.participant, count, demonstration, file.answers_per_demonstration,
-                      fewer ? ", or pass --allow-missing" : ""));
-    }
-  }
-
   void add_trial(const AnswerFile& file, const Trial& trial, size_t index) {
     if (trial.kind == TrialKind::attention) {
       builder_.add_attention_check(file.participant, trial.choice == trial.expected);
@@ -108,7 +67,6 @@ class AnswerFiles {
 
   TableBuilder& builder_;
   bool allow_missing_;
-  std::map<std::string, std::string> file_of_;  // participant -> file
   SameStudy same_study_;
 };
 
@@ -133,9 +91,7 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
                        options.allow_missing);
   AnswerFiles answer_files(builder, options.allow_missing);
   for (const fs::path& input : inputs) {
-    if (fs::is_directory(input)) {
-      for (const fs::path& file : files_of_folder(input)) answer_files.read(file);
-    } else if (input.extension() == ".json") {
+    if (fs::is_directory(input) || input.extension() == ".json") {
       answer_files.read(input);
     } else if (input.extension() == ".csv" || input.extension() == ".tsv") {
       builder.begin_source(input.string());

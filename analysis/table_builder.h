@@ -38,7 +38,10 @@ class TableBuilder {
 
   /// The session record of a participant, to be filled by the reader of answer files.
   Session& session(std::string_view participant);
-  void note_session_records() { table_.has_session_records = true; }
+  void note_session_records(bool is_pilot) {
+    table_.has_session_records = true;
+    table_.is_pilot = is_pilot;
+  }
 
   /// The number of answers that every participant must give to each demonstration; inputs that
   /// differ throw, `place` says where.

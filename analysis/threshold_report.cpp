@@ -322,7 +322,7 @@ ThresholdReport analyse_thresholds(const LevelsTable& table, const PsychometricM
 }
 
 std::string threshold_words(const ThresholdReport& report, const LevelsTable& table) {
-  std::string text;
+  std::string text = table.is_pilot ? "Answers of a pilot." : "";
   for (size_t i = 0; i < table.series.size(); ++i) {
     const Series& series = table.series[i];
     const PsychometricFit& fit = report.fits[i];

@@ -9,12 +9,16 @@
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
+#include "base/strict_json.h"
 #include "base/text_checks.h"
 
 namespace pinchlab {
 
+namespace fs = std::filesystem;
+
 namespace {
 
+constexpr size_t answer_file_limit_bytes = size_t{16} << 20;
 constexpr long billion = 1000000000;
 constexpr const char* format_cure = "; see analysis/README.md for the format";
 
@@ -53,7 +57,13 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
 }
 
-Trial read_trial(JsonObject object) {
+// What the sides can show.
+std::vector<std::string> sides_of(const AnswerFile& file) {
+  if (!file.graded_hit.empty()) return {"reference", "graded"};
+  return file.methods.empty() ? std::vector<std::string>{"pinch", "baseline"} : file.methods;
+}
+
+Trial read_trial(JsonObject object, const AnswerFile& file) {
   Trial trial;
   trial.position = static_cast<int>(object.whole("position", 1, 65535));
   const std::string kind = object.choice("kind", {"main", "training", "attention"});
@@ -62,7 +72,7 @@ Trial read_trial(JsonObject object) {
                                     : TrialKind::attention;
   trial.demonstration = object.name("demonstration");
 
-  std::vector<std::string> methods{"pinch", "baseline"};
+  std::vector<std::string> methods = sides_of(file);
   if (trial.kind == TrialKind::attention) methods.emplace_back("check");
   trial.left = object.choice("left", methods);
   trial.right = object.choice("right", methods);
@@ -74,10 +84,25 @@ Trial read_trial(JsonObject object) {
   if (trial.kind == TrialKind::attention) {
     trial.expected = side_of(object.choice("expected", {"left", "right"}));
   }
+  if (!file.graded_hit.empty() && trial.kind != TrialKind::attention) {
+    trial.level = object.number("level", -1e9, 1e9);
+  }
   trial.reaction_time_s = object.number("reaction_time_s", 0.0, 86400.0);
   read_circumstances(object, trial);
   object.finish(format_cure);
   return trial;
+}
+
+void read_methods(JsonObject& plan, AnswerFile& file) {
+  for (const auto& entry : plan.array("methods", 100)) {
+    const bool good =
+        entry.is_string() && why_not_a_name(entry.get_ref<const std::string&>()).empty();
+    if (!good) plan.fail("methods", "must hold names of methods");
+    file.methods.push_back(entry.get<std::string>());
+  }
+  const std::set<std::string> different(file.methods.begin(), file.methods.end());
+  if (different.size() < 2 || different.size() != file.methods.size())
+    plan.fail("methods", "must hold two methods or more, none twice");
 }
 
 void read_plan(JsonObject plan, AnswerFile& file) {
@@ -95,8 +120,14 @@ void read_plan(JsonObject plan, AnswerFile& file) {
     }
   }
   if (file.planned.empty()) plan.fail("demonstrations", "is empty");
+  if (plan.has("methods")) read_methods(plan, file);
+  if (plan.has("graded_hit")) {
+    file.graded_hit = plan.choice("graded_hit", {"reference", "graded"});
+    if (!file.methods.empty()) plan.fail("graded_hit", "a plan has either levels or methods");
+  }
+  const long most = file.methods.empty() && file.graded_hit.empty() ? 100 : 10000;
   file.answers_per_demonstration =
-      static_cast<int>(plan.whole("answers_per_demonstration", 1, 100));
+      static_cast<int>(plan.whole("answers_per_demonstration", 1, most));
   if (plan.has("both_orders")) plan.flag("both_orders");
   optional_count(plan, "training_trials");
   optional_count(plan, "attention_checks");
@@ -117,7 +148,7 @@ void read_trials(const nlohmann::json& trials, const std::string& file_name, Ans
   for (size_t i = 0; i < trials.size(); ++i) {
     const std::string pointer = fmt::format("/trials/{}", i);
     const std::string trial_place = fmt::format("{}: {}", file_name, pointer);
-    file.trials.push_back(read_trial(JsonObject(trials[i], file_name, pointer)));
+    file.trials.push_back(read_trial(JsonObject(trials[i], file_name, pointer), file));
     const Trial& trial = file.trials.back();
     const auto [before, is_new] = positions.emplace(trial.position, i);
     if (!is_new) {
@@ -165,6 +196,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   AnswerFile file;
   file.participant = object.name("participant");
   if (object.has("participant_number")) object.whole("participant_number", 0, billion);
+  if (object.has("pilot")) file.is_pilot = object.flag("pilot");
   if (object.has("seed")) object.whole("seed", 0, (long{1} << 53) - 1);
   read_plan(object.object("plan"), file);
   const std::string started = object.utc("started_utc");
@@ -187,10 +219,99 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   return file;
 }
 
+namespace {
+
+// The page saves whole sessions only, so the answers are those of the plan.
+void check_plan(const AnswerFile& file, const std::string& name, bool allow_missing) {
+  for (const std::string& demonstration : file.planned) {
+    const auto count =
+        std::count_if(file.trials.begin(), file.trials.end(), [&](const Trial& trial) {
+          return trial.kind == TrialKind::main && trial.demonstration == demonstration;
+        });
+    const bool fewer = count < file.answers_per_demonstration;
+    if (count == file.answers_per_demonstration || (fewer && allow_missing)) continue;
+    throw InputError(
+        name, fmt::format("participant `{}` gave {} answers to demonstration `{}`, but the plan "
+                          "has {}; leave the participant out with --exclude{}",
+                          file.participant, count, demonstration, file.answers_per_demonstration,
+                          fewer ? ", or pass --allow-missing" : ""));
+  }
+}
+
+}  // namespace
+
+AnswersKind kind_of_answers(const fs::path& path) {
+  try {
+    const fs::path file = fs::is_directory(path) ? files_of_folder(path).front() : path;
+    if (file.extension() != ".json") return AnswersKind::none;
+    const nlohmann::json document = read_json_file(file, answer_file_limit_bytes);
+    const nlohmann::json plan = document.value("plan", nlohmann::json());
+    if (!plan.is_object()) return AnswersKind::none;
+    return plan.contains("graded_hit") ? AnswersKind::graded
+           : plan.contains("methods")  ? AnswersKind::comparisons
+                                       : AnswersKind::two_methods;
+  } catch (const std::exception&) {
+    return AnswersKind::none;
+  }
+}
+
+std::vector<fs::path> files_of_folder(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool hidden = name.starts_with('.');
+    if (!entry.is_regular_file() || hidden || entry.path().extension() != ".json") continue;
+    if (name != "dataset_description.json") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty()) {
+    throw InputError(folder.string(),
+                     "no answer files (*.json) in this folder; name the folder that the study "
+                     "page saves to");
+  }
+  return files;
+}
+
+std::vector<NamedAnswerFile> read_answer_files(
+    const fs::path& path, bool allow_missing, SameStudy& same_study,
+    const std::function<bool(const std::string&)>& excluded) {
+  std::vector<NamedAnswerFile> files;
+  for (const fs::path& place :
+       fs::is_directory(path) ? files_of_folder(path) : std::vector<fs::path>{path}) {
+    const std::string name = place.string();
+    AnswerFile file = parse_answer_file(read_json_file(place, answer_file_limit_bytes), name);
+    if (excluded(file.participant)) continue;
+    same_study.check(file, name);
+    check_plan(file, name, allow_missing);
+    files.push_back({name, std::move(file)});
+  }
+  return files;
+}
+
 void SameStudy::check(const AnswerFile& file, const std::string& name) {
+  const auto [before_file, is_first] = file_of_.emplace(file.participant, name);
+  if (!is_first) {
+    throw InputError(name,
+                     fmt::format("participant `{}` has a file already: {}; keep one of the two",
+                                 file.participant, before_file->second));
+  }
   if (study_of_.empty()) {
     study_ = file.study;
+    is_pilot_ = file.is_pilot;
+    methods_ = file.methods;
+    graded_hit_ = file.graded_hit;
     study_of_ = name;
+  }
+  if (file.is_pilot != is_pilot_) {
+    throw InputError(name, fmt::format("is {} of a pilot, and {} is {}; analyse the pilot in a run "
+                                       "of its own",
+                                       file.is_pilot ? "an answer" : "no answer", study_of_,
+                                       is_pilot_ ? "one" : "none"));
+  }
+  if (file.methods != methods_ || file.graded_hit != graded_hit_) {
+    throw InputError(name, fmt::format("compares other methods than {}; analyse each study in a "
+                                       "run of its own",
+                                       study_of_));
   }
   if (file.study != study_) {
     const std::map<std::string, std::string> words = {{"language", "the language"},

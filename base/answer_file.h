@@ -4,6 +4,8 @@
 // (analysis/README.md documents every key).
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -21,7 +23,10 @@ struct Trial {
   int position = 0;  ///< place in the session, from 1; training and attention trials count
   TrialKind kind = TrialKind::main;
   std::string demonstration;
-  std::string left, right;  ///< "pinch" or "baseline"; attention checks may show "check"
+  /// "pinch" and "baseline", or methods of the plan, or "reference" and "graded"; attention checks
+  /// may show "check"
+  std::string left, right;
+  double level = 0.0;  ///< of the graded clip, in studies of thresholds
   Side choice = Side::left;
   Side expected = Side::unknown;  ///< attention checks only: the side that a watchful eye picks
   double reaction_time_s = 0.0;   ///< s, from the moment the buttons appear to the choice
@@ -32,8 +37,12 @@ struct Trial {
 
 struct AnswerFile {
   std::string participant;
+  bool is_pilot = false;             ///< an answer of a trial run: never analysed with the rest
   std::vector<std::string> planned;  ///< demonstrations of the plan
   int answers_per_demonstration = 1;
+  std::vector<std::string> methods;  ///< that are compared; empty: pinch with its baseline
+  std::string
+      graded_hit;  ///< "reference" or "graded": what it is a hit to choose; empty: no levels
   std::vector<Trial> trials;
   std::map<std::string, std::string> free_text;  ///< question -> text
   /// (demonstration, variant) -> hash
@@ -46,17 +55,46 @@ struct AnswerFile {
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file);
 
+/// What the answers of a study are about.
+enum class AnswersKind { none, two_methods, comparisons, graded };
+
+/// Of an answer file (.json), or of the first one of a folder; `none` if there is none, or it is not
+/// one (which whoever reads it then tells).
+AnswersKind kind_of_answers(const std::filesystem::path& path);
+
+/// The answer files of a folder: every *.json but hidden ones and the description that the Psych-DS
+/// layout puts there. Throws InputError if there are none.
+std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder);
+
+class SameStudy;
+
+struct NamedAnswerFile {
+  std::string name;  ///< of the file, for messages
+  AnswerFile file;
+};
+
+/// Reads an answer file, or all of a folder, but those of participants who are `excluded`. Throws
+/// InputError if they are not of one study (`same_study`), or a participant gave more answers than
+/// planned, or fewer without `allow_missing`.
+std::vector<NamedAnswerFile> read_answer_files(
+    const std::filesystem::path& path, bool allow_missing, SameStudy& same_study,
+    const std::function<bool(const std::string&)>& excluded);
+
 /// Answers to another question, or to other clips, are not answers to the same question. Watches
 /// over files that are read one after the other.
 class SameStudy {
  public:
   /// Throws InputError if `file`, called `name`, was asked or shown something else than those
-  /// before it.
+  /// before it, if one of them is of a pilot, or if it is of the same participant.
   void check(const AnswerFile& file, const std::string& name);
 
  private:
   std::map<std::string, std::string> study_;
-  std::string study_of_;  // the first file; empty before
+  bool is_pilot_ = false;
+  std::vector<std::string> methods_;
+  std::string graded_hit_;
+  std::string study_of_;                        // the first file; empty before
+  std::map<std::string, std::string> file_of_;  // participant -> file
   // (demonstration, variant) -> hash, file
   std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> clips_;
 };

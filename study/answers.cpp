@@ -20,12 +20,15 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
-ordered_json plan_entry(const PlanOptions& options) {
-  return {{"demonstrations", options.demonstrations},
-          {"answers_per_demonstration", answers_per_demonstration(options)},
-          {"both_orders", options.both_orders},
-          {"training_trials", options.training.size()},
-          {"attention_checks", options.attention_checks.size()}};
+ordered_json plan_entry(const PlanOptions& options, const std::string& graded_hit) {
+  ordered_json entry = {{"demonstrations", options.demonstrations},
+                        {"answers_per_demonstration", answers_per_demonstration(options)},
+                        {"both_orders", options.both_orders},
+                        {"training_trials", options.training.size()},
+                        {"attention_checks", options.attention_checks.size()}};
+  if (!options.methods.empty()) entry["methods"] = options.methods;
+  if (!options.graded.empty()) entry["graded_hit"] = graded_hit;
+  return entry;
 }
 
 // In a check the right answer and the wrong one are no methods.
@@ -33,8 +36,8 @@ std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
   if (trial.kind == TrialKind::attention) {
     return {"check", "check"};
   }
-  return trial.pinch == Side::left ? std::pair{"pinch", "baseline"}
-                                   : std::pair{"baseline", "pinch"};
+  return trial.pinch == Side::left ? std::pair{trial.first, trial.second}
+                                   : std::pair{trial.second, trial.first};
 }
 
 ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
@@ -50,6 +53,7 @@ ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
   if (trial.kind == TrialKind::attention) {
     entry["expected"] = to_string(trial.pinch);
   }
+  if (trial.level) entry["level"] = *trial.level;
   entry["shown_utc"] = answered.shown_utc;
   entry["clip"] = clip;
   entry.update(to_json(answer));
@@ -58,7 +62,9 @@ ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
 }
 
 std::string variant(const PlannedTrial& trial, Encoding encoding) {
-  const char* role = trial.kind == TrialKind::attention ? "check" : "pinch";
+  const char* role = trial.kind == TrialKind::attention ? "check"
+                     : trial.first == "pinch"           ? "pinch"
+                                                        : "first";
   return fmt::format("{}_{}{}", role, to_string(trial.pinch),
                      encoding == Encoding::mp4 ? "" : "_webm");
 }
@@ -69,8 +75,8 @@ void check(const std::string& bytes, const fs::path& path) {
 
 }  // namespace
 
-ordered_json answer_file(const Session& session, const PlanOptions& options,
-                         const nlohmann::json& study, const ShownFiles& shown,
+ordered_json answer_file(const Session& session, const AnsweredStudy& study,
+                         const ShownFiles& shown,
                          const std::map<std::string, std::string>& free_text,
                          const std::string& saved_utc, const std::string& code_hash) {
   if (!is_finished(session)) {
@@ -82,26 +88,28 @@ ordered_json answer_file(const Session& session, const PlanOptions& options,
     const PlannedTrial& trial = session.plan[i];
     const Encoding encoding = session.answers[i].answer.encoding;
     const ShownFile file = shown(trial, encoding);
-    hashes[trial.demonstration][variant(trial, encoding)] = file.sha256;
+    hashes[clip_key(trial)][variant(trial, encoding)] = file.sha256;
     trials.push_back(trial_entry(trial, i + 1, session.answers[i], file.name));
   }
-  return {{"format", "pinchlab-answers"},
-          {"version", 1},
-          {"participant", session.id},
-          {"participant_number", session.number},
-          {"seed", session.seed},
-          {"plan", plan_entry(options)},
-          {"study", study},
-          {"started_utc", session.started_utc},
-          {"saved_utc", std::max(saved_utc, session.started_utc)},
-          {"software_version", PINCHLAB_VERSION},
-          {"language", session.language},
-          {"user_agent", session.user_agent},
-          {"resumed_count", session.resumed_count},
-          {"withdrawal_code_sha256", code_hash},
-          {"clips_sha256", hashes},
-          {"trials", trials},
-          {"free_text", free_text}};
+  ordered_json file = {{"format", "pinchlab-answers"},
+                       {"version", 1},
+                       {"participant", session.id},
+                       {"participant_number", session.number},
+                       {"seed", session.seed},
+                       {"plan", plan_entry(study.plan, study.graded_hit)},
+                       {"study", study.shown},
+                       {"started_utc", session.started_utc},
+                       {"saved_utc", std::max(saved_utc, session.started_utc)},
+                       {"software_version", PINCHLAB_VERSION},
+                       {"language", session.language},
+                       {"user_agent", session.user_agent},
+                       {"resumed_count", session.resumed_count},
+                       {"withdrawal_code_sha256", code_hash},
+                       {"clips_sha256", hashes},
+                       {"trials", trials},
+                       {"free_text", free_text}};
+  if (study.is_pilot) file["pilot"] = true;
+  return file;
 }
 
 fs::path answer_path(const fs::path& folder, const std::string& id) {

@@ -21,10 +21,18 @@ struct ShownFile {
 };
 using ShownFiles = std::function<ShownFile(const PlannedTrial&, Encoding)>;
 
-/// The answer file of a finished session. `study` is what_is_shown(), `code_hash` is
-/// withdrawal_hash() of the participant's code.
-nlohmann::ordered_json answer_file(const Session& session, const PlanOptions& options,
-                                   const nlohmann::json& study, const ShownFiles& shown,
+/// What was answered.
+struct AnsweredStudy {
+  PlanOptions plan;
+  nlohmann::json shown;                  ///< what_is_shown()
+  std::string graded_hit = "reference";  ///< of studies of thresholds
+  bool is_pilot = false;                 ///< a trial run
+};
+
+/// The answer file of a finished session. `code_hash` is withdrawal_hash() of the participant's
+/// code.
+nlohmann::ordered_json answer_file(const Session& session, const AnsweredStudy& study,
+                                   const ShownFiles& shown,
                                    const std::map<std::string, std::string>& free_text,
                                    const std::string& saved_utc, const std::string& code_hash);
 

@@ -108,6 +108,35 @@ PairFiles open_rendered(const fs::path& folder, const std::string& name, PairKin
   return files;
 }
 
+// Every pair of methods in every demonstration; WebM where both of its files are there.
+void open_comparisons(const fs::path& folder, const Config& config,
+                      const std::map<std::string, std::string>& hashes, Clips& clips) {
+  for (const std::string& demonstration : config.demonstrations) {
+    for (std::size_t i = 0; i < config.methods.size(); ++i) {
+      for (std::size_t j = i + 1; j < config.methods.size(); ++j) {
+        const std::string &first = config.methods[i], &second = config.methods[j];
+        const auto file = [&](bool is_left, Encoding encoding) {
+          return comparison_file(demonstration, is_left ? first : second, is_left ? second : first,
+                                 to_string(encoding));
+        };
+        const auto open = [&](Encoding encoding) {
+          return open_pair(folder, file(true, encoding), file(false, encoding), encoding, hashes);
+        };
+        PlannedTrial trial;
+        trial.demonstration = demonstration;
+        trial.first = first;
+        trial.second = second;
+        PairFiles files{open(Encoding::mp4), std::nullopt};
+        if (fs::exists(folder / file(true, Encoding::webm)) &&
+            fs::exists(folder / file(false, Encoding::webm))) {
+          files.webm = open(Encoding::webm);
+        }
+        clips.emplace(clip_key(trial), std::move(files));
+      }
+    }
+  }
+}
+
 // All clips of an encoding get the size of the largest, so that a size tells neither the side of a
 // method nor which demonstration it is.
 void pad(const Clips& clips) {
@@ -214,12 +243,19 @@ Clips open_clips(const fs::path& folder, const Config& config) {
     return open_rendered(folder, name, kind, hashes);
   };
   Clips clips;
+  const bool is_plain = config.methods.empty() && config.graded.empty();
   for (const auto* names : {&config.demonstrations, &config.training}) {
     for (const std::string& name : *names) {
-      if (!clips.contains(name)) {
+      if (!clips.contains(name) && (is_plain || names == &config.training)) {
         clips.emplace(name, open(name, PairKind::methods));
       }
     }
+  }
+  open_comparisons(folder, config, hashes, clips);
+  for (const GradedStimulus& stimulus : config.graded) {
+    clips.emplace(clip_key(stimulus.clip),
+                  PairFiles{open_pair(folder, stimulus.left, stimulus.right, Encoding::mp4, hashes),
+                            std::nullopt});
   }
   for (const AttentionCheck& check : config.attention_checks) {
     if (clips.contains(check.name)) {

@@ -60,7 +60,8 @@ struct PairFiles {
   }
 };
 
-/// All pairs of a study, by the name of the demonstration or attention check.
+/// All pairs of a study, by clip_key() of their trials: the name of the demonstration or attention
+/// check, with methods or level where there are any.
 using Clips = std::map<std::string, PairFiles>;
 
 /// What is rendered of a demonstration: its two methods, or an attention check.

@@ -9,11 +9,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <iterator>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -22,8 +19,8 @@
 #include "study/config.h"
 #include "study/desk.h"
 #include "study/jatos.h"
-#include "study/page_assets.h"
 #include "study/server.h"
+#include "study/simulate.h"
 #include "study/study_file.h"
 #include "study/tables.h"
 #include "study/utc.h"
@@ -39,52 +36,8 @@ struct ServeOptions {
   int participants = 0;
   int release_after = 24 * 60;  // min
   std::uint64_t seed = 0;
-  bool has_seed = false, no_webm = false;
+  bool has_seed = false, no_webm = false, pilot = false;
 };
-
-Config read_or_default(const fs::path& path) {
-  return path.empty() ? default_config() : read_config(path);
-}
-
-// The demonstrations of a configuration that names none.
-std::vector<std::string> all_demonstrations(const Stimuli& stimuli, const fs::path& clips) {
-  std::vector<std::string> names = stimuli.demonstrations();
-  return names.empty() ? rendered_pairs(clips, PairKind::methods, Encoding::mp4) : names;
-}
-
-void render_missing(const Stimuli& stimuli, const fs::path& clips, bool no_webm,
-                    const Config& config) {
-  std::map<PairKind, std::set<std::string>> needed;
-  needed[PairKind::methods] = {config.demonstrations.begin(), config.demonstrations.end()};
-  needed[PairKind::methods].insert(config.training.begin(), config.training.end());
-  for (const AttentionCheck& check : config.attention_checks) {
-    if (!check.demonstration.empty()) {
-      needed[PairKind::check].insert(check.demonstration);
-    }
-  }
-  std::vector<Encoding> encodings = {Encoding::mp4};
-  if (!no_webm) {
-    encodings.push_back(Encoding::webm);
-  }
-  const std::vector<std::string> known = stimuli.demonstrations();
-  for (const Encoding encoding : encodings) {
-    for (const auto& [kind, names] : needed) {
-      const std::vector<std::string> present = rendered_pairs(clips, kind, encoding);
-      std::vector<std::string> missing;
-      // What cannot be made here is told by open_clips; WebM is only offered where it is.
-      std::ranges::copy_if(names, std::back_inserter(missing), [&](const std::string& name) {
-        return std::ranges::find(present, name) == present.end() &&
-               std::ranges::find(known, name) != known.end();
-      });
-      if (!missing.empty()) {
-        fmt::print(stderr, "Rendering the {} that are missing ({}): {}\n",
-                   kind == PairKind::check ? "attention checks" : "side-by-side clips",
-                   to_string(encoding), fmt::join(missing, ", "));
-        stimuli.render(missing, kind, clips, encoding);
-      }
-    }
-  }
-}
 
 // Ctrl-C ends the server; everything that was confirmed is on the disk already.
 class StopOnSignal {
@@ -119,26 +72,6 @@ void tell(const std::string& line) {
   std::fflush(stdout);
 }
 
-// The page has to be there, the demonstrations named, and their clips made.
-Clips prepare(Config& config, const Stimuli& stimuli, const fs::path& clips, bool no_webm) {
-  if (!has_page()) {
-    throw std::runtime_error(
-        "this program was built without the page, because npm had not installed jsPsych; run: npm "
-        "ci --prefix study/page, then build again");
-  }
-  if (config.demonstrations.empty()) {
-    config.demonstrations = all_demonstrations(stimuli, clips);
-  }
-  if (config.demonstrations.empty()) {
-    throw std::runtime_error(fmt::format(
-        "{}: has no side-by-side clips, and there is no folder demos here to render them from; go "
-        "to the project's folder, or run pinchlab render --side-by-side",
-        clips.string()));
-  }
-  render_missing(stimuli, clips, no_webm, config);
-  return open_clips(clips, config);
-}
-
 void serve(const ServeOptions& options, const Stimuli& stimuli) {
   DeskOptions desk_options;
   desk_options.config = read_or_default(options.config);
@@ -151,6 +84,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
         "one-time links need to know for how many: give --participants, or participant_limit in "
         "the configuration");
   }
+  config.is_pilot = options.pilot;
   desk_options.clips = prepare(config, stimuli, options.clips, options.no_webm);
   desk_options.answers = options.answers;
   if (options.has_seed) {
@@ -162,6 +96,9 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   Desk desk(std::move(desk_options));
   Server server(desk, options.server);
   const StopOnSignal stop(server);
+  if (options.pilot) {
+    fmt::print("This is a pilot: its answers are marked, and are never analysed with others\n");
+  }
   fmt::print("Participants open  {}/\nYou can watch at   {}/researcher#{}\n", server.address(),
              server.address(), server.researcher_token());
   fmt::print("Seed {}; {} trials; answers go to {}; Ctrl-C ends\n", desk.seed(),
@@ -231,6 +168,8 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
   add_config(*command, options->config);
   command->add_flag("--no-webm", options->no_webm,
                     "Do not render a second encoding for browsers without H.264");
+  command->add_flag("--pilot", options->pilot,
+                    "A trial run: answers are marked, and never analysed with those of the study");
   command->footer(
       "Prints the address to open, and who starts, finishes and leaves. Stop it and start it again "
       "as you\nlike: participants go on where they were.\n\n"
@@ -410,6 +349,63 @@ void add_import(CLI::App& study) {
   });
 }
 
+void add_simulate(CLI::App& study, const Stimuli& stimuli) {
+  struct Options {
+    fs::path clips, answers, config, truth;
+    std::uint64_t seed = 1;
+    SimulationOptions simulation;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = study.add_subcommand(
+      "simulate", "Let participants who are not there take part, by a truth that is known");
+  command->add_option("--participants", options->simulation.participants, "How many")
+      ->type_name("N")
+      ->required()
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--truth", options->truth, "How they choose; study/README.md has the keys")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
+      ->type_name("DIR")
+      ->required();
+  command->add_option("--seed", options->seed, "Seed of the plan and of the participants")
+      ->type_name("S")
+      ->capture_default_str()
+      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+  add_config(*command, options->config);
+  command->footer(
+      "They start, see clips, answer and save over HTTP, at full speed, and their answers are "
+      "marked as a pilot's.\nThe same seed gives the same answers. Try a design, its analysis and "
+      "its report with it before anybody comes.\n\n"
+      "Example:\n"
+      "  pinchlab study simulate --participants 40 --truth truth.json --clips clips --answers "
+      "simulated\n"
+      "  pinchlab analyse simulated --out report");
+  command->callback([options, stimuli] {
+    DeskOptions desk_options;
+    desk_options.config = read_or_default(options->config);
+    desk_options.config.is_pilot = true;
+    desk_options.config.one_time_links = false;
+    desk_options.config.participant_limit = 0;
+    desk_options.clips = prepare(desk_options.config, stimuli, options->clips, true);
+    desk_options.answers = options->answers;
+    desk_options.seed = options->simulation.seed = options->seed;
+    const Truth truth = read_truth(options->truth);
+    Desk desk(std::move(desk_options));
+    const int participants = options->simulation.participants;
+    options->simulation.progress = [participants](int finished) {
+      fmt::print(stderr, "\r{} of {} finished", finished, participants);
+    };
+    simulate(desk, truth, options->simulation);
+    fmt::print(stderr, "\n");
+    fmt::print("{} simulated participants; answers in {}\n", participants,
+               options->answers.string());
+  });
+}
+
 void add_withdraw(CLI::App& study) {
   struct Options {
     fs::path answers;
@@ -447,6 +443,7 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
   add_export(*study, stimuli);
   add_import(*study);
   add_withdraw(*study);
+  add_simulate(*study, stimuli);
 }
 
 }  // namespace pinchlab::study

@@ -90,6 +90,87 @@ std::vector<AttentionCheck> read_checks(JsonObject& object, const std::string& f
   return checks;
 }
 
+void read_methods(JsonObject& object, Config& config) {
+  static const std::set<std::string> taken = {"baseline", "check", "reference", "graded", "tie"};
+  for (const json& entry : object.array("methods", 20)) {
+    const std::string name = entry.is_string() ? entry.get<std::string>() : "";
+    const bool is_name = !name.empty() && why_not_a_name(name).empty() &&
+                         name.find_first_of("/.-") == std::string::npos && !taken.contains(name);
+    if (!is_name || std::ranges::find(config.methods, name) != config.methods.end()) {
+      object.fail("methods",
+                  fmt::format("must hold names of methods, none twice, without `/`, `.` and `-`, "
+                              "and not {}; see `{}`",
+                              fmt::join(taken, ", "), name.substr(0, 60)));
+    }
+    config.methods.push_back(name);
+  }
+  if (config.methods.size() < 3) {
+    object.fail("methods", "needs three or more; leave it out to compare pinch with the baseline");
+  }
+  if (config.demonstrations.empty()) {
+    object.fail("demonstrations", "must be named in a study of methods");
+  }
+  if (object.has("repetitions") || object.has("both_orders")) {
+    object.fail("methods",
+                "cannot be combined with repetitions or both_orders; say with "
+                "pairs_per_demonstration how much of the pairs a participant sees");
+  }
+  const auto pairs = static_cast<long>(config.methods.size() * (config.methods.size() - 1) / 2);
+  if (object.has("pairs_per_demonstration")) {
+    config.pairs_per_demonstration =
+        static_cast<int>(object.whole("pairs_per_demonstration", 1, pairs));
+  }
+}
+
+void read_one_series(JsonObject series, const std::string& file, const std::string& pointer,
+                     Config& config) {
+  series.expect_only({"name", "clips"}, key_cure);
+  const std::string name = series.name("name");
+  check_demonstration(series, "name", name);
+  if (std::ranges::find(config.demonstrations, name) != config.demonstrations.end()) {
+    series.fail("name", fmt::format("`{}` stands twice", name));
+  }
+  config.demonstrations.push_back(name);
+  const json& clips = series.array("clips", most_trials);
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    JsonObject clip(clips[i], file, fmt::format("{}/clips/{}", pointer, i));
+    clip.expect_only({"level", "left", "right"}, key_cure);
+    GradedStimulus stimulus{{name, clip.number("level", -1e9, 1e9)},
+                            read_clip_name(clip, "left"),
+                            read_clip_name(clip, "right")};
+    if (stimulus.left == stimulus.right) {
+      clip.fail("right", "the same file as left; its reference must be on the other side");
+    }
+    if (std::ranges::find(config.graded, stimulus.clip, &GradedStimulus::clip) !=
+        config.graded.end()) {
+      clip.fail("level", "stands twice; to show it more often, use repetitions");
+    }
+    config.graded.push_back(std::move(stimulus));
+  }
+}
+
+void read_series(JsonObject& object, const std::string& file, Config& config) {
+  if (object.has("demonstrations") || object.has("methods")) {
+    object.fail("series", "cannot be combined with demonstrations or methods");
+  }
+  const json& entries = object.array("series", 100);
+  std::size_t levels = 0;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string pointer = fmt::format("/series/{}", i);
+    const std::size_t before = config.graded.size();
+    read_one_series(JsonObject(entries[i], file, pointer), file, pointer, config);
+    const std::size_t own = config.graded.size() - before;
+    if (own < 2 || (i > 0 && own != levels)) {
+      object.fail("series", "needs two clips or more in each series, and in all as many");
+    }
+    levels = own;
+  }
+  if (entries.empty()) object.fail("series", "is empty");
+  if (object.has("graded_hit")) {
+    config.graded_hit = object.choice("graded_hit", {"reference", "graded"});
+  }
+}
+
 // Texts of a language that is not delivered must be complete: half a translation is worse than
 // none.
 std::map<std::string, std::string> read_texts(const json& document, const std::string& file,
@@ -134,9 +215,10 @@ std::string read_language(JsonObject& object) {
 }
 
 void check_number_of_trials(const Config& config, const std::string& file) {
-  const std::size_t demonstrations = std::max<std::size_t>(1, config.demonstrations.size());
+  PlanOptions options = plan_options(config);
+  if (options.demonstrations.empty()) options.demonstrations.emplace_back();
   const std::size_t trials =
-      demonstrations * static_cast<std::size_t>(answers_per_demonstration(plan_options(config)));
+      options.demonstrations.size() * static_cast<std::size_t>(answers_per_demonstration(options));
   if (trials > most_trials) {
     throw InputError(file, fmt::format("{} trials a participant; at most {} can be asked for",
                                        trials, most_trials));
@@ -159,9 +241,11 @@ Config default_config() {
 
 Config parse_config(const json& document, const std::string& file) {
   JsonObject object(document, file, "");
-  object.expect_only({"format", "language", "demonstrations", "training", "attention_checks",
-                      "repetitions", "both_orders", "participant_limit", "one_time_links", "texts"},
-                     key_cure);
+  object.expect_only(
+      {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
+       "both_orders", "participant_limit", "one_time_links", "texts", "methods",
+       "pairs_per_demonstration", "series", "graded_hit", "shared_computer"},
+      key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
   if (object.has("language")) config.language = read_language(object);
@@ -171,6 +255,15 @@ Config parse_config(const json& document, const std::string& file) {
       object.fail("demonstrations", "is empty; leave it out to show all");
     }
   }
+  if (object.has("methods")) read_methods(object, config);
+  if (object.has("pairs_per_demonstration") && config.methods.empty()) {
+    object.fail("pairs_per_demonstration", "needs methods");
+  }
+  if (object.has("series")) read_series(object, file, config);
+  if (object.has("graded_hit") && config.graded.empty()) {
+    object.fail("graded_hit", "needs series");
+  }
+  if (object.has("shared_computer")) config.shared_computer = object.flag("shared_computer");
   if (object.has("training")) config.training = read_names(object, "training");
   if (object.has("attention_checks")) config.attention_checks = read_checks(object, file);
   if (object.has("repetitions")) {
@@ -190,6 +283,11 @@ Config read_config(const std::filesystem::path& path) {
   return parse_config(read_json_file(path, largest_file), path.string());
 }
 
+std::string comparison_file(const std::string& demonstration, const std::string& first,
+                            const std::string& second, const std::string& ending) {
+  return fmt::format("{}.{}-{}.{}", demonstration, first, second, ending);
+}
+
 PlanOptions plan_options(const Config& config) {
   PlanOptions options;
   options.demonstrations = config.demonstrations;
@@ -197,6 +295,9 @@ PlanOptions plan_options(const Config& config) {
   for (const AttentionCheck& check : config.attention_checks) {
     options.attention_checks.push_back(check.name);
   }
+  options.methods = config.methods;
+  options.pairs_per_demonstration = config.pairs_per_demonstration;
+  for (const GradedStimulus& stimulus : config.graded) options.graded.push_back(stimulus.clip);
   options.repetitions = config.repetitions;
   options.both_orders = config.both_orders;
   return options;

@@ -20,14 +20,26 @@ struct AttentionCheck {
   std::string left, right;    ///< files of one's own: right answer on the left, on the right
 };
 
+/// A graded clip beside its reference: two side-by-side files in the clips' folder.
+struct GradedStimulus {
+  GradedClip clip;
+  std::string left, right;  ///< files: the reference on the left, on the right
+};
+
 struct Config {
   std::vector<std::string> demonstrations;  ///< empty: all that there are
   std::vector<std::string> training;
   std::vector<AttentionCheck> attention_checks;
+  std::vector<std::string> methods;    ///< of a study of three and more
+  int pairs_per_demonstration = 0;     ///< 0: all
+  std::vector<GradedStimulus> graded;  ///< of a study of thresholds; demonstrations are its series
+  std::string graded_hit = "reference";  ///< or "graded": what it is a hit to choose
   int repetitions = 1;
   bool both_orders = false;
-  int participant_limit = 0;  ///< 0: none
+  bool shared_computer = false;  ///< the last page leads to the next participant
+  int participant_limit = 0;     ///< 0: none
   bool one_time_links = false;
+  bool is_pilot = false;                     ///< a trial run; of the command line, not of the file
   std::string language = "en";               ///< of the texts, a BCP 47 tag
   std::map<std::string, std::string> texts;  ///< every text of the page, by its key
 };
@@ -43,6 +55,10 @@ Config read_config(const std::filesystem::path& path);
 
 /// The same for a parsed document; `file` is for messages.
 Config parse_config(const nlohmann::json& document, const std::string& file);
+
+/// The methods' file with `first` on the left: "03-drop.pinch-cable.mp4".
+std::string comparison_file(const std::string& demonstration, const std::string& first,
+                            const std::string& second, const std::string& ending);
 
 /// What the plan depends on. `config.demonstrations` must not be empty.
 PlanOptions plan_options(const Config& config);

@@ -7,8 +7,6 @@
 #include <stdexcept>
 
 #include "base/durable_file.h"
-#include "base/input_error.h"
-#include "base/partial_file.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -21,8 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t largest_file = 16U << 20U;       // bytes
-constexpr std::chrono::minutes longest_unanswered{5};  // without a sign, where places are short
+constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
 // "<id>.<secret>"
 std::pair<std::string, std::string> split(const std::string& token) {
@@ -70,234 +67,6 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);
   read_finished();
   read_running();
-}
-
-void Desk::read_finished() {
-  for (const fs::path& path : answer_files(options_.answers)) {
-    const json file = read_json_file(path, largest_file);
-    if (!file.is_object() || file.value("format", json()) != "pinchlab-answers") {
-      throw std::runtime_error(
-          fmt::format("{}: is no answer file; keep other files elsewhere", path.string()));
-    }
-    if (file.value("study", json()) != shown_) {
-      throw std::runtime_error(
-          fmt::format("{}: was answered in a study that asked or showed something else; use its "
-                      "configuration and clips, or another --answers",
-                      path.string()));
-    }
-    if (file.value("participant_number", json()).is_number_unsigned()) {
-      taken_.insert(file["participant_number"].get<std::uint64_t>());
-    }
-    ++finished_;
-  }
-}
-
-void Desk::read_running() {
-  for (const fs::directory_entry& file : fs::directory_iterator(running_folder(options_.answers))) {
-    const fs::path& path = file.path();
-    if (path.extension() != ".json" || path.filename() == "study.json") {
-      continue;
-    }
-    auto entry = std::make_shared<Entry>();
-    try {
-      entry->session = session_from_json(read_json_file(path, largest_file));
-    } catch (const InputError& error) {
-      throw std::runtime_error(
-          fmt::format("{}: {}; remove the file to go on without this participant", path.string(),
-                      error.what()));
-    }
-    // Killed between saving the answers and forgetting the session.
-    if (fs::exists(answer_path(options_.answers, entry->session.id))) {
-      remove_durably(path);
-      continue;
-    }
-    add(entry, "");
-  }
-}
-
-// What a killed server left half written is nobody's answer; it may hold what somebody wrote.
-void Desk::sweep() const {
-  for (const fs::path& folder : {options_.answers, running_folder(options_.answers)}) {
-    std::vector<fs::path> partial;
-    for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-      if (file.path().filename().string().ends_with(".json" + std::string(partial_ending))) {
-        partial.push_back(file.path());
-      }
-    }
-    std::ranges::for_each(partial, remove_durably);
-  }
-}
-
-void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
-  const Session& session = entry->session;
-  for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const auto files = options_.clips.find(session.plan[i].demonstration);
-    if (files == options_.clips.end()) {
-      throw std::runtime_error(fmt::format("{}: no clips of `{}`",
-                                           session_path(session.id).string(),
-                                           session.plan[i].demonstration));
-    }
-    media_[session.media[i]] = {&files->second, session.plan[i].pinch, session.id};
-  }
-  taken_.insert(session.number);
-  places_[session.id] = {entry, address, ++starts_, {}, false, false};
-  note(session);
-}
-
-// Under mutex_.
-void Desk::note(const Session& session) {
-  const auto place = places_.find(session.id);
-  if (place != places_.end()) {
-    place->second.seen = parse_utc(session.last_seen_utc);
-    place->second.has_answered = !session.answers.empty();
-    place->second.is_shown = place->second.has_answered || !session.shown_utc.empty();
-  }
-}
-
-void Desk::remove(const Entry& entry) {
-  for (const std::string& media : entry.session.media) {
-    media_.erase(media);
-  }
-  places_.erase(entry.session.id);
-}
-
-// All that the disk holds of somebody who has not saved, half written files among it.
-void Desk::forget(const std::string& id) const {
-  const fs::path answers = answer_path(options_.answers, id);
-  for (const fs::path& path : {answers, session_path(id)}) {
-    const fs::path partial = path.string() + std::string(partial_ending);
-    if (fs::exists(partial)) {
-      remove_durably(partial);
-    }
-  }
-  remove_durably(session_path(id));
-}
-
-// Nothing is kept of somebody who does not come back, and the number goes to somebody else.
-void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
-                bool only_without_answers) {
-  const std::scoped_lock entry_lock(entry->mutex);
-  if (entry->is_gone || (only_without_answers && !entry->session.answers.empty())) {
-    return;
-  }
-  forget(entry->session.id);
-  entry->is_gone = true;
-  const std::scoped_lock lock(mutex_);
-  remove(*entry);
-  taken_.erase(entry->session.number);
-  ++left_;
-  options_.tell(fmt::format("{} {}; nothing is kept", entry->session.id, why));
-}
-
-void Desk::drop_idle() {
-  const auto now = parse_utc(options_.utc_now());
-  std::vector<std::shared_ptr<Entry>> idle;
-  {
-    const std::scoped_lock lock(mutex_);
-    for (const auto& [id, place] : places_) {
-      if (now - place.seen >= options_.longest_idle) {
-        idle.push_back(place.entry);
-      }
-    }
-  }
-  for (const auto& entry : idle) {
-    drop(entry, "was not seen for too long and is dropped");
-  }
-}
-
-void Desk::release(const std::string& id) {
-  std::shared_ptr<Entry> entry;
-  {
-    const std::scoped_lock lock(mutex_);
-    const auto found = places_.find(id);
-    if (found == places_.end()) {
-      throw Refused(404, "nobody of that name is running");
-    }
-    entry = found->second.entry;
-  }
-  drop(entry, "was released by the researcher");
-}
-
-// Who has to go for somebody that starts from `address`; nullptr: nobody has to, or nobody can.
-std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
-                                                  const std::string& address) {
-  const auto now = parse_utc(options_.utc_now());
-  const std::scoped_lock lock(mutex_);
-  std::map<std::string, std::size_t> unanswered;  // by address
-  for (const auto& [id, place] : places_) {
-    if (!place.has_answered) {
-      ++unanswered[place.address];
-    }
-  }
-  const auto oldest = [&](const auto& may_go) {
-    const Place* found = nullptr;
-    for (const auto& [id, place] : places_) {
-      const bool is_older = found == nullptr || place.order < found->order;
-      if (!place.has_answered && is_older && may_go(place)) {
-        found = &place;
-      }
-    }
-    return found == nullptr ? nullptr : found->entry;
-  };
-  const auto is_away = [&](const Place& place) { return now - place.seen >= longest_unanswered; };
-  if (options_.config.one_time_links) {
-    return oldest([&](const Place& place) {
-      return !place.is_shown && equal_in_constant_time(link, link_of(place.entry->session.number));
-    });
-  }
-  if (unanswered[address] >= options_.most_unanswered) {
-    return oldest([&](const Place& place) { return place.address == address && is_away(place); });
-  }
-  const auto limit = static_cast<std::size_t>(options_.config.participant_limit);
-  const bool is_full =
-      places_.size() >= options_.most_open || (limit > 0 && taken_.size() >= limit);
-  if (!is_full) {
-    return nullptr;
-  }
-  const auto busiest =
-      std::ranges::max_element(unanswered, {}, [](const auto& entry) { return entry.second; });
-  if (busiest->second > unanswered[address] + 1) {
-    return oldest([&](const Place& place) { return place.address == busiest->first; });
-  }
-  return oldest(is_away);
-}
-
-std::string Desk::link_of(std::uint64_t number) const {
-  return sha256(fmt::format("link {} {}", study_.link_secret, number)).substr(0, 32);
-}
-
-std::vector<std::string> Desk::links() const {
-  std::vector<std::string> links;
-  if (options_.config.one_time_links) {
-    for (int i = 0; i < options_.config.participant_limit; ++i) {
-      links.push_back(link_of(static_cast<std::uint64_t>(i)));
-    }
-  }
-  return links;
-}
-
-// The smallest number that nobody has, or the link's. Under mutex_.
-std::uint64_t Desk::number_for(const std::string& link) {
-  const auto limit = static_cast<std::uint64_t>(options_.config.participant_limit);
-  if (options_.config.one_time_links) {
-    for (std::uint64_t number = 0; number < limit; ++number) {
-      if (equal_in_constant_time(link, link_of(number))) {
-        if (taken_.contains(number) || study_.used_links.contains(number)) {
-          throw Refused(403, "this link was used");
-        }
-        return number;
-      }
-    }
-    throw Refused(403, "this study needs a link");
-  }
-  std::uint64_t number = 0;
-  while (taken_.contains(number)) {
-    ++number;
-  }
-  if (limit > 0 && number >= limit) {
-    throw Refused(409, "the study is full");
-  }
-  return number;
 }
 
 std::string Desk::start(const std::string& link, const std::string& user_agent,
@@ -399,7 +168,7 @@ Progress Desk::progress_of(const Session& session) const {
     progress.trials.push_back({session.media[i], session.plan[i].kind == TrialKind::training});
   }
   progress.has_webm = std::ranges::all_of(session.plan, [&](const PlannedTrial& trial) {
-    return options_.clips.at(trial.demonstration).webm.has_value();
+    return options_.clips.at(clip_key(trial)).webm.has_value();
   });
   progress.next = session.answers.size();
   return progress;
@@ -442,7 +211,7 @@ void Desk::answer(const std::string& token, const SentAnswer& sent) {
   change(token, [&](Session& session) {
     const PairFiles* files = nullptr;
     if (sent.index < session.plan.size()) {
-      files = &options_.clips.at(session.plan[sent.index].demonstration);
+      files = &options_.clips.at(clip_key(session.plan[sent.index]));
     }
     if (files != nullptr && sent.answer.encoding == Encoding::webm && !files->webm) {
       throw Refused(422, "request: /encoding: was not offered");
@@ -517,11 +286,13 @@ std::string Desk::save(const std::string& token,
     return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
   }
   const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
-    const Clip& clip = options_.clips.at(trial.demonstration).in(encoding).at(trial.pinch);
+    const Clip& clip = options_.clips.at(clip_key(trial)).in(encoding).at(trial.pinch);
     return ShownFile{clip.name(), clip.sha256()};
   };
-  const auto file = answer_file(entry->session, plan_options(options_.config), shown_, shown,
-                                free_text, options_.utc_now(), withdrawal_hash(code));
+  const AnsweredStudy study{plan_options(options_.config), shown_, options_.config.graded_hit,
+                            options_.config.is_pilot};
+  const auto file = answer_file(entry->session, study, shown, free_text, options_.utc_now(),
+                                withdrawal_hash(code));
   try {
     save_answers(answer_path(options_.answers, id), file);
   } catch (const std::exception& error) {
@@ -574,6 +345,46 @@ Overview Desk::overview() {
                                 session.plan.size(), session.started_utc, session.last_seen_utc});
   }
   return overview;
+}
+
+std::pair<std::uint64_t, std::vector<PlannedTrial>> Desk::plan_of(const std::string& id) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = places_.find(id);
+  if (found == places_.end()) {
+    throw Refused(404, "nobody of that name is running");
+  }
+  const Session& session = found->second.entry->session;  // its number and plan never change
+  return {session.number, session.plan};
+}
+
+Progress Desk::preview(std::uint64_t number) {
+  const std::vector<PlannedTrial> plan =
+      make_plan(study_.seed, number, plan_options(options_.config));
+  Progress progress;
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(media_, [](const auto& entry) { return entry.second.participant.empty(); });
+  for (const PlannedTrial& trial : plan) {
+    const std::string media = random_hex(16);
+    media_[media] = {&options_.clips.at(clip_key(trial)), trial.pinch, ""};
+    progress.trials.push_back({media, trial.kind == TrialKind::training});
+  }
+  return progress;
+}
+
+std::string Desk::withdraw(const std::string& code) {
+  std::string id;
+  try {
+    id = study::withdraw(options_.answers, code);
+  } catch (const std::invalid_argument&) {
+    throw Refused(422, "is no withdrawal code");
+  }
+  if (id.empty()) {
+    throw Refused(404, "no answers have this code");
+  }
+  const std::scoped_lock lock(mutex_);
+  --finished_;
+  options_.tell(fmt::format("the answers of {} are removed, as their participant asked", id));
+  return id;
 }
 
 fs::path Desk::session_path(const std::string& id) const {

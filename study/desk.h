@@ -106,6 +106,21 @@ class Desk {
 
   Overview overview();
 
+  // For the researcher.
+
+  /// The number and the plan of somebody who is running. Refused (404) if nobody with that id is.
+  std::pair<std::uint64_t, std::vector<PlannedTrial>> plan_of(const std::string& id);
+
+  /// The trials of a participant number as a page is told them; their clips can be had until the
+  /// next preview.
+  Progress preview(std::uint64_t number);
+
+  /// Removes the answers of who has this withdrawal code, and returns the participant's id. Refused:
+  /// 422 for what is no code, 404 where no answers have it.
+  std::string withdraw(const std::string& code);
+
+  [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
+
   /// Ends a participant's session for the researcher and keeps nothing of it; the place goes to
   /// the next who comes. Refused (404) if nobody with that id is running.
   void release(const std::string& id);
@@ -128,7 +143,7 @@ class Desk {
   struct Media {
     const PairFiles* files;
     Side side;
-    std::string participant;
+    std::string participant;  // empty: of a preview
   };
 
   void read_finished();

@@ -138,9 +138,8 @@ json file_entry(const ClipPair& pair) {
 
 // What the page fetches: names of clips and nothing else.
 json plan_for_page(const std::vector<PlannedTrial>& plan, MediaNames& names, const Clips& clips) {
-  const bool has_webm = std::ranges::all_of(plan, [&](const PlannedTrial& trial) {
-    return clips.at(trial.demonstration).webm.has_value();
-  });
+  const bool has_webm = std::ranges::all_of(
+      plan, [&](const PlannedTrial& trial) { return clips.at(clip_key(trial)).webm.has_value(); });
   json trials = json::array();
   for (const PlannedTrial& trial : plan) {
     const std::string path = "media/" + names.of(trial);
@@ -247,7 +246,7 @@ Result read_result(const std::string& line, const std::string& place, const Key&
           key.files.at(trial.demonstration).at(to_string(encoding)).at(to_string(trial.pinch));
       return ShownFile{file.at("name"), file.at("sha256")};
     };
-    result = {session.id, answer_file(session, key.options, key.shown, shown,
+    result = {session.id, answer_file(session, {key.options, key.shown}, shown,
                                       parse_free_text(free_text), saved_utc, code_hash)};
   } catch (const std::exception& error) {
     throw InputError(place, error.what());
@@ -288,6 +287,10 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                     key_path(archive).string()));
   }
   const PlanOptions options = plan_options(config);
+  if (!options.methods.empty() || !options.graded.empty()) {
+    throw std::runtime_error(
+        "studies of several methods and of thresholds run on our own server only; use study serve");
+  }
   const std::string uuid = random_uuid();
   MediaNames names;
   ZipWriter zip(archive);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/plan.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
@@ -16,7 +17,18 @@ namespace {
 
 // What random numbers are drawn for; each draw has a generator of its own, so that no option
 // changes what another draws.
-enum class Purpose : std::uint64_t { sides = 1, labels, rows, training, check_sides, check_places };
+enum class Purpose : std::uint64_t {
+  sides = 1,
+  labels,
+  rows,
+  training,
+  check_sides,
+  check_places,
+  pair_methods,
+  pair_rows,
+  pair_order,
+  pair_sides
+};
 
 // Steele, Lea and Flood's SplitMix64 (OOPSLA 2014): neighbouring seeds give unrelated generators.
 std::uint64_t mix(std::uint64_t x) {
@@ -151,11 +163,10 @@ Orders orders_of(std::uint64_t seed, std::uint64_t number, int rounds, std::size
 // side equally often and no side more than three times running. Turned round, sides that pass pass
 // too, so that each side is a fair coin still.
 std::vector<std::vector<bool>> sides_of_pair(std::uint64_t seed, std::uint64_t pair, int rounds,
-                                             const PlanOptions& options) {
-  const std::size_t n = options.demonstrations.size();
+                                             std::size_t n, bool both_orders) {
   const Orders orders[] = {orders_of(seed, 2 * pair, rounds, n),
                            orders_of(seed, 2 * pair + 1, rounds, n)};
-  const int step = options.both_orders ? 2 : 1;
+  const int step = both_orders ? 2 : 1;
   constexpr int most_throws = 10000;  // a beginning that allows no end is begun anew
   for (std::uint64_t attempt = 0;; ++attempt) {
     Random coins(seed, Purpose::sides, pair, attempt);
@@ -178,7 +189,7 @@ std::vector<std::vector<bool>> sides_of_pair(std::uint64_t seed, std::uint64_t p
       if (passes && next[0].is_balanced()) {
         std::ranges::copy(next, so_far);
         sides.push_back(round);
-        if (options.both_orders) {
+        if (both_orders) {
           round.flip();
           sides.push_back(round);
         }
@@ -194,19 +205,126 @@ Side side_of(bool is_right) {
   return is_right ? Side::right : Side::left;
 }
 
+// Demonstrations, or graded clips, each once a round.
 std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
                                       const PlanOptions& options) {
-  const std::size_t n = options.demonstrations.size();
-  const int rounds = answers_per_demonstration(options);
+  const bool is_graded = !options.graded.empty();
+  const std::size_t n = is_graded ? options.graded.size() : options.demonstrations.size();
+  const int rounds = options.repetitions * (options.both_orders ? 2 : 1);
   const Orders orders = orders_of(seed, number, rounds, n);
-  const std::vector<std::vector<bool>> sides = sides_of_pair(seed, number / 2, rounds, options);
+  const std::vector<std::vector<bool>> sides =
+      sides_of_pair(seed, number / 2, rounds, n, options.both_orders);
   const bool is_second_of_pair = number % 2 == 1;
   std::vector<PlannedTrial> trials;
   for (std::size_t round = 0; round < sides.size(); ++round) {
     for (const std::size_t i : orders[round]) {
-      const bool is_right = sides[round][i] != is_second_of_pair;
-      trials.push_back(
-          {TrialKind::main, options.demonstrations[i], side_of(is_right), static_cast<int>(round)});
+      PlannedTrial trial;
+      trial.pinch = side_of(sides[round][i] != is_second_of_pair);
+      trial.round = static_cast<int>(round);
+      if (is_graded) {
+        trial.demonstration = options.graded[i].series;
+        trial.level = options.graded[i].level;
+        trial.first = "reference";
+        trial.second = "graded";
+      } else {
+        trial.demonstration = options.demonstrations[i];
+      }
+      trials.push_back(std::move(trial));
+    }
+  }
+  return trials;
+}
+
+using Edge = std::pair<std::size_t, std::size_t>;
+
+// Turns each edge of a graph so that every vertex has as many that begin there as end there, or one
+// more of either: walks along unused edges until it is stuck, which, once the vertices of odd
+// degree are joined to one more vertex, can only be where it began (Euler 1736). Returns for each
+// edge whether it is turned round.
+std::vector<bool> balanced_turns(const std::vector<Edge>& given, std::size_t vertices,
+                                 Random& random) {
+  std::vector<Edge> edges = given;
+  std::vector<std::vector<std::size_t>> at(vertices + 1);  // edges by vertex
+  std::vector<std::size_t> degree(vertices);
+  for (const auto& [a, b] : edges) {
+    ++degree[a];
+    ++degree[b];
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (degree[v] % 2 == 1) edges.emplace_back(v, vertices);
+  }
+  for (const std::size_t i : random.permutation(edges.size())) {
+    at[edges[i].first].push_back(i);
+    at[edges[i].second].push_back(i);
+  }
+  std::vector<bool> used(edges.size()), turned(edges.size());
+  for (std::size_t start = 0; start <= vertices; ++start) {
+    const bool backwards = random.coin();
+    for (std::size_t v = start; !at[v].empty();) {
+      const std::size_t i = at[v].back();
+      at[v].pop_back();
+      if (used[i]) continue;
+      used[i] = true;
+      const bool is_against = edges[i].first != v;
+      turned[i] = is_against != backwards;
+      v = is_against ? edges[i].first : edges[i].second;
+    }
+  }
+  turned.resize(given.size());
+  return turned;
+}
+
+// The pairs of methods that two participants see: pairs[demonstration][round], and whether the
+// second of the two stands on the left for the first participant.
+struct ShownPair {
+  Edge methods;
+  bool is_turned = false;
+};
+
+std::vector<std::vector<ShownPair>> pairs_of_couple(std::uint64_t seed, std::uint64_t couple,
+                                                    const PlanOptions& options) {
+  const std::size_t m = options.methods.size();
+  const std::vector<Edge> all = tournament(m);
+  const auto shown = static_cast<std::size_t>(answers_per_demonstration(options));
+  const std::uint64_t block = couple / all.size();
+  const std::vector<std::size_t> label = Random(seed, Purpose::pair_methods, block).permutation(m);
+  const std::size_t row =
+      Random(seed, Purpose::pair_rows, block).permutation(all.size())[couple % all.size()];
+  std::vector<std::vector<ShownPair>> result(options.demonstrations.size());
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    for (std::size_t t = 0; t < shown; ++t) {
+      const auto& [a, b] = all[((i + row) * shown + t) % all.size()];
+      result[i].push_back({std::minmax(label[a], label[b]), false});
+      edges.push_back(result[i].back().methods);
+    }
+  }
+  Random sides(seed, Purpose::pair_sides, couple);
+  const std::vector<bool> turned = balanced_turns(edges, m, sides);
+  for (std::size_t i = 0; i < edges.size(); ++i) result[i / shown][i % shown].is_turned = turned[i];
+  return result;
+}
+
+std::vector<PlannedTrial> comparison_trials(std::uint64_t seed, std::uint64_t number,
+                                            const PlanOptions& options) {
+  const std::size_t n = options.demonstrations.size();
+  const int rounds = answers_per_demonstration(options);
+  const auto pairs = pairs_of_couple(seed, number / 2, options);
+  Random order(seed, Purpose::pair_order, number);
+  std::vector<std::vector<std::size_t>> which(n);  // of a demonstration's pairs comes in a round
+  for (auto& one : which) one = order.permutation(static_cast<std::size_t>(rounds));
+  std::vector<PlannedTrial> trials;
+  const Orders orders = orders_of(seed, number, rounds, n);
+  for (std::size_t round = 0; round < orders.size(); ++round) {
+    for (const std::size_t i : orders[round]) {
+      const ShownPair& pair = pairs[i][which[i][round]];
+      PlannedTrial trial;
+      trial.demonstration = options.demonstrations[i];
+      trial.first = options.methods[pair.methods.first];
+      trial.second = options.methods[pair.methods.second];
+      trial.pinch = side_of(pair.is_turned != (number % 2 == 1));
+      trial.round = static_cast<int>(round);
+      trials.push_back(std::move(trial));
     }
   }
   return trials;
@@ -224,7 +342,7 @@ void insert_checks(std::vector<PlannedTrial>& trials, std::uint64_t seed, std::u
     const std::size_t place = std::min(begin + places.below(end - begin), main_count) + i;
     const bool is_right = sides.coin() != (number % 2 == 1);
     trials.insert(trials.begin() + static_cast<std::ptrdiff_t>(place),
-                  {TrialKind::attention, checks[i], side_of(is_right), 0});
+                  PlannedTrial{TrialKind::attention, checks[i], side_of(is_right), 0});
   }
 }
 
@@ -242,19 +360,53 @@ Side opposite(Side side) {
   return side == Side::left ? Side::right : Side::left;
 }
 
+std::string clip_key(const GradedClip& clip) {
+  return fmt::format("{} @ {}", clip.series, clip.level);
+}
+
+std::string clip_key(const PlannedTrial& trial) {
+  if (trial.level) return clip_key(GradedClip{trial.demonstration, *trial.level});
+  const bool is_plain = trial.first == "pinch" && trial.second == "baseline";
+  return is_plain ? trial.demonstration
+                  : fmt::format("{}: {} and {}", trial.demonstration, trial.first, trial.second);
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> tournament(std::size_t methods) {
+  const std::size_t even = methods + methods % 2;  // who meets the one that is not there, rests
+  const std::size_t rounds = even - 1;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    if (even == methods) pairs.emplace_back(round, rounds);
+    for (std::size_t i = 1; i < even / 2; ++i) {
+      pairs.emplace_back((round + i) % rounds, (round + rounds - i) % rounds);
+    }
+  }
+  return pairs;
+}
+
 int answers_per_demonstration(const PlanOptions& options) {
+  if (!options.methods.empty()) {
+    const auto m = static_cast<int>(options.methods.size());
+    return options.pairs_per_demonstration > 0 ? options.pairs_per_demonstration : m * (m - 1) / 2;
+  }
+  if (!options.graded.empty()) {
+    const auto levels = static_cast<int>(options.graded.size() / options.demonstrations.size());
+    return levels * options.repetitions * (options.both_orders ? 2 : 1);
+  }
   return options.repetitions * (options.both_orders ? 2 : 1);
 }
 
 std::vector<PlannedTrial> make_plan(std::uint64_t seed, std::uint64_t number,
                                     const PlanOptions& options) {
   assert(!options.demonstrations.empty());
-  std::vector<PlannedTrial> trials = main_trials(seed, number, options);
+  std::vector<PlannedTrial> trials = options.methods.empty()
+                                         ? main_trials(seed, number, options)
+                                         : comparison_trials(seed, number, options);
   insert_checks(trials, seed, number, options.attention_checks);
   std::vector<PlannedTrial> plan;
   Random training(seed, Purpose::training, number);
   for (const std::string& name : options.training) {
-    plan.push_back({TrialKind::training, name, side_of(training.coin()), 0});
+    plan.push_back(PlannedTrial{TrialKind::training, name, side_of(training.coin()), 0});
   }
   plan.insert(plan.end(), trials.begin(), trials.end());
   return plan;

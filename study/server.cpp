@@ -8,13 +8,19 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/read_file.h"
 #include "base/strict_json.h"
+#include "study/answers.h"
 #include "study/html_page.h"
 #include "study/http_server.h"
 #include "study/page_assets.h"
 #include "study/rate_limit.h"
+#include "study/results.h"
 #include "study/secrets.h"
 #include "study/session.h"
+#include "study/study_file.h"
+#include "study/tables.h"
+#include "study/zip.h"
 
 namespace pinchlab::study {
 namespace {
@@ -106,6 +112,7 @@ struct Server::Implementation {
              [this](const HttpRequest& request) { return serve(request); }) {
     add_page();
     add_interface();
+    add_researcher();
   }
 
   HttpReply serve(const HttpRequest& request) {
@@ -146,7 +153,8 @@ struct Server::Implementation {
   void add_page() {
     for (const PageAsset& asset : page_assets()) {
       const std::string path = "/" + std::string(asset.path);
-      if (path.ends_with(".html") || path.starts_with("/texts/")) {
+      if (path.ends_with(".html") ||
+          (path.starts_with("/texts/") && !path.starts_with("/texts/researcher"))) {
         continue;
       }
       routes[{"GET", path}] = [&asset](const HttpRequest&) {
@@ -210,7 +218,8 @@ struct Server::Implementation {
       const Config& config = desk.config();
       return reply({{"language", config.language},
                     {"texts", config.texts},
-                    {"needs_link", config.one_time_links}});
+                    {"needs_link", config.one_time_links},
+                    {"shared_computer", config.shared_computer}});
     };
     routes[{"POST", "/api/start"}] = [this](const HttpRequest& request) { return start(request); };
     routes[{"GET", "/api/session"}] = [this](const HttpRequest& request) {
@@ -260,6 +269,76 @@ struct Server::Implementation {
     };
   }
 
+  void add_researcher() {
+    routes[{"POST", "/api/results"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      const json body = parse_body(request);
+      check_keys(body, {"reveal"});
+      const json reveal = body.value("reveal", json(false));
+      if (!reveal.is_boolean()) {
+        throw Refused(422, "reveal must be true or false");
+      }
+      json result = results.read(reveal.get<bool>());
+      result["pilot"] = desk.config().is_pilot;
+      return reply(result);
+    };
+    routes[{"POST", "/api/preview"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      const json body = parse_body(request);
+      check_keys(body, {"number"});
+      const json number = body.value("number", json());
+      if (!number.is_number_unsigned() || number.get<std::uint64_t>() > 1000000000) {
+        throw Refused(422, "number must be a whole number");
+      }
+      return reply(progress_json(desk.preview(number.get<std::uint64_t>())));
+    };
+    routes[{"POST", "/api/withdraw"}] = [this](const HttpRequest& request) {
+      check_researcher(request);
+      const json body = parse_body(request);
+      check_keys(body, {"code"});
+      const json code = body.value("code", json());
+      if (!code.is_string()) {
+        throw Refused(422, "code must be a string");
+      }
+      return reply({{"participant", desk.withdraw(code.get<std::string>())}});
+    };
+    for (const char* what : {"answers.zip", "answers.csv", "psych-ds.zip"}) {
+      routes[{"GET", std::string("/api/download/") + what}] = [this,
+                                                               what](const HttpRequest& request) {
+        check_researcher(request);
+        return download(what);
+      };
+    }
+  }
+
+  // All answers as they are, or as tables; made in memory, but for archives, which libarchive
+  // writes to a file.
+  HttpReply download(const std::string& what) {
+    HttpReply result;
+    result.type = what.ends_with(".zip") ? "application/zip" : "text/csv; charset=utf-8";
+    result.headers.emplace_back("Content-Disposition", "attachment; filename=" + what);
+    const std::filesystem::path& answers = desk.answers();
+    if (what == "answers.csv") {
+      result.body = answers_csv(answers);
+      return result;
+    }
+    const std::filesystem::path path = running_folder(answers) / (random_hex(8) + ".zip");
+    {
+      ZipWriter zip(path);
+      if (what == "psych-ds.zip") {
+        for (const auto& [name, bytes] : psych_ds_files(answers)) zip.add(name, bytes);
+      } else {
+        for (const std::filesystem::path& file : answer_files(answers)) {
+          zip.add("answers/" + file.filename().string(), read_whole(file));
+        }
+      }
+      zip.finish();
+    }
+    result.body = read_whole(path);
+    std::filesystem::remove(path);
+    return result;
+  }
+
   void check_researcher(const HttpRequest& request) const {
     if (!equal_in_constant_time(token_of(request), researcher_token)) {
       throw Refused(401, "this needs the token that was printed at start");
@@ -297,6 +376,7 @@ struct Server::Implementation {
   }
 
   Desk& desk;
+  Results results{desk.answers()};
   ServerOptions options;
   std::string researcher_token = random_hex(16);
   RateLimit rate{requests_per_second, requests_at_once};

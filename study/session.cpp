@@ -79,10 +79,14 @@ auto refusing(const Read& read) {
 void read_plan(const json& plan, const std::string& file, Session& session) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     JsonObject object(plan[i], file, fmt::format("/plan/{}", i));
-    session.plan.push_back({kind_from(object.choice("kind", {"main", "training", "attention"})),
-                            object.name("demonstration"),
-                            side_from(object.choice("pinch", {"left", "right"})),
-                            static_cast<int>(object.whole("round", 0, 1000))});
+    PlannedTrial trial{kind_from(object.choice("kind", {"main", "training", "attention"})),
+                       object.name("demonstration"),
+                       side_from(object.choice("pinch", {"left", "right"})),
+                       static_cast<int>(object.whole("round", 0, 1000))};
+    if (object.has("first")) trial.first = object.name("first");
+    if (object.has("second")) trial.second = object.name("second");
+    if (object.has("level")) trial.level = object.number("level", -1e9, 1e9);
+    session.plan.push_back(std::move(trial));
     session.media.push_back(object.name("media"));
     object.finish();
   }
@@ -160,11 +164,17 @@ ordered_json to_json(const TrialAnswer& answer) {
 }
 
 json to_json(const PlannedTrial& trial, const std::string& media) {
-  return {{"kind", to_string(trial.kind)},
-          {"demonstration", trial.demonstration},
-          {"pinch", to_string(trial.pinch)},
-          {"round", trial.round},
-          {"media", media}};
+  json object = {{"kind", to_string(trial.kind)},
+                 {"demonstration", trial.demonstration},
+                 {"pinch", to_string(trial.pinch)},
+                 {"round", trial.round},
+                 {"media", media}};
+  if (clip_key(trial) != trial.demonstration) {
+    object["first"] = trial.first;
+    object["second"] = trial.second;
+  }
+  if (trial.level) object["level"] = *trial.level;
+  return object;
 }
 
 json to_json(const Session& session) {

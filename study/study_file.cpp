@@ -24,11 +24,21 @@ constexpr std::size_t most_links = 1000000;
 // What a study is counterbalanced by: participants of two plans must not come into one folder.
 json fingerprint(const Config& config) {
   const PlanOptions options = plan_options(config);
-  return {{"demonstrations", options.demonstrations},
-          {"training", options.training},
-          {"attention_checks", options.attention_checks},
-          {"repetitions", options.repetitions},
-          {"both_orders", options.both_orders}};
+  json plan = {{"demonstrations", options.demonstrations},
+               {"training", options.training},
+               {"attention_checks", options.attention_checks},
+               {"repetitions", options.repetitions},
+               {"both_orders", options.both_orders}};
+  if (!options.methods.empty()) {
+    plan["methods"] = options.methods;
+    plan["pairs_per_demonstration"] = answers_per_demonstration(options);
+  }
+  if (!options.graded.empty()) {
+    plan["graded_hit"] = config.graded_hit;
+    for (const GradedClip& clip : options.graded) plan["graded"].push_back(clip_key(clip));
+  }
+  if (config.is_pilot) plan["pilot"] = true;
+  return plan;
 }
 
 fs::path study_path(const fs::path& answers) {

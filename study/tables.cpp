@@ -43,11 +43,21 @@ std::string choice(const json& trial) {
   if (trial["kind"] == "attention") {
     return trial["choice"] == trial["expected"] ? "pass" : "fail";
   }
-  return trial[trial["choice"].get<std::string>()] == "pinch" ? "pinch" : "cable";
+  const std::string chosen = trial[trial["choice"].get<std::string>()];
+  return chosen == "baseline" ? "cable" : chosen;
 }
 
 std::string pinch_side(const json& trial) {
   return trial["left"] == "pinch" ? "left" : trial["right"] == "pinch" ? "right" : "";
+}
+
+// Kinds of studies that a column is for.
+constexpr unsigned two_methods = 1, several_methods = 2, thresholds = 4, every_kind = 7;
+
+unsigned kind_of(const json& file) {
+  return file["plan"].contains("methods")      ? several_methods
+         : file["plan"].contains("graded_hit") ? thresholds
+                                               : two_methods;
 }
 
 // A column of the answers. One without `value` is the trial's key of that name.
@@ -55,6 +65,7 @@ struct Column {
   const char* name;
   const char* description;
   std::string (*value)(const json& file, const json& trial) = nullptr;
+  unsigned kinds = every_kind;
 };
 
 const std::vector<Column> columns = {
@@ -65,10 +76,20 @@ const std::vector<Column> columns = {
     {"position", "Place of the trial in the session, from 1"},
     {"kind", "main: an answer of the study; training: for practice; attention: has a right answer"},
     {"demonstration", "What was shown"},
+    {"left", "What the left side showed", nullptr, several_methods | thresholds},
+    {"right", "What the right side showed", nullptr, several_methods | thresholds},
+    {"level", "Of the graded clip", nullptr, thresholds},
+    {"correct", "1: a hit, what the plan calls so was chosen; 0: it was not",
+     [](const json& file, const json& trial) -> std::string {
+       if (trial["kind"] == "attention") return trial["choice"] == trial["expected"] ? "1" : "0";
+       const std::string chosen = trial[trial["choice"].get<std::string>()];
+       return chosen == file["plan"]["graded_hit"] ? "1" : "0";
+     },
+     thresholds},
     {"side", "Side that showed pinch joints",
-     [](const json&, const json& trial) { return pinch_side(trial); }},
-    {"choice", "What was chosen: pinch or cable; in attention trials pass or fail",
-     [](const json&, const json& trial) { return choice(trial); }},
+     [](const json&, const json& trial) { return pinch_side(trial); }, two_methods},
+    {"choice", "What was chosen: pinch, cable or another method; in attention trials pass or fail",
+     [](const json&, const json& trial) { return choice(trial); }, two_methods | several_methods},
     {"chosen_side", "Side that was chosen",
      [](const json&, const json& trial) { return value_of(trial, "choice"); }},
     {"reaction_time_s", "Seconds from the moment the buttons appeared to the choice"},
@@ -103,9 +124,10 @@ std::string row(const std::vector<std::string>& values) {
   return text + "\n";
 }
 
-ordered_json description() {
+ordered_json description(unsigned kind) {
   ordered_json variables = ordered_json::array();
   for (const Column& column : columns) {
+    if ((column.kinds & kind) == 0) continue;
     variables.push_back(
         {{"@type", "PropertyValue"}, {"name", column.name}, {"description", column.description}});
   }
@@ -113,8 +135,7 @@ ordered_json description() {
           {"@type", "Dataset"},
           {"name", "Which cable looks most realistic?"},
           {"description",
-           "Two-alternative forced choices between simulations of cables with and without pinch "
-           "joints, shown side by side. One row a trial."},
+           "Forced choices between simulations of cables, shown side by side. One row a trial."},
           {"variableMeasured", variables}};
 }
 
@@ -137,7 +158,11 @@ ordered_json plan_json(std::uint64_t seed, std::uint64_t participants, const Pla
       trials.push_back({{"position", trials.size() + 1},
                         {"kind", to_string(trial.kind)},
                         {"demonstration", trial.demonstration},
-                        {is_check ? "expected" : "pinch", to_string(trial.pinch)}});
+                        {is_check ? "expected" : trial.first, to_string(trial.pinch)}});
+      if (clip_key(trial) != trial.demonstration) {
+        trials.back()[trial.second] = to_string(opposite(trial.pinch));
+      }
+      if (trial.level) trials.back()["level"] = *trial.level;
     }
     all.push_back({{"participant_number", number}, {"trials", trials}});
   }
@@ -145,53 +170,78 @@ ordered_json plan_json(std::uint64_t seed, std::uint64_t participants, const Pla
 }
 
 std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanOptions& options) {
-  std::string csv = "participant_number,position,kind,demonstration,pinch_side,expected_side\n";
+  std::string csv =
+      "participant_number,position,kind,demonstration,left,right,level,expected_side\n";
   for (std::uint64_t number = 0; number < participants; ++number) {
     int position = 0;
     for (const PlannedTrial& trial : make_plan(seed, number, options)) {
       const bool is_check = trial.kind == TrialKind::attention;
       const std::string side = to_string(trial.pinch);
+      const bool is_left = trial.pinch == Side::left;
       csv += row({std::to_string(number), std::to_string(++position), to_string(trial.kind),
-                  trial.demonstration, is_check ? "" : side, is_check ? side : ""});
+                  trial.demonstration,
+                  is_check  ? "check"
+                  : is_left ? trial.first
+                            : trial.second,
+                  is_check  ? "check"
+                  : is_left ? trial.second
+                            : trial.first,
+                  trial.level ? fmt::format("{}", *trial.level) : "", is_check ? side : ""});
     }
   }
   return csv;
 }
 
-std::string answers_csv(const fs::path& folder) {
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const Column& column : columns) {
-    names.emplace_back(column.name);
-  }
-  std::string csv = row(names);
+namespace {
+
+// The CSV of a folder, and what kind of study it is of.
+std::pair<std::string, unsigned> read_folder(const fs::path& folder) {
+  std::string csv;
+  unsigned kind = 0;
   SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
     const json file = read_json_file(path, largest_file);
     same_study.check(parse_answer_file(file, path.string()), path.string());
+    kind = kind_of(file);
     for (const json& trial : file["trials"]) {
       std::vector<std::string> values;
-      values.reserve(columns.size());
       for (const Column& column : columns) {
+        if ((column.kinds & kind) == 0) continue;
         values.push_back(column.value != nullptr ? column.value(file, trial)
                                                  : value_of(trial, column.name));
       }
       csv += row(values);
     }
   }
-  return csv;
+  if (kind == 0) kind = two_methods;  // an empty folder
+  std::vector<std::string> names;
+  for (const Column& column : columns) {
+    if ((column.kinds & kind) != 0) names.emplace_back(column.name);
+  }
+  return {row(names) + csv, kind};
+}
+
+}  // namespace
+
+std::string answers_csv(const fs::path& folder) {
+  return read_folder(folder).first;
+}
+
+std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
+  const auto [csv, kind] = read_folder(folder);
+  return {{"data/study-cables_data.csv", csv},
+          {"README.md", dataset_readme},
+          {"dataset_description.json", description(kind).dump(2) + "\n"}};
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {
-  const std::string csv = answers_csv(folder);
+  const std::map<std::string, std::string> files = psych_ds_files(folder);
   if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
     throw std::runtime_error(
         fmt::format("{}: is there already; name a new folder, or empty it", out.string()));
   }
   fs::create_directories(out / "data");
-  write_durably(out / "data" / "study-cables_data.csv", csv);
-  write_durably(out / "README.md", dataset_readme);
-  write_durably(out / "dataset_description.json", description().dump(2) + "\n");
+  for (const auto& [name, bytes] : files) write_durably(out / name, bytes);
 }
 
 }  // namespace pinchlab::study

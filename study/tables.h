@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -20,6 +21,9 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 /// All answers of a folder as tidy CSV, one row a trial. Throws InputError for a file
 /// that is no answer file.
 std::string answers_csv(const std::filesystem::path& folder);
+
+/// The files of a Psych-DS dataset of a folder's answers, by their paths.
+std::map<std::string, std::string> psych_ds_files(const std::filesystem::path& folder);
 
 /// Makes a Psych-DS dataset (dataset_description.json, data/study-cables_data.csv) of a folder's
 /// answers. `out` must not exist, or be empty.

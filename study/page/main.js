@@ -16,7 +16,8 @@ const tell = (trouble) => {
   if (notice.textContent !== text) notice.textContent = text;
 };
 const backend = connect(tell);
-({ texts } = await backend.study());
+let isShared = false;  // one computer for many participants
+({ texts, shared_computer: isShared = false } = await backend.study());
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
@@ -43,8 +44,8 @@ try {
     const { code } = await backend.leave() ?? {};
     jsPsych.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
-    if (code) thanks(stage, texts, code);  // saved already, in another window
-    else goodbye(stage, texts);
+    if (code) thanks(stage, texts, code, isShared);  // saved already, in another window
+    else goodbye(stage, texts, isShared);
   };
 
   const countedFrom = (index) => session.trials.slice(index).filter(({ practice }) => !practice).length;
@@ -55,7 +56,10 @@ try {
     remaining: countedFrom(index),
     practice: session.trials[index].practice,
     exit: () => exitButton(texts, leave),
-    clip: (onShare) => clips.url(index, onShare),
+    clip(onShare) {
+      clips.want(index);
+      return clips.url(index, onShare);
+    },
     before: () => backend.show(index),
     after: (data) => backend.answer({ index, encoding: clips.encoding, ...data }),
     failed: (error) => failed(stage, texts, error),
@@ -69,7 +73,7 @@ try {
   timeline.push(page(async (display) => { code = await save(display, texts, backend, freeText, leave); }));
   timeline.push(page(async (display) => {
     if (document.fullscreenElement) document.exitFullscreen();
-    thanks(display, texts, code);
+    thanks(display, texts, code, isShared);
     return new Promise(() => {});  // the end: stays
   }));
   await jsPsych.run(timeline);

@@ -3,21 +3,10 @@
 // what the participant did there.
 
 import { Refused, SessionGone } from './errors.js';
+import { make } from './make.js';
 
 const smallest = { width: 1280, height: 720 };  // px, of the screen
 const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars besides the window
-
-/** An element: tag, attributes (or handlers: onclick), children (strings or elements). */
-export function make(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
-    else if (value === true) element.setAttribute(name, '');
-    else if (value !== false) element.setAttribute(name, value);
-  }
-  element.append(...children);
-  return element;
-}
 
 const paragraphs = (text) => text.split('\n\n').map((part) => make('p', {}, part));
 
@@ -191,9 +180,8 @@ export class Clips {
     }
   }
 
-  /** The address of a clip, once it is there; `onShare` hears how much is, until then. */
+  /** The address of a clip, once it is there; `onShare` hears how much is, until then. It has to be wanted first. */
   async url(index, onShare) {
-    this.want(index);
     this.onProgress = () => onShare(this.shares.get(index) ?? 0);
     this.onProgress();
     try {
@@ -227,6 +215,7 @@ export async function preload(stage, texts, session, onTrouble) {
   };
   show(0);
   sheet(stage, texts.preload_heading, bar, words);
+  clips.want(session.next);
   for (const [i, index] of first.entries()) await clips.url(index, (share) => show((i + share) / first.length));
   return clips;
 }
@@ -252,6 +241,9 @@ export function questions(stage, texts, onLeave) {
         }, texts.next), exitButton(texts, onLeave)));
   });
 }
+
+const nextParticipant = (texts, isShared) => (isShared ? [make('div', { class: 'row' },
+  make('button', { type: 'button', id: 'next-participant', onclick: () => location.reload() }, texts.next_participant))] : []);
 
 function offerDownload(content) {
   const url = URL.createObjectURL(new Blob([JSON.stringify(content, null, 2)], { type: 'application/json' }));
@@ -290,17 +282,18 @@ export function save(stage, texts, backend, freeText, onLeave) {
   });
 }
 
-/** The end. */
-export function thanks(stage, texts, code) {
+/** The end; `isShared`: another participant follows at this computer. */
+export function thanks(stage, texts, code, isShared = false) {
   const copy = make('button', {
     type: 'button', class: 'quiet',
     onclick: () => navigator.clipboard.writeText(code).then(() => { copy.textContent = texts.copied; }, console.warn),
   }, texts.copy);
   copy.hidden = !navigator.clipboard;  // as on pages without TLS
   sheet(stage, texts.saved_heading, make('p', {}, texts.saved_body),
-    ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []));
+    ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []),
+    ...nextParticipant(texts, isShared));
 }
 
-export function goodbye(stage, texts) {
-  sheet(stage, texts.left_heading, make('p', {}, texts.left_body));
+export function goodbye(stage, texts, isShared = false) {
+  sheet(stage, texts.left_heading, make('p', {}, texts.left_body), ...nextParticipant(texts, isShared));
 }

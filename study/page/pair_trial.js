@@ -2,7 +2,7 @@
 // A jsPsych plugin: two clips in one video, so that both are on the same frame always, and a forced
 // choice that can be made once the first loop has ended.
 
-import { make } from './pages.js';
+import { make } from './make.js';
 
 const { ParameterType } = jsPsychModule;
 

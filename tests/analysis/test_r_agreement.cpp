@@ -8,6 +8,7 @@
 
 #include "analysis/clustered.h"
 #include "analysis/gsl_support.h"
+#include "analysis/scale_report.h"
 #include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {
@@ -61,6 +62,64 @@ TEST(AgreementWithR, TestsAndIntervals) {
   ASSERT_EQ(r.size(), ours.size());
   for (size_t i = 0; i < r.size(); ++i)
     EXPECT_NEAR(ours[i], r[i], 1e-9 * std::abs(r[i]) + 1e-12) << i;
+}
+
+// The second column on of what analysis/reproduce.R makes of answers, row by row.
+std::vector<double> reproduced(const fs::path& csv, const test::TemporaryFolder& folder) {
+  const fs::path out = folder.path() / "tables.csv";
+  const std::string command =
+      fmt::format("Rscript --vanilla '{}/analysis/reproduce.R' '{}' > '{}' 2> /dev/null",
+                  PINCHLAB_SOURCE_DIR, csv.string(), out.string());
+  if (std::system(command.c_str()) != 0) return {};
+  std::istringstream lines(test::read_text(out));
+  std::string line;
+  std::getline(lines, line);
+  std::vector<double> numbers;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line.substr(line.find(',') + 1));
+    for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
+  }
+  return numbers;
+}
+
+TEST(AgreementWithR, TheScriptReproducesTheTables) {
+  if (!has_r()) GTEST_SKIP() << "Rscript is not installed (Debian: r-base-core)";
+  const test::TemporaryFolder folder;
+  const Rng rng = make_rng(RandomUse::study, 12);
+  std::string two = "participant,demonstration,choice\n";
+  std::string many = "participant,demonstration,left,right,choice\n";
+  for (int p = 0; p < 20; ++p) {
+    for (int j = 1; j <= 3; ++j) {
+      two += fmt::format("p{},{},{}\n", p, j,
+                         gsl_rng_uniform(rng.get()) < 0.2 + 0.2 * j ? "pinch" : "cable");
+      for (const char* pair : {"ab", "bc", "ca"}) {
+        const double share = pair[0] == 'c' ? 0.3 : 0.65;
+        many += fmt::format("p{},{},{},{},{}\n", p, j, pair[0], pair[1],
+                            pair[gsl_rng_uniform(rng.get()) < share ? 0 : 1]);
+      }
+    }
+  }
+  const fs::path answers = folder.write("two.csv", two);
+  std::vector<double> ours;
+  const AnswersTable table = read_answers({answers}, {});
+  for (const DemonstrationResult& result : analyse_table(table, {}).demonstrations) {
+    const Row& row = result.row;
+    ours.insert(ours.end(),
+                {static_cast<double>(row.counts.pinch), static_cast<double>(row.counts.cable),
+                 row.share, row.p_exact, row.wilson.low, row.wilson.high});
+  }
+  const auto expect_equal = [&](const std::vector<double>& r) {
+    ASSERT_EQ(r.size(), ours.size());
+    for (size_t i = 0; i < r.size(); ++i)
+      EXPECT_NEAR(ours[i], r[i], 1e-6 * std::abs(r[i]) + 1e-9) << i;
+  };
+  expect_equal(reproduced(answers, folder));
+  const fs::path comparisons = folder.write("many.csv", many);
+  const ComparisonsTable methods = read_comparisons({comparisons}, {});
+  ours.clear();
+  for (const ScaleValueOf& value : analyse_scale(methods, {}).all.values)
+    ours.insert(ours.end(), {value.value.value, value.low.value, value.high.value});
+  expect_equal(reproduced(comparisons, folder));
 }
 
 TEST(AgreementWithR, MixedModelOfLme4) {

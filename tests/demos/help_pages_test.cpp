@@ -105,7 +105,7 @@ TEST(HelpPages, CompletionOffersWhatHelpNames) {
 TEST(HelpPages, CompletionKnowsBeginningsAndValues) {
   const fs::path folder = folder_with_completion();
   using Set = std::set<std::string>;
-  EXPECT_EQ(offered(folder, {"st"}), (Set{"still", "study"}));
+  EXPECT_EQ(offered(folder, {"st"}), (Set{"still", "stopping", "study"}));
   EXPECT_EQ(offered(folder, {"study", "ser"}), (Set{"serve"}));
   EXPECT_EQ(offered(folder, {"render", "--co"}), (Set{"--codec"}));
   EXPECT_EQ(offered(folder, {"render", "--codec", ""}),

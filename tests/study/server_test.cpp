@@ -18,8 +18,8 @@
 #include "base/answer_file.h"
 #include "study/answers.h"
 #include "study/connections.h"
+#include "study/http_client.h"
 #include "study/page_assets.h"
-#include "tests/study/http_client.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {

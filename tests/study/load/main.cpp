@@ -26,7 +26,7 @@
 #include <mutex>
 #include <thread>
 
-#include "tests/study/http_client.h"
+#include "study/http_client.h"
 #include "tests/study/server_process.h"
 
 namespace pinchlab::study {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "tests/study/http_client.h"
+#include "study/http_client.h"
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>

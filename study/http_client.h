@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A client as patient as a browser, for tests against a server on this computer.
+// A client as patient as a browser, of a server on this computer: for simulated participants and tests.
 
 #include <chrono>
 #include <cstdint>

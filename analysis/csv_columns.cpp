@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/csv_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/groups.h"
+#include "base/did_you_mean.h"
+#include "base/input_error.h"
+#include "base/text_checks.h"
+
+namespace pinchlab::analysis {
+
+namespace fs = std::filesystem;
+
+std::string name_in_file(const ReadOptions& options, const std::string& column) {
+  const auto mapped = options.columns.find(column);
+  return mapped == options.columns.end() ? column : mapped->second;
+}
+
+bool has_columns(const fs::path& path, const ReadOptions& options,
+                 const std::vector<std::string>& names) {
+  if (!fs::is_regular_file(path) || (path.extension() != ".csv" && path.extension() != ".tsv"))
+    return false;
+  CsvReader reader(path, options.separator);
+  std::vector<std::string_view> fields;
+  return reader.next(fields) && std::ranges::all_of(names, [&](const std::string& name) {
+           return std::ranges::find(fields, name_in_file(options, name)) != fields.end();
+         });
+}
+
+CsvColumns::CsvColumns(const fs::path& path, const ReadOptions& options,
+                       std::vector<std::string> names, const std::vector<std::string>& ignored)
+    : reader_(path, options.separator), names_(std::move(names)), place_(names_.size(), -1) {
+  if (!reader_.next(fields_)) throw InputError(reader_.place(), "the file is empty");
+  width_ = fields_.size();
+  std::vector<std::string> known;
+  for (const std::string& name : names_) known.push_back(name_in_file(options, name));
+  for (const std::string& name : ignored) known.push_back(name_in_file(options, name));
+  for (std::size_t i = 0; i < width_; ++i) {
+    const auto found = std::ranges::find(known, fields_[i]);
+    if (found == known.end()) {
+      if (options.ignore_other_columns) continue;
+      fail(
+          fmt::format("unknown column `{}`{}; columns are {}. Name columns with --map-column, or "
+                      "pass --ignore-other-columns",
+                      fields_[i], did_you_mean(fields_[i], known), one_of(known)));
+    }
+    const auto column = static_cast<std::size_t>(found - known.begin());
+    if (column >= names_.size()) continue;
+    if (place_[column] >= 0) fail(fmt::format("column `{}` stands twice", fields_[i]));
+    place_[column] = static_cast<int>(i);
+  }
+}
+
+bool CsvColumns::next() {
+  if (!reader_.next(fields_)) return false;
+  if (fields_.size() != width_) {
+    fail(fmt::format("{} fields, but the first line has {}", fields_.size(), width_));
+  }
+  return true;
+}
+
+std::string CsvColumns::name(std::size_t column) const {
+  if (!has(column)) return "";
+  const std::string why = why_not_a_name(at(column));
+  if (!why.empty()) fail(fmt::format("bad {}: {}", names_[column], why));
+  return std::string(at(column));
+}
+
+long CsvColumns::whole(std::size_t column, long low, long high) const {
+  const auto number = parse_whole(at(column), low, high);
+  if (!number) {
+    fail(fmt::format("{} `{}` is not a whole number from {} to {}", names_[column],
+                     at(column).substr(0, 60), low, high));
+  }
+  return *number;
+}
+
+bool CsvColumns::is_main(std::size_t column) const {
+  if (!has(column)) return true;
+  const std::string_view value = at(column);
+  if (value != "main" && value != "training" && value != "attention") {
+    fail(fmt::format("kind `{}` is unknown; it must be `main`, `training` or `attention`",
+                     value.substr(0, 60)));
+  }
+  return value == "main";
+}
+
+void CsvColumns::fail(const std::string& message) const {
+  throw InputError(reader_.place(), message);
+}
+
+Exclusions::Exclusions(const ReadOptions& options) {
+  if (!options.exclude_file.empty()) list_ = read_exclusions(options.exclude_file);
+  for (const Exclusion& exclusion : list_) found_.emplace(exclusion.participant, false);
+}
+
+bool Exclusions::excluded(const std::string& participant) {
+  const auto found = found_.find(participant);
+  if (found == found_.end()) return false;
+  found->second = true;
+  return true;
+}
+
+std::vector<Exclusion> Exclusions::finish() const {
+  for (const auto& [name, found] : found_) {
+    if (found) continue;
+    throw InputError("--exclude",
+                     fmt::format("participant `{}` is in no input; correct the list or take the "
+                                 "row out",
+                                 name));
+  }
+  return list_;
+}
+
+}  // namespace pinchlab::analysis

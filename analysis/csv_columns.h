@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A CSV file with known columns, read record by record.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analysis/answers_table.h"
+#include "base/csv_reader.h"
+
+namespace pinchlab::analysis {
+
+/// A CSV file that says whose answer to what a record is, besides its own columns.
+class CsvColumns {
+ public:
+  /// Columns are asked for by their place in `names`; `ignored` ones may be there too. Throws
+  /// InputError for an empty file, and for columns that are unknown or stand twice.
+  CsvColumns(const std::filesystem::path& path, const ReadOptions& options,
+             std::vector<std::string> names, const std::vector<std::string>& ignored);
+
+  [[nodiscard]] bool has(std::size_t column) const { return place_[column] >= 0; }
+
+  /// The next record; false at the end. Throws InputError if it has too few or too many fields.
+  bool next();
+
+  [[nodiscard]] std::string_view at(std::size_t column) const {
+    return fields_[static_cast<std::size_t>(place_[column])];
+  }
+  /// A name, or "" if there is no such column.
+  [[nodiscard]] std::string name(std::size_t column) const;
+  [[nodiscard]] long whole(std::size_t column, long low, long high) const;
+  /// Of a column `kind`: an answer of the study, not of training or an attention check.
+  [[nodiscard]] bool is_main(std::size_t column) const;
+
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  CsvReader reader_;
+  std::vector<std::string> names_;
+  std::vector<int> place_;
+  std::vector<std::string_view> fields_;
+  std::size_t width_ = 0;
+};
+
+/// The name that one of our columns has in the files.
+std::string name_in_file(const ReadOptions& options, const std::string& column);
+
+/// Does the first line of a CSV file have all of these columns? False for other kinds of files.
+bool has_columns(const std::filesystem::path& path, const ReadOptions& options,
+                 const std::vector<std::string>& names);
+
+/// Who is to be left out, and who of them turned up.
+class Exclusions {
+ public:
+  explicit Exclusions(const ReadOptions& options);
+  /// Is this participant to be left out?
+  bool excluded(const std::string& participant);
+  /// Throws InputError for a name that nobody bears; otherwise the list.
+  std::vector<Exclusion> finish() const;
+
+ private:
+  std::vector<Exclusion> list_;
+  std::map<std::string, bool> found_;
+};
+
+}  // namespace pinchlab::analysis

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/simulate.h"
+
+#include <fmt/format.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "base/input_error.h"
+#include "base/json_object.h"
+#include "base/strict_json.h"
+#include "study/http_client.h"
+#include "study/server.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t largest_truth = 1U << 20U;  // bytes
+
+std::map<std::string, double> read_numbers(JsonObject& truth, const char* key, double low,
+                                           double high) {
+  std::map<std::string, double> numbers;
+  if (!truth.has(key)) return numbers;
+  JsonObject object = truth.object(key);
+  for (const std::string& name : object.all_keys()) numbers[name] = object.number(name, low, high);
+  return numbers;
+}
+
+double logistic(double x) {
+  return 1 / (1 + std::exp(-x));
+}
+
+// One who is not there.
+class Simulated {
+ public:
+  Simulated(Desk& desk, const Truth& truth, std::uint64_t seed)
+      : desk_(desk), truth_(truth), seed_(seed) {}
+
+  void take_part(const std::string& address) {
+    HttpClient client(address);
+    const json started = post(client, "/api/start", {{"consent", true}});
+    token_ = started.at("token");
+    const auto [number, plan] = desk_.plan_of(token_.substr(0, token_.find('.')));
+    become(number);
+    for (std::size_t i = started.at("next"); i < plan.size(); ++i) {
+      post(client, "/api/show", {{"index", i}});
+      const auto clip = client.get(started.at("trials").at(i).at("mp4"), {{"Range", "bytes=0-0"}});
+      if (!clip || clip->status != 206) throw std::runtime_error("a clip could not be fetched");
+      post(client, "/api/answer", answer_to(plan[i], i));
+    }
+    post(client, "/api/save", {{"free_text", json::object()}});
+  }
+
+ private:
+  // What one is like goes by the number, so that who comes first changes nothing.
+  void become(std::uint64_t number) {
+    gsl_rng_set(rng_.get(), (seed_ * 1000003 + number) & 0xFFFFFFFFU);  // mt19937 takes 32 bits
+    own_lean_ = normal(truth_.spread);
+    for (const auto& [name, value] : truth_.methods)
+      own_values_[name] = value + normal(truth_.spread);
+    for (const auto& [name, series] : truth_.series)
+      own_thresholds_[name] = series.threshold + normal(series.spread);
+  }
+
+  double uniform() { return gsl_rng_uniform(rng_.get()); }
+  double normal(double sd) { return gsl_ran_gaussian(rng_.get(), sd); }
+
+  json post(HttpClient& client, const std::string& path, const json& body) {
+    const auto answer = client.post(path, body, token_);
+    if (!answer || answer->status != 200) {
+      throw std::runtime_error(fmt::format("{} was answered with {}", path,
+                                           answer ? std::to_string(answer->status) : "nothing"));
+    }
+    return json::parse(answer->body);
+  }
+
+  // P(the first is chosen), sides and lapses left out.
+  double share_of_first(const PlannedTrial& trial) {
+    if (trial.level) {
+      const TrueThreshold& series = truth_.series.at(trial.demonstration);
+      const double from = *trial.level - own_thresholds_.at(trial.demonstration);
+      const double g = logistic(2 * std::log(19.0) * from / series.width);
+      const double hit = 0.5 + 0.5 * g;
+      return desk_.config().graded_hit == "reference" ? hit : 1 - hit;
+    }
+    if (trial.first == "pinch" && trial.second == "baseline") {
+      const auto known = truth_.shares.find(trial.demonstration);
+      const double share = known == truth_.shares.end() ? 0.5 : known->second;
+      return logistic(std::log(share / (1 - share)) + own_lean_);
+    }
+    return logistic(own_values_.at(trial.first) - own_values_.at(trial.second));
+  }
+
+  json answer_to(const PlannedTrial& trial, std::size_t index) {
+    double share = trial.kind == TrialKind::attention ? 1.0 : share_of_first(trial);
+    if (truth_.left != 0 && share > 0 && share < 1) {
+      const double side = trial.pinch == Side::left ? truth_.left : -truth_.left;
+      share = logistic(std::log(share / (1 - share)) + side);
+    }
+    const bool is_lapse = uniform() < truth_.lapses;
+    const bool is_first = uniform() < (is_lapse ? 0.5 : share);
+    const Side choice = is_first ? trial.pinch : opposite(trial.pinch);
+    return {{"index", index},
+            {"choice", to_string(choice)},
+            {"reaction_time_s", std::round(1000 * gsl_ran_lognormal(rng_.get(), 0, 0.5)) / 1000},
+            {"loops_watched", 1},
+            {"focus_lost_count", 0},
+            {"frame_count", 240},
+            {"dropped_frames", 0},
+            {"playback_errors", json::array()},
+            {"input", "mouse"},
+            {"encoding", "mp4"},
+            {"window_width_px", 1920},
+            {"window_height_px", 1080},
+            {"clip_width_px", 1920},
+            {"clip_height_px", 960},
+            {"screen_width_px", 1920},
+            {"screen_height_px", 1080},
+            {"device_pixel_ratio", 1}};
+  }
+
+  Desk& desk_;
+  const Truth& truth_;
+  std::uint64_t seed_;
+  std::unique_ptr<gsl_rng, void (*)(gsl_rng*)> rng_{gsl_rng_alloc(gsl_rng_mt19937), &gsl_rng_free};
+  double own_lean_ = 0;
+  std::map<std::string, double> own_values_, own_thresholds_;
+  std::string token_;
+};
+
+void check_truth(const Config& config, const Truth& truth) {
+  for (const std::string& method : config.methods) {
+    if (!truth.methods.contains(method)) {
+      throw std::invalid_argument(fmt::format("the truth has no value of the method `{}`", method));
+    }
+  }
+  for (const GradedStimulus& stimulus : config.graded) {
+    if (!truth.series.contains(stimulus.clip.series)) {
+      throw std::invalid_argument(
+          fmt::format("the truth has no threshold of the series `{}`", stimulus.clip.series));
+    }
+  }
+}
+
+// Runs a server until it goes out of scope.
+class Serving {
+ public:
+  explicit Serving(Server& server) : server_(server), thread_([&server] { server.run(); }) {}
+  ~Serving() {
+    server_.stop();
+    thread_.join();
+  }
+  Serving(const Serving&) = delete;
+  Serving& operator=(const Serving&) = delete;
+
+ private:
+  Server& server_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+Truth read_truth(const fs::path& path) {
+  const json document = read_json_file(path, largest_truth);
+  JsonObject object(document, path.string(), "");
+  object.choice("format", {"pinchlab-truth 1"});
+  Truth truth;
+  truth.shares = read_numbers(object, "shares", 0.001, 0.999);
+  truth.methods = read_numbers(object, "methods", -20, 20);
+  if (object.has("series")) {
+    JsonObject all = object.object("series");
+    for (const std::string& name : all.all_keys()) {
+      JsonObject one = all.object(name);
+      TrueThreshold& series = truth.series[name];
+      series.threshold = one.number("threshold", -1e9, 1e9);
+      series.width = one.number("width", 1e-9, 1e9);
+      if (one.has("spread")) series.spread = one.number("spread", 0, 1e9);
+      one.finish();
+    }
+  }
+  if (object.has("spread")) truth.spread = object.number("spread", 0, 10);
+  if (object.has("left")) truth.left = object.number("left", -10, 10);
+  if (object.has("lapses")) truth.lapses = object.number("lapses", 0, 1);
+  object.finish("; study/README.md has the keys");
+  return truth;
+}
+
+void simulate(Desk& desk, const Truth& truth, const SimulationOptions& options) {
+  check_truth(desk.config(), truth);
+  Server server(desk, ServerOptions{});
+  const Serving serving(server);
+  std::atomic<int> next = 0, finished = 0;
+  std::mutex mutex;
+  std::exception_ptr problem;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < std::min(options.at_once, options.participants); ++i) {
+    threads.emplace_back([&] {
+      for (int who = next++; who < options.participants; who = next++) {
+        try {
+          Simulated(desk, truth, options.seed).take_part(server.address());
+          if (options.progress) options.progress(++finished);
+        } catch (...) {
+          const std::scoped_lock lock(mutex);
+          problem = std::current_exception();
+          next = options.participants;
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (problem) std::rethrow_exception(problem);
+}
+
+}  // namespace pinchlab::study

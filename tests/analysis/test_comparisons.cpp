@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inputs and reports of studies of three methods and more.
+#include <gsl/gsl_randist.h>
+
+#include "base/answer_file.h"
+#include "analysis/comparisons_table.h"
+#include "analysis/gsl_support.h"
+#include "analysis/levels_table.h"
+#include "analysis/scale_report.h"
+#include "base/input_error.h"
+#include "tests/analysis/support.h"
+
+namespace pinchlab::analysis {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string why(const fs::path& file, const ReadOptions& options = {}) {
+  try {
+    read_comparisons({file}, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string answers_csv(int participants, bool reversed = false) {
+  const std::vector<std::string> methods{"pinch", "cable", "thesis"};
+  const Rng rng = make_rng(RandomUse::study, 3);
+  std::vector<std::string> lines;
+  for (int p = 0; p < participants; ++p) {
+    for (const char* demonstration : {"01-a", "02-b"}) {
+      for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = i + 1; j < 3; ++j) {
+          const bool turned = gsl_rng_uniform_int(rng.get(), 2) == 1;
+          const bool first = gsl_rng_uniform(rng.get()) < 0.7;
+          lines.push_back(fmt::format("p{:02},{},{},{},{}\n", p, demonstration,
+                                      methods[turned ? j : i], methods[turned ? i : j],
+                                      methods[first ? i : j]));
+        }
+      }
+    }
+  }
+  if (reversed) std::ranges::reverse(lines);
+  return "participant,demonstration,left,right,choice\n" + fmt::format("{}", fmt::join(lines, ""));
+}
+
+TEST(Comparisons, ReadsCountsOfThePublishedTable) {
+  const ComparisonsTable table =
+      read_comparisons({fs::path(PINCHLAB_SOURCE_DIR) / "analysis/data/citations.csv"}, {});
+  EXPECT_EQ(table.answers, 3727);
+  EXPECT_EQ(table.methods,
+            (std::vector<std::string>{"Biometrika", "Comm Statist", "JASA", "JRSS-B"}));
+  EXPECT_TRUE(table.participants.empty());
+  const json report = json::parse(scale_json(analyse_scale(table, {}), table));
+  const auto value = [&](size_t i) { return report["scale"]["methods"][i]["value"].get<double>(); };
+  EXPECT_NEAR(value(1) - value(0), -2.949072496844, 1e-8);
+  EXPECT_NEAR(value(2) - value(0), -0.479569769752, 1e-8);
+  EXPECT_NEAR(value(3) - value(0), 0.268954055819, 1e-8);
+  EXPECT_TRUE(report["equal"]["p_sign_flip"].is_null());
+  EXPECT_TRUE(report["left"]["value"].is_null());
+  EXPECT_FALSE(report["left"]["value_reason"].get<std::string>().empty());
+}
+
+TEST(Comparisons, TheOrderOfTheInputChangesNothing) {
+  const test::TemporaryFolder folder;
+  const ComparisonsTable one = read_comparisons({folder.write("a.csv", answers_csv(12))}, {});
+  const ComparisonsTable other =
+      read_comparisons({folder.write("b.csv", answers_csv(12, true))}, {});
+  EXPECT_EQ(scale_json(analyse_scale(one, {}), one), scale_json(analyse_scale(other, {}), other));
+}
+
+TEST(Comparisons, WritesAWholeReport) {
+  const test::TemporaryFolder folder;
+  const ComparisonsTable table = read_comparisons({folder.write("a.csv", answers_csv(12))}, {});
+  const ScaleReport report = analyse_scale(table, {});
+  const auto written = write_scale_report(report, table, folder.path() / "report", false);
+  for (const std::string& name : written) EXPECT_TRUE(fs::exists(folder.path() / "report" / name));
+  const std::string page = test::read_text(folder.path() / "report/report.md");
+  for (const char* words : {"pinch", "Circular triads", "sign flips over participants (exact)",
+                            "Values by demonstration", "The left is chosen"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+  const std::string people = test::read_text(folder.path() / "report/participants.csv");
+  EXPECT_EQ(std::ranges::count(people, '\n'), 13);
+  const json document = json::parse(test::read_text(folder.path() / "report/report.json"));
+  EXPECT_EQ(document["pairs"].size(), 3U);
+  EXPECT_EQ(document["transitivity"]["rounds"], 24);
+  EXPECT_EQ(document["scale"]["methods"][0]["name"], "cable");
+}
+
+TEST(Comparisons, RefusesWhatCannotBe) {
+  const test::TemporaryFolder folder;
+  const auto csv = [&](const std::string& text) { return folder.write("x.csv", text); };
+  EXPECT_NE(why(csv("left,right\na,b\n")).find("need either a column `choice`"), std::string::npos);
+  EXPECT_NE(why(csv("left,right,choice,left_wins,right_wins\na,b,a,1,2\n")).find("either"),
+            std::string::npos);
+  EXPECT_NE(why(csv("left,right,choice\na,a,a\n")).find("with itself"), std::string::npos);
+  EXPECT_NE(why(csv("left,right,choice\na,b,c\n")).find("x.csv:2"), std::string::npos);
+  EXPECT_NE(why(csv("left,right,left_wins,right_wins\na,b,-1,2\n")).find("whole number"),
+            std::string::npos);
+  EXPECT_NE(why(csv("left,right,choise\na,b,a\n")).find("choice"), std::string::npos);
+  EXPECT_NE(why(csv("left,right,choice\n")).find("no answers"), std::string::npos);
+  EXPECT_NE(why(csv("left,right,choice\na,b\n")).find("fields"), std::string::npos);
+  EXPECT_NE(why(csv("participant,left,right,choice\np,a,b,a\n"),
+                [&] {
+                  ReadOptions options;
+                  options.exclude_file = folder.write("out.csv", "participant,reason\nq,late\n");
+                  return options;
+                }())
+                .find("`q`"),
+            std::string::npos);
+}
+
+TEST(Comparisons, TiesAreCounted) {
+  const test::TemporaryFolder folder;
+  const ComparisonsTable table = read_comparisons(
+      {folder.write("x.csv", "left,right,choice\na,b,a\nb,a,tie\nb,c,b\nc,b,c\na,c,tie\n")}, {});
+  EXPECT_EQ(table.ties, 2);
+  const ScaleReport report = analyse_scale(table, {});
+  EXPECT_EQ(report.fit().why_not, "");
+  EXPECT_GT(report.fit().tie.value, 0.0);
+}
+
+json answer_file(const std::string& who) {
+  json file = json::parse(R"({"format": "pinchlab-answers", "version": 1,
+    "plan": {"demonstrations": ["01-a"], "answers_per_demonstration": 3},
+    "started_utc": "2026-11-20T12:00:00Z", "saved_utc": "2026-11-20T12:05:00Z",
+    "software_version": "0", "trials": []})");
+  file["participant"] = who;
+  return file;
+}
+
+json trial(int position, const char* left, const char* right, const char* choice) {
+  return {{"position", position}, {"kind", "main"},   {"demonstration", "01-a"}, {"left", left},
+          {"right", right},       {"choice", choice}, {"reaction_time_s", 1.0}};
+}
+
+TEST(Comparisons, ReadsAnswerFilesOfNamedMethods) {
+  const test::TemporaryFolder folder;
+  for (const char* who : {"p1", "p2"}) {
+    json file = answer_file(who);
+    file["plan"]["methods"] = {"pinch", "cable", "thesis"};
+    file["trials"] = {trial(1, "pinch", "cable", "left"), trial(2, "thesis", "pinch", "right"),
+                      trial(3, "thesis", "cable", "left")};
+    folder.write(fmt::format("answers/{}.json", who), file.dump());
+  }
+  ASSERT_TRUE(has_comparisons(folder.path() / "answers", {}));
+  const ComparisonsTable table = read_comparisons({folder.path() / "answers"}, {});
+  EXPECT_EQ(table.answers, 6);
+  EXPECT_EQ(table.participants, (std::vector<std::string>{"p1", "p2"}));
+  EXPECT_THROW(read_answers({folder.path() / "answers"}, {}), InputError);
+  // A method that the plan does not know, and another plan.
+  json file = answer_file("p3");
+  file["plan"]["methods"] = {"pinch", "cable", "thesis"};
+  file["trials"] = {trial(1, "pinch", "kable", "left")};
+  EXPECT_THROW(parse_answer_file(file, "f"), InputError);
+  file["plan"]["methods"] = {"pinch", "cable"};
+  file["trials"] = {trial(1, "pinch", "cable", "left"), trial(2, "pinch", "cable", "left"),
+                    trial(3, "pinch", "cable", "left")};
+  folder.write("answers/p3.json", file.dump());
+  EXPECT_NE(why(folder.path() / "answers").find("other methods"), std::string::npos);
+}
+
+TEST(Levels, ReadsAnswerFilesOfGradedClips) {
+  const test::TemporaryFolder folder;
+  for (const char* who : {"p1", "p2"}) {
+    json file = answer_file(who);
+    file["plan"]["graded_hit"] = "reference";
+    file["trials"] = {trial(1, "reference", "graded", "left"),
+                      trial(2, "graded", "reference", "left"),
+                      trial(3, "graded", "reference", "right")};
+    for (size_t i = 0; i < 3; ++i) file["trials"][i]["level"] = i == 0 ? 0.1 : 0.2;
+    folder.write(fmt::format("answers/{}.json", who), file.dump());
+    if (who == std::string("p2")) {
+      file["trials"][1].erase("level");
+      EXPECT_THROW(parse_answer_file(file, "f"), InputError);
+    }
+  }
+  ASSERT_TRUE(has_levels(folder.path() / "answers", {}));
+  const LevelsTable table = read_levels({folder.path() / "answers"}, {});
+  EXPECT_TRUE(table.correct);
+  ASSERT_EQ(table.series.size(), 1U);
+  ASSERT_EQ(table.series[0].observers.size(), 2U);
+  const std::vector<LevelCell>& cells = table.series[0].observers[0].cells;
+  ASSERT_EQ(cells.size(), 2U);
+  EXPECT_EQ(cells[0].hits, 1);
+  EXPECT_EQ(cells[1].trials, 2);
+  EXPECT_EQ(cells[1].hits, 1);
+}
+
+TEST(AnswerFiles, APilotIsNeverAnalysedWithTheRest) {
+  const test::TemporaryFolder folder;
+  for (const char* who : {"p1", "p2"}) {
+    json file = answer_file(who);
+    file["plan"]["answers_per_demonstration"] = 1;
+    file["trials"] = {trial(1, "pinch", "baseline", "left")};
+    if (who == std::string("p2")) file["pilot"] = true;
+    folder.write(fmt::format("{}.json", who), file.dump());
+  }
+  EXPECT_NO_THROW(read_answers({folder.path() / "p2.json"}, {}));
+  EXPECT_THROW(read_answers({folder.path()}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace pinchlab::analysis

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stopping rules.
+#include "analysis/sequential.h"
+
+#include <gsl/gsl_randist.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/gsl_support.h"
+#include "base/input_error.h"
+
+namespace pinchlab::analysis {
+namespace {
+
+const std::vector<double> fifths = {0.2, 0.4, 0.6, 0.8, 1.0};
+
+// Five equal looks, two-sided 0.05: the figures that the program of Reboussin, DeMets, Kim and Lan
+// (Controlled Clinical Trials 21 (2000) 190) and R's ldbounds print, whose integration is good to
+// about 1e-4; R's own `integrate` gives 3.357011922 for the second.
+TEST(Sequential, BoundsAreThePublishedOnes) {
+  const double obrien_fleming[] = {4.8769, 3.3569, 2.6803, 2.2898, 2.0310};
+  const double pocock[] = {2.4380, 2.4268, 2.4101, 2.3966, 2.3859};
+  const std::vector<Look> of = sequential_bounds(Spending::obrien_fleming, 0.05, fifths);
+  const std::vector<Look> po = sequential_bounds(Spending::pocock, 0.05, fifths);
+  for (size_t i = 0; i < 5; ++i) {
+    EXPECT_NEAR(of[i].z, obrien_fleming[i], 2e-4) << i;
+    EXPECT_NEAR(po[i].z, pocock[i], 2e-4) << i;
+  }
+  EXPECT_NEAR(of[0].z, 4.876884949, 1e-8);
+  EXPECT_NEAR(of[1].z, 3.357011922, 1e-8);
+  EXPECT_NEAR(of.back().spent, 0.05, 1e-12);
+  EXPECT_NEAR(po.back().spent, 0.05, 1e-12);
+  const std::vector<Look> one = sequential_bounds(Spending::pocock, 0.05, {1.0});
+  EXPECT_NEAR(one[0].z, 1.959964, 1e-6);
+}
+
+// A simulated Brownian motion leaves the bounds as often as they say.
+TEST(Sequential, BrownianMotionLeavesThemWithProbabilityAlpha) {
+  const std::vector<double> uneven = {0.15, 0.5, 0.6, 1.0};
+  const std::vector<Look> looks = sequential_bounds(Spending::pocock, 0.1, uneven);
+  const Rng rng = make_rng(RandomUse::study, 4);
+  int left = 0;
+  constexpr int motions = 200000;
+  for (int i = 0; i < motions; ++i) {
+    double b = 0.0, before = 0.0;
+    for (const Look& look : looks) {
+      b += gsl_ran_gaussian(rng.get(), std::sqrt(look.fraction - before));
+      before = look.fraction;
+      if (std::abs(b) >= look.z * std::sqrt(look.fraction)) {
+        ++left;
+        break;
+      }
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(left) / motions, 0.1, 4 * std::sqrt(0.09 / motions));
+}
+
+StoppingQuestion question(StoppingRule rule) {
+  StoppingQuestion q;
+  q.rule = rule;
+  q.participants = {12, 24, 36, 48};
+  q.truth.share = 0.65;
+  q.truth.trials = 8;
+  q.truth.icc = 0.2;
+  return q;
+}
+
+TEST(Sequential, RulesKeepTheLevelAndSaveParticipants) {
+  const StoppingAnswer fixed = stopping_rule(question(StoppingRule::fixed), 2000, 1);
+  EXPECT_EQ(fixed.looks.size(), 1U);
+  EXPECT_EQ(fixed.with.participants, 48);
+  for (const StoppingRule rule : {StoppingRule::obrien_fleming, StoppingRule::pocock}) {
+    const StoppingAnswer answer = stopping_rule(question(rule), 2000, 1);
+    EXPECT_EQ(answer.looks.size(), 4U);
+    EXPECT_LE(answer.without.finds, 0.05 + 3 * std::sqrt(0.05 * 0.95 / 2000));
+    EXPECT_GT(answer.without.finds, 0.02);
+    EXPECT_LT(answer.with.participants, 0.8 * fixed.with.participants);
+    EXPECT_GT(answer.with.finds, fixed.with.finds - 0.08);
+    double stopped = 0.0;
+    for (const double share : answer.with.stopped_at) stopped += share;
+    EXPECT_NEAR(stopped, 1.0, 1e-9);
+  }
+  // Looking four times at the level of one look finds too much.
+  StoppingQuestion naive = question(StoppingRule::fixed);
+  int found = 0;
+  constexpr int studies = 2000;
+  const std::vector<double> one = [&] {
+    PowerQuestion none = naive.truth;
+    none.share = 0.5;
+    return answers_of_one(none);
+  }();
+  for (int i = 0; i < studies; ++i) {
+    const Rng rng = make_rng(RandomUse::power, 3, static_cast<std::uint64_t>(i));
+    std::vector<unsigned> drawn(one.size()), more(one.size());
+    bool stops = false;
+    for (const std::int64_t n : naive.participants) {
+      gsl_ran_multinomial(rng.get(), one.size(), 12, one.data(), more.data());
+      for (size_t k = 0; k < one.size(); ++k) drawn[k] += more[k];
+      stops = stops || sign_flips_reject(drawn, n, 0.05);
+    }
+    found += stops ? 1 : 0;
+  }
+  EXPECT_GT(found, studies / 12);
+}
+
+TEST(Sequential, BayesFactorsStopBothWays) {
+  StoppingQuestion q = question(StoppingRule::bayes_factor);
+  q.truth.trials = 1;
+  q.truth.icc = 0;
+  q.truth.share = 0.75;
+  q.participants = {20, 40, 80, 160, 320};
+  const StoppingAnswer answer = stopping_rule(q, 2000, 1);
+  EXPECT_GT(answer.with.finds, 0.98);
+  EXPECT_LT(answer.without.finds, 0.05);
+  EXPECT_GT(answer.without.finds_none, 0.3);
+  EXPECT_NE(stopping_text(q, answer).find("none in"), std::string::npos);
+}
+
+TEST(Sequential, RefusesWhatCannotBe) {
+  const auto refuses = [](auto change) {
+    StoppingQuestion q = question(StoppingRule::bayes_factor);
+    q.truth.trials = 1;
+    change(q);
+    EXPECT_THROW(stopping_rule(q, 10, 1), InputError);
+  };
+  refuses([](StoppingQuestion& q) { q.participants = {}; });
+  refuses([](StoppingQuestion& q) { q.participants = {20, 20}; });
+  refuses([](StoppingQuestion& q) { q.participants = {0, 20}; });
+  refuses([](StoppingQuestion& q) { q.truth.trials = 2; });
+  refuses([](StoppingQuestion& q) { q.bayes_factor = 1; });
+  refuses([](StoppingQuestion& q) { q.truth.share = 0.5; });
+}
+
+}  // namespace
+}  // namespace pinchlab::analysis

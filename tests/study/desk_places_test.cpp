@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who has which place, and how it is had again.
+#include "base/read_file.h"
+#include "base/sha256.h"
+#include "study/desk.h"
+
+#include <sys/stat.h>
+
+#include <regex>
+#include <sstream>
+#include <thread>
+
+#include "analysis/answers_table.h"
+#include "base/input_error.h"
+#include "study/answers.h"
+#include "study/tables.h"
+#include "tests/study/support.h"
+
+namespace pinchlab::study {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+TEST(Desk, WhoLeavesIsReplaced) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const std::string first = desk.start("", "");
+  const std::string second = desk.start("", "");
+  desk.leave(first);
+  EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+  EXPECT_EQ(refused([&] { desk.save(first, {}); }), 401);
+  desk.start("", "");
+  std::set<std::uint64_t> numbers;
+  for (const auto& participant : desk.overview().running) {
+    numbers.insert(participant.number);
+  }
+  EXPECT_EQ(numbers, (std::set<std::uint64_t>{0, 1}));
+  EXPECT_TRUE(answer_files(folder / "answers").empty());
+}
+
+TEST(Desk, IdleSessionsEndAfterADay) {
+  DeskOptions options = desk_options(scratch_folder());
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  Desk desk(std::move(options));
+  const std::string token = desk.start("", "");
+  *now = "2026-11-21T11:59:59.000Z";
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.size(), 2U);
+  *now = "2026-11-21T12:00:00.000Z";
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.size(), 2U);
+  EXPECT_EQ(refused([&] { desk.progress(token); }), 401);
+}
+
+TEST(Desk, LimitsAndLinks) {
+  DeskOptions options = desk_options(scratch_folder());
+  options.config.participant_limit = 2;
+  options.config.one_time_links = true;
+  Desk desk(std::move(options));
+  const auto links = desk.links();
+  ASSERT_EQ(links.size(), 2U);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 403);
+  EXPECT_EQ(refused([&] { desk.start("guess", ""); }), 403);
+  const std::string token = desk.start(links[1], "");
+  EXPECT_EQ(desk.overview().running.front().number, 1U);
+  desk.show(token, 0);
+  EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403);
+  desk.leave(token);
+  EXPECT_EQ(refused([&] { desk.start(links[1], ""); }), 403) << "used is used";
+  desk.start(links[0], "");
+}
+
+TEST(Desk, AStartThatFailedCostsNobodyTheLink) {
+  const fs::path folder = scratch_folder();
+  const auto options = [&] {
+    DeskOptions result = desk_options(folder);
+    result.config.participant_limit = 2;
+    result.config.one_time_links = true;
+    return result;
+  };
+  std::string link, second;
+  {
+    Desk desk(options());
+    link = desk.links()[0];
+    fs::rename(folder / "answers", folder / "away");
+    EXPECT_EQ(refused([&] { desk.start(link, ""); }), 503);
+    fs::rename(folder / "away", folder / "answers");
+    const std::string first = desk.start(link, "");  // the reply is lost
+    second = desk.start(link, "");
+    EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+    EXPECT_EQ(desk.overview().running.size(), 1U);
+  }
+  Desk desk(options());  // killed between the start and its reply
+  const std::string third = desk.start(link, "");
+  EXPECT_EQ(refused([&] { desk.progress(second); }), 401);
+  desk.show(third, 0);
+  EXPECT_EQ(refused([&] { desk.start(link, ""); }), 403) << "a clip was seen";
+  desk.leave(third);
+  EXPECT_EQ(refused([&] { desk.start(link, ""); }), 403) << "used is used";
+}
+
+TEST(Desk, PlacesAreReleased) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  options.config.participant_limit = 1;
+  options.longest_idle = std::chrono::minutes(30);
+  Desk desk(std::move(options));
+  const auto answer_one = [&](const std::string& token) {
+    desk.show(token, 0);
+    desk.answer(token, parse_answer(answer_body(0)));
+  };
+  const std::string first = desk.start("", "");
+  answer_one(first);
+  *now = "2026-11-20T12:29:59.000Z";
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  *now = "2026-11-20T12:30:00.000Z";
+  const std::string second = desk.start("", "");
+  EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+  answer_one(second);
+  EXPECT_EQ(refused([&] { desk.release("0123456789abcdef"); }), 404);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  desk.release(second.substr(0, 16));
+  EXPECT_EQ(refused([&] { desk.progress(second); }), 401);
+  desk.start("", "");
+}
+
+TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
+  options.utc_now = [now] { return *now; };
+  options.config.participant_limit = 16;
+  options.most_unanswered = 20;
+  Desk desk(std::move(options));
+  const std::string answered = desk.start("", "", "crowd");
+  desk.show(answered, 0);
+  desk.answer(answered, parse_answer(answer_body(0)));
+  const std::string honest = desk.start("", "", "home");
+  int started = 0;
+  for (int i = 0; i < 1000; ++i) {
+    started += refused([&] { desk.start("", "", "crowd"); }) == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(started, 14) << "no address takes its own places anew";
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(refused([&] { desk.start("", "", "address " + std::to_string(i)); }), 0);
+  }
+  EXPECT_EQ(refused([&] { desk.start("", "", "crowd"); }), 409);
+  EXPECT_EQ(desk.progress(answered).next, 1U) << "who has answered stays";
+  EXPECT_EQ(desk.progress(honest).next, 0U);
+  *now = "2026-11-20T12:05:00.000Z";
+  EXPECT_EQ(refused([&] { desk.start("", "", "crowd"); }), 0) << "those not seen for five minutes";
+}
+
+}  // namespace
+}  // namespace pinchlab::study
