@@ -57,7 +57,8 @@ const BadScene bad_scenes[] = {
     {"/a~1b~0c", "1",
      "s.json: /a~1b~0c: unknown key (known here: $schema, title, notes, gravity_m_s2, bodies, "
      "cables, "
-     "walls, duration_s, frames_per_second, steps_per_frame, error_m, poster_time_s, view, baseline)"},
+     "walls, duration_s, frames_per_second, steps_per_frame, error_m, poster_time_s, view, "
+     "baseline)"},
     // Missing
     {"/title", nullptr, "s.json: title is missing"},
     {"/bodies", nullptr, "s.json: bodies is missing"},
