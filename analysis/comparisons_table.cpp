@@ -8,8 +8,8 @@
 #include <set>
 #include <tuple>
 
-#include "base/answer_file.h"
 #include "analysis/csv_columns.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 

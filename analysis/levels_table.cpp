@@ -7,12 +7,12 @@
 #include <map>
 #include <set>
 
+#include "analysis/csv_columns.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/groups.h"
+#include "base/answer_file.h"
 #include "base/csv_reader.h"
 #include "base/did_you_mean.h"
-#include "base/answer_file.h"
-#include "analysis/csv_columns.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 

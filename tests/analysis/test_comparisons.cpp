@@ -2,11 +2,11 @@
 // Inputs and reports of studies of three methods and more.
 #include <gsl/gsl_randist.h>
 
-#include "base/answer_file.h"
 #include "analysis/comparisons_table.h"
 #include "analysis/gsl_support.h"
 #include "analysis/levels_table.h"
 #include "analysis/scale_report.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "tests/analysis/support.h"
 
