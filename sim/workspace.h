@@ -43,8 +43,8 @@ struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<double> material, wrap;  // of the links, cable after cable
-  std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
+  std::vector<double> material;  // of the links, cable after cable
+  std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
 /// Storage of find_contacts and configure_pinches.

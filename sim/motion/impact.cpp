@@ -37,17 +37,6 @@ double greatest_speed(const PartSystem& s) {
   return speed;
 }
 
-void forget_flips(PartSystem& s) {
-  for (Row& row : s.rows) {
-    row.flipped = 0;
-    row.returned = false;
-  }
-  for (Friction& friction : s.frictions) {
-    friction.dropped = friction.frozen = false;
-    friction.slid = Slip::stick;
-  }
-}
-
 /// Twice the kinetic energy of a part's bodies (J) at the given velocities.
 double twice_kinetic(const World& world, std::span<const int> bodies,
                      const std::vector<Eigen::Vector3d>& velocity) {
@@ -91,10 +80,9 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
   TimeSpan instant;
   instant.reach = s.reach;
   instant.clamps = true;
-  set.step_length = world.step_length;
-  set.reach = s.reach;
-  make_segment_rows(scene, world, work.parts, part, instant, s);
-  make_contact_rows(scene, world, work.parts, part, instant, s, set);
+  instant.repair = world.step_length;
+  Stopwatch untimed(nullptr);
+  make_rows(scene, world, work.parts, part, instant, s, set, untimed);
 
   // One blow a contact and neighbour is plenty; what is left then is stopped.
   const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);

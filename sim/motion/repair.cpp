@@ -71,8 +71,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;
-  work.solve.step_length = 1.0;
-  work.solve.reach = infinity;
+  Stopwatch untimed(nullptr);
   double share = 0.0, before = infinity;
   bool any = false;
   for (int k = 0; k < most_repairs; ++k) {
@@ -81,8 +80,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
       return k > 1;
     }
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
-    make_segment_rows(scene, world, work.parts, part, t, s);
-    make_contact_rows(scene, world, work.parts, part, t, s, work.solve);
+    make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     before = violation(scene, world, s);
     if (before <= s.reach) break;
     any = true;
