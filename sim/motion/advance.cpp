@@ -12,9 +12,9 @@
 #include "sim/motion/impact.h"
 #include "sim/motion/interval.h"
 #include "sim/motion/repair.h"
-#include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/workspace.h"
 
@@ -35,7 +35,7 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
   steady_light_bodies(world, work.parts, part, t.kick, s);
   Stopwatch untimed(nullptr);
   make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
-  solve_direct(world, work.parts, part, s, work.solve);
+  solve_passively(world, work.parts, part, s, work.solve);
 }
 
 /// Brings the velocities to the positions' time.

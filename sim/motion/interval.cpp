@@ -11,6 +11,7 @@
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
 #include "sim/workspace.h"
@@ -25,6 +26,8 @@ constexpr double share_of_error = 2e-4;      // of Configuration::error that an 
 constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
 constexpr double shortest_corrected = 1e-6;  // of a step
 constexpr double sound = 1e-3;  // of a part's extent: more than friction that cycles may miss
+constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
+constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
 constexpr int shake_rounds = 12;
 constexpr int most_trials = 60;   // of an interval's length
 constexpr int most_halvings = 5;  // of an interval that does not converge
@@ -92,6 +95,20 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
   return most;
 }
 
+/// The greatest speed of a part's bodies and their rims (m/s), of `velocity` less `other`.
+double greatest_speed(const World& world, std::span<const int> bodies,
+                      const std::vector<Eigen::Vector3d>& velocity,
+                      const std::vector<Eigen::Vector3d>* other) {
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Eigen::Vector3d v = velocity[i];
+    if (other) v -= (*other)[i];
+    const double rim = at(world.bodies, bodies[i]).radius * v.z();
+    greatest = std::max({greatest, std::abs(v.x()), std::abs(v.y()), std::abs(rim)});
+  }
+  return greatest;
+}
+
 /// Solves and moves a part; whether its lengths and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
                int most_rounds, bool begins, Stopwatch& watch) {
@@ -99,15 +116,25 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   SolveScratch& set = work.solve;
   steady_light_bodies(world, work.parts, part, t.kick, s);
   make_rows(scene, world, work.parts, part, t, s, set, watch);
-  double last = infinity, before_last = infinity;
+  double last = infinity, before_last = infinity, fastest = 0.0;
+  const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;
   for (int round = 0;; ++round) {
     if (round > 0) forget_flips(s);
-    const bool settled = solve_direct(world, work.parts, part, s, set);
+    const bool settled = round == 0 ? solve_passively(world, work.parts, part, s, set)
+                                    : solve_direct(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
+    if (round == 0) {
+      work.linear_velocity = s.velocity;
+      fastest = greatest_speed(world, bodies, s.velocity, nullptr);
+    } else if (greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
+      work.missed = infinity;
+      return false;
+    }
     work.settled = work.settled && settled;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
-    store_solution(work.parts, part, s, set.capstan, t.kick, world);
+    const bool tells_forces = t.kick > shortest_told * t.repair;
+    store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
     part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
