@@ -25,7 +25,7 @@ constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an inte
 constexpr double share_of_error = 2e-4;      // of Configuration::error that an interval may take
 constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
 constexpr double shortest_corrected = 1e-6;  // of a step
-constexpr double sound = 1e-3;  // of a part's extent: more than friction that cycles may miss
+constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss
 constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
 constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
 constexpr int shake_rounds = 12;
@@ -66,11 +66,13 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
-    if (row.idle || !is_exact_row(row)) continue;
+    const int group = capstan.runs.empty() ? -1 : capstan.group_of_row[r];
+    // Of a group that is slack somewhere any segment may run short of its share of the material.
+    const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
+    if (!is_exact_row(row) || (row.idle && !shares)) continue;
     work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0);
     if (!row.on && row.kind == RowKind::pinch_middle) continue;
-    const bool grouped = !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
-    if (grouped && !row.on) continue;
+    if (group >= 0 && !row.on && !shares) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = row.clearance < -t.made_up ? row.clearance
@@ -78,16 +80,15 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
                                                    : 0.0;
     double missed = clearance_of(scene, world, row) - left;
     if (row.compliance > 0.0) {
-      if (!row.on || grouped) continue;
+      if (!row.on || group >= 0) continue;
       // The stretch over the interval's end is the real one.
       const double straight = row_speed(s, r) - row.bias;
       const double curvature = (missed + left - row.clearance) / t.length - straight;
       missed = (curvature - row.curvature) * t.length;
       row.curvature = curvature;
     }
-    // Of a group that is slack as a whole no segment is held to its length.
-    const bool bears = row.on && !(grouped && row.impulse == 0.0 &&
-                                   at(capstan.groups, capstan.group_of_row[r]).slack >= 0);
+    // Without tension no segment of a group is held to its length.
+    const bool bears = row.on && !(shares && row.impulse == 0.0);
     if (!bears) missed = std::min(missed, 0.0);
     row.bias += missed / t.length;
     most = std::max(most, std::abs(missed));
