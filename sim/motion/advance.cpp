@@ -22,7 +22,8 @@ namespace pinchlab {
 
 namespace {
 
-constexpr int most_events = 24;  // that are located in one step
+constexpr int most_rebounds = 24;  // of a step's events: what comes after them does not rebound
+constexpr int most_events = 48;    // that are located in one step
 
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part) {
@@ -66,9 +67,16 @@ bool is_squeezed(const World& world) {
   });
 }
 
+void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
+  apply_no_forces(scene, world, time, work);
+  for (const Part& part : work.parts.list) {
+    if (!part.asleep) strike(scene, world, work, part, rebounds);
+  }
+}
+
 /// Puts right in the positions what an interval has left, and then the velocities to fit them.
 void settle_end(const Scene& scene, World& world, Workspace& work, double time, bool violated,
-                bool happened) {
+                bool happened, bool rebounds) {
   if (violated || happened) apply_no_forces(scene, world, time, work);
   bool repaired = false;
   for (Part& part : work.parts.list) {
@@ -77,10 +85,7 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
   }
   if (repaired && world.lag > 0.0) catch_up(scene, world, time, work);
   if (!happened && !repaired) return;
-  apply_no_forces(scene, world, time, work);
-  for (const Part& part : work.parts.list) {
-    if (!part.asleep) strike(scene, world, work, part);
-  }
+  strike_all(scene, world, work, time, rebounds);
 }
 
 /// Moves the world by an interval of at most `left` (s), to its next event; its length, in which
@@ -90,7 +95,6 @@ double move(const Scene& scene, World& world, Workspace& work, double left, bool
   begin_interval(world, work, world.time() + (world.step_length - left));
   if (locate) return find_interval(scene, world, work, left, met, watch);
   met = cross_interval(scene, world, work, left, watch);
-  ++world.diagnostics.clusters;
   return left;
 }
 
@@ -113,6 +117,8 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   const std::int64_t fallbacks = d.fallbacks;
   double left = world.step_length;
   int events = 0;
+  // Velocities that the scene starts with need not fit its cables: they meet them at once.
+  if (world.step == 0) strike_all(scene, world, work, 0.0, true);
   for (bool first = true; left > 0.0; first = false) {
     const double lag = world.lag;
     const int changes = changes_of_cables(world);
@@ -143,12 +149,13 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     }
     detect_after_moving(scene, world, work, times);
     watch = Stopwatch(times);
-    if (happened) empty_pinches(world);
+    empty_pinches(world);
     const bool violated =
         !met || work.violated || changes_of_cables(world) != changes || is_squeezed(world);
-    settle_end(scene, world, work, now, violated, happened);
+    settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);
     watch.lap(Stage::solve);
   }
+  if (events > most_rebounds) ++d.clusters;
   d.fallbacks = std::min(d.fallbacks, fallbacks + 1);
   return StepStatus::ok;
 }

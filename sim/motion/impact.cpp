@@ -39,7 +39,7 @@ double greatest_speed(const PartSystem& s) {
 
 }  // namespace
 
-void strike(const Scene& scene, World& world, Workspace& work, const Part& part) {
+void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
@@ -51,7 +51,8 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
   make_rows(scene, world, work.parts, part, instant, s, set, untimed);
 
   // One blow a contact and neighbour is plenty; what is left then is stopped.
-  const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);
+  const int contact_rows = static_cast<int>(s.rows.size()) - s.first_contact_row;
+  const int most_blows = rebounds ? 4 * contact_rows : 0;
   constexpr double rounding = 1e-12;
   s.velocity = s.free_velocity;
   const double least = rounding * greatest_speed(s);
