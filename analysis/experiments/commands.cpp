@@ -8,6 +8,7 @@
 #include <string>
 
 #include "analysis/experiments/accuracy.h"
+#include "analysis/experiments/convergence.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/features.h"
 #include "analysis/experiments/instructions.h"
@@ -37,6 +38,8 @@ constexpr Experiment experiments[] = {
     {"features", "What features cost scenes that do not use them, and what sleep saves",
      run_features},
     {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
+    {"convergence", "How motion through events converges, with events at their time and without",
+     run_convergence},
     {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 
