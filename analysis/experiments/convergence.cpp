@@ -130,6 +130,27 @@ double sensitivity(Problem problem) {
   return largest(problem, given.motion, simulate(problem, Method::pinch, 8).motion).distance_m;
 }
 
+/// A panel of error against processor time, still without curves.
+Panel panel_of(const std::string& title, const std::string& error) {
+  return {title, "processor time a frame, µs", error, {}, 30.0};
+}
+
+Curve curve_of(const Way& way) {
+  Curve curve;
+  curve.label = way.by_error ? "by error" : way.name;
+  curve.style = way.by_error ? 3 : way.events == Events::located ? 1 : 2;
+  return curve;
+}
+
+/// Nobody needs to see how round-off depends on the step.
+bool is_worth_drawing(const Panel& panel) {
+  constexpr double least = 1e-6;  // m
+  return std::any_of(panel.curves.begin(), panel.curves.end(), [](const Curve& curve) {
+    return std::any_of(curve.points.begin(), curve.points.end(),
+                       [](const CurvePoint& point) { return point.y.median > least; });
+  });
+}
+
 const Step& at_steps(const std::vector<Step>& ladder, int steps) {
   return *std::find_if(ladder.begin(), ladder.end(),
                        [steps](const Step& step) { return step.steps == steps; });
@@ -137,12 +158,14 @@ const Step& at_steps(const std::vector<Step>& ladder, int steps) {
 
 /// Rows of the demonstrations' table, and of the raw one.
 void measure(const Demonstration& demonstration, int most, Csv& csv,
-             std::vector<std::vector<std::string>>& rows) {
+             std::vector<std::vector<std::string>>& rows, std::vector<Panel>& panels) {
   Problem problem = demonstration.problem;
+  Panel panel = panel_of(problem.title, "from twice as many steps, m");
   for (const Way& way : ways) {
     problem.scene.error = way.by_error ? demonstration.error_m : 0.0;
     const std::vector<Step> ladder = climb_all(problem, configuration_of(way), 2 * most);
     std::vector<double> steps, differences;
+    Curve curve = curve_of(way);
     for (std::size_t i = 0; i + 1 < ladder.size(); ++i) {
       const Largest d =
           largest(problem, ladder[i].recording.motion, ladder[i + 1].recording.motion);
@@ -151,6 +174,8 @@ void measure(const Demonstration& demonstration, int most, Csv& csv,
                cpu_us_a_frame(problem, ladder[i])});
       steps.push_back(ladder[i].steps);
       differences.push_back(d.distance_m);
+      curve.points.push_back(
+          {cpu_us_a_frame(problem, ladder[i]), {d.distance_m, d.distance_m, d.distance_m}});
     }
     const Step &four = at_steps(ladder, 4), &eight = at_steps(ladder, 8);
     const Largest d = largest(problem, four.recording.motion, eight.recording.motion);
@@ -161,20 +186,18 @@ void measure(const Demonstration& demonstration, int most, Csv& csv,
                     order_text(order_of(steps, differences)),
                     fmt::format("{:.1f}", cpu_us_a_frame(problem, four)),
                     way.by_error ? metres(sensitivity(problem)) : ""});
+    panel.curves.push_back(curve);
   }
+  if (is_worth_drawing(panel)) panels.push_back(panel);
 }
 
 /// The same of a scene whose motion is known.
 void measure(const Problem& problem, int most, Csv& csv,
-             std::vector<std::vector<std::string>>& rows, Panel& panel) {
-  panel.title = problem.title;
-  panel.x_label = "processor time a frame, µs";
-  panel.y_label = "largest error, m";
+             std::vector<std::vector<std::string>>& rows, std::vector<Panel>& panels) {
+  Panel panel = panel_of(problem.title, "largest error, m");
   for (const Way& way : ways) {
     if (way.by_error) continue;
-    Curve curve;
-    curve.label = way.name;
-    curve.style = way.events == Events::located ? 1 : 2;
+    Curve curve = curve_of(way);
     std::vector<double> steps, errors;
     std::vector<std::string> row{problem.title, way.name};
     for (const Step& step : climb_all(problem, configuration_of(way), most)) {
@@ -194,6 +217,7 @@ void measure(const Problem& problem, int most, Csv& csv,
     rows.push_back(row);
     panel.curves.push_back(curve);
   }
+  if (is_worth_drawing(panel)) panels.push_back(panel);
 }
 
 }  // namespace
@@ -203,25 +227,28 @@ void run_convergence(const Options& options) {
   Csv csv({"scene", "events", "difference", "steps_per_frame", "largest_m", "body", "time_s",
            "cpu_us_per_frame"});
   std::vector<std::vector<std::string>> demonstration_rows, event_rows;
+  std::vector<Panel> panels;
   const std::vector<Demonstration> all = demonstrations();
   const std::vector<Problem> events = event_problems();
   Progress progress("bench convergence", static_cast<double>(all.size() + events.size()));
   for (const Demonstration& demonstration : all) {
-    measure(demonstration, options.quick ? 16 : most, csv, demonstration_rows);
+    measure(demonstration, options.quick ? 16 : most, csv, demonstration_rows, panels);
     progress.done(1.0);
   }
   Output output(options.out);
-  std::vector<Panel> panels;
   for (const Problem& problem : events) {
-    measure(problem, most, csv, event_rows, panels.emplace_back());
+    measure(problem, most, csv, event_rows, panels);
     progress.done(1.0);
   }
   output.csv("convergence", csv, options.command);
+  std::string figures;
   for (std::size_t i = 0; i < panels.size(); i += 3) {
     const std::vector<Panel> row(
         panels.begin() + static_cast<std::ptrdiff_t>(i),
         panels.begin() + static_cast<std::ptrdiff_t>(std::min(i + 3, panels.size())));
-    output.figure(fmt::format("convergence-{}", i / 3 + 1), 1280, 420, charts(row, 420));
+    const std::string name = fmt::format("convergence-{}", i / 3 + 1);
+    output.figure(name, 1280, 420, charts(row, 420));
+    figures += fmt::format("\n![error against time]({}.svg)\n", name);
   }
   output.page(
       "convergence",
@@ -241,13 +268,17 @@ void run_convergence(const Options& options) {
           "The largest error of any body in any frame (m), at so many steps a frame. `exact`: "
           "round-off at every length of the step. The last column is how far the reference itself "
           "may be off, where it is a solution of our own.\n\n{}\n"
-          "![error against time](convergence-1.svg)\n\n![error against time](convergence-2.svg)\n",
+          "## Error against time\n\n"
+          "From one step a frame (left) on, twice as many from point to point; scenes whose every "
+          "motion is "
+          "exact are left out.\n{}",
           options.quick ? 16 : most,
           markdown_table({"demonstration", "events", "4 against 8, m", "of", "order", "µs a frame",
                           "of 1e-12 m/s, m"},
                          demonstration_rows),
           markdown_table({"scene", "events", "1", "4", "16", "64", "order", "doubt, m"},
-                         event_rows)),
+                         event_rows),
+          figures),
       options.command);
 }
 
