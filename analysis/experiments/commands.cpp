@@ -94,7 +94,7 @@ void add_render(CLI::App& bench) {
   add_size(*command, *size, "Pixels of a frame, even [960x960]");
   command->add_option("--frames", run->frames, "Frames to measure [all of the clip]")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option("--out", run->out, "Folder for a table and a page as well")->type_name("DIR");
   command->callback([run, scene, size] {
     run->scene = *scene;
