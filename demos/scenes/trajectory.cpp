@@ -11,7 +11,6 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/scenes/scene_format.h"
-#include "sim/motion/interval.h"
 
 namespace pinchlab {
 namespace {

@@ -296,10 +296,6 @@ void begin_interval(const World& world, Workspace& work, double time) {
   work.events.clear();
 }
 
-double believed_error(const World& world) {
-  return world.diagnostics.local_error / share_of_error;
-}
-
 double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
                      Stopwatch& watch) {
   length = find_sound_interval(scene, world, work, length, met, watch);

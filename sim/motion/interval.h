@@ -15,10 +15,6 @@ struct Workspace;
 /// ask for (analysis/results/convergence.md).
 constexpr double share_of_error = 4e-5;
 
-/// About how far bodies may be from their exact places (m): the Configuration::error that every
-/// interval so far would have met. 0 where nothing bends or nothing was located.
-double believed_error(const World& world);
-
 /// Notes that an interval begins at `time` (s), with the world as it is: Workspace::start.
 void begin_interval(const World& world, Workspace& work, double time);
 
