@@ -64,6 +64,17 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
       command, options.method,
       "Make one clip a scene: pinch, pinch_no_contact, cable, baseline (each scene's own) or "
       "thesis (all of the thesis' ways, its iterative solver too) [the pair]");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--pair",
+          [&options](const std::vector<std::string>& pairs) {
+            options.side_by_side = true;
+            for (const std::string& text : pairs) options.pairs.push_back(pair_from(text));
+          },
+          "Compare these two of the methods above, e.g. pinch,thesis, in both left/right orders; "
+          "several --pair make several pairs [pinch,baseline]")
+      ->type_name("A,B")
+      ->excludes("--method");
   add_size(command, size,
            "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
   add_fps(command, options.timing);
@@ -126,7 +137,7 @@ void add_kinds_of_clip(CLI::App& command, BatchOptions& options) {
   CLI::Option* report = command.add_flag(
       "--report", options.report,
       "Also how each pair differs and when, as a table, report.html and strips of pictures");
-  report->excludes("--method");
+  report->excludes("--method")->excludes("--pair");
   command
       .add_flag_callback(
           "--only-report",
@@ -136,6 +147,7 @@ void add_kinds_of_clip(CLI::App& command, BatchOptions& options) {
           },
           "Nothing but this")
       ->excludes("--method")
+      ->excludes("--pair")
       ->excludes(report);
   command
       .add_flag("--attention-checks", options.checks,
@@ -162,7 +174,8 @@ void add_render(CLI::App& app) {
       "  pinchlab render demos/03-drop.json --out /tmp/drop --size 640x480\n"
       "  pinchlab render --only-report               how the pairs differ, without the clips\n"
       "  pinchlab render demos/03-drop.json --slow 0.4-0.6:0.25 --freeze 0.5:1 --burn-time\n"
-      "  pinchlab render --method cable --codec ffv1 one lossless clip a scene");
+      "  pinchlab render --method cable --codec ffv1 one lossless clip a scene\n"
+      "  pinchlab render --pair pinch,cable --pair pinch,thesis --pair cable,thesis --out three");
   command->callback([options, size] {
     if (options->scenes.empty()) {
       options->scenes = {demos_folder()};

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -14,11 +15,13 @@
 #include "base/folder_lock.h"
 #include "base/partial_file.h"
 #include "base/progress.h"
+#include "base/sha256.h"
 #include "demos/manifest.h"
 #include "demos/report_page.h"
 #include "demos/scenes/find_scenes.h"
 #include "demos/worker_pool.h"
 #include "render/canvas.h"
+#include "render/equal_sizes.h"
 
 namespace pinchlab {
 namespace {
@@ -28,8 +31,8 @@ using nlohmann::ordered_json;
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
-  const std::set<std::string> ours = {".mp4", ".webm", ".mkv",  ".apng", ".webp",
-                                      ".gif", ".png",  ".json", ".html"};
+  const std::set<std::string> ours = {".mp4", ".webm", ".mkv",  ".apng",     ".webp",   ".gif",
+                                      ".png", ".json", ".html", ".unpadded", ".partial"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
     if (path.extension() == partial_ending && ours.contains(path.stem().extension())) {
@@ -70,21 +73,93 @@ double cpu_seconds(int who) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Drops what is up to date, puts the longest first so that no core is left idle at the end.
+// Drops what is up to date, puts the longest first so that no core is left idle at the end. Files of
+// equal sizes are made together.
 std::vector<ClipPlan> plans_to_make(const std::vector<ClipPlan>& plans, const Manifest& manifest,
                                     const fs::path& out) {
-  std::vector<ClipPlan> to_make;
+  std::set<std::string> stale;
   for (const ClipPlan& plan : plans) {
-    if (!is_up_to_date(manifest, out, plan_entry(plan))) {
-      to_make.push_back(plan);
-    }
+    if (is_up_to_date(manifest, out, plan_entry(plan))) continue;
+    stale.insert(plan.file);
+    stale.insert(plan.equal_sizes_with.begin(), plan.equal_sizes_with.end());
   }
+  std::vector<ClipPlan> to_make;
+  std::ranges::copy_if(plans, std::back_inserter(to_make),
+                       [&](const ClipPlan& plan) { return stale.contains(plan.file); });
   std::ranges::stable_sort(to_make, std::ranges::greater(), panels_to_draw);
   return to_make;
 }
 
 struct Outcome {
   int signal = 0, made = 0, failed = 0;
+};
+
+/// What workers have made, and the manifest with it.
+class Made {
+ public:
+  Made(const std::vector<ClipPlan>& plans, const fs::path& folder, Manifest& manifest)
+      : plans_(plans), folder_(folder), manifest_(manifest) {
+    for (std::size_t i = 0; i < plans.size(); ++i) index_[plans[i].file] = i;
+  }
+
+  /// Takes a file's entry. It goes to the manifest at once, or when all that are to be as large as
+  /// it are there and have been padded. Returns how many files that has finished.
+  int add(std::size_t plan, ordered_json entry) {
+    entries_[plan] = std::move(entry);
+    const std::vector<std::size_t> group = group_of(plan);
+    if (!std::ranges::all_of(group, [&](std::size_t i) { return entries_.contains(i); })) return 0;
+    try {
+      if (group.size() > 1) pad(group);
+    } catch (const std::runtime_error& error) {
+      for (const std::size_t i : group) errors_[i] = error.what();
+      return 0;
+    }
+    for (const std::size_t i : group) {
+      put(manifest_, std::move(entries_[i]));
+      entries_.erase(i);
+    }
+    write_manifest(folder_, manifest_);
+    return static_cast<int>(group.size());
+  }
+
+  /// Gives up what could not be finished: removes it, and returns each file and why.
+  std::map<std::string, std::string> give_up() {
+    std::map<std::string, std::string> reasons;
+    for (const auto& [i, entry] : entries_) {
+      fs::remove(folder_ / made_as(plans_[i]));
+      reasons[plans_[i].file] =
+          errors_.contains(i) ? errors_[i] : "a clip that it goes with has failed";
+    }
+    return reasons;
+  }
+
+ private:
+  std::vector<std::size_t> group_of(std::size_t plan) const {
+    std::vector<std::size_t> group = {plan};
+    for (const std::string& file : plans_[plan].equal_sizes_with) group.push_back(index_.at(file));
+    std::ranges::sort(group);
+    return group;
+  }
+
+  void pad(const std::vector<std::size_t>& group) {
+    std::vector<std::string> from, to;
+    for (const std::size_t i : group) {
+      from.push_back((folder_ / made_as(plans_[i])).string());
+      to.push_back((folder_ / plans_[i].file).string());
+    }
+    equal_sizes(plans_[group.front()].video.codec, from, to);
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      fs::remove(from[k]);
+      entries_[group[k]]["sha256"] = sha256_of_file(to[k]);
+    }
+  }
+
+  const std::vector<ClipPlan>& plans_;
+  const fs::path& folder_;
+  Manifest& manifest_;
+  std::map<std::string, std::size_t> index_;     // of a plan, by its file
+  std::map<std::size_t, ordered_json> entries_;  // by plan, until in the manifest
+  std::map<std::size_t, std::string> errors_;    // by plan
 };
 
 Outcome make_all(const std::vector<ClipPlan>& plans, const BatchOptions& options, int jobs,
@@ -98,23 +173,25 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const BatchOptions& options
     total += panels_to_draw(plan);
   }
   Outcome outcome;
+  Made files(plans, options.out, manifest);
   Progress progress("rendering", "pictures", total);
+  const auto fail = [&](const std::string& file, const std::string& error) {
+    progress.clear();
+    fmt::print(stderr, "{}: not made: {}\n", file, error);
+    ++outcome.failed;
+  };
   const WorkerPoolEvents events = {
       .tick = [&](std::size_t i) { progress.add(pictures_a_tick(plans[i])); },
       .done =
-          [&](std::size_t, const std::string& entry) {
-            put(manifest, ordered_json::parse(entry));
-            write_manifest(options.out, manifest);
-            ++outcome.made;
+          [&](std::size_t i, const std::string& entry) {
+            outcome.made += files.add(i, ordered_json::parse(entry));
           },
-      .failed =
-          [&](std::size_t i, const std::string& error) {
-            progress.clear();
-            fmt::print(stderr, "{}: not made: {}\n", plans[i].file, error);
-            ++outcome.failed;
-          },
+      .failed = [&](std::size_t i, const std::string& error) { fail(plans[i].file, error); },
       .idle = [&] { progress.add(0); }};
   outcome.signal = run_in_processes(work, jobs, events);
+  if (outcome.signal == 0) {
+    for (const auto& [file, reason] : files.give_up()) fail(file, reason);
+  }
   return outcome;
 }
 
@@ -148,6 +225,24 @@ Configuration method_of(const Scene& scene, const std::string& name) {
   if (name == "baseline") return scene.baseline;
   if (const auto known = configuration_from_string(name)) return *known;
   throw std::invalid_argument("no method is called " + name);
+}
+
+MethodPair pair_from(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  const MethodPair pair = {text.substr(0, comma),
+                           comma == std::string::npos ? "" : text.substr(comma + 1)};
+  for (const std::string& name : {pair.first, pair.second}) {
+    if (name != "baseline" && !configuration_from_string(name)) {
+      throw std::invalid_argument(fmt::format(
+          "a pair is two of pinch, pinch_no_contact, cable, baseline and thesis with a comma "
+          "between, as pinch,thesis, not {}",
+          text));
+    }
+  }
+  if (pair.first == pair.second) {
+    throw std::invalid_argument(fmt::format("{}: a pair needs two methods", text));
+  }
+  return pair;
 }
 
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
@@ -185,22 +280,54 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
   if (options.method) {
     return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
   }
-  const Configuration pinch = Method::pinch, baseline = scene.baseline;
   std::vector<ClipPlan> plans;
+  const auto add_equal = [&](std::vector<ClipPlan> group) {
+    for (ClipPlan& one : group) {
+      for (const ClipPlan& other : group) {
+        if (&one != &other && can_have_equal_sizes(options.codec)) {
+          one.equal_sizes_with.push_back(other.file);
+        }
+      }
+    }
+    std::ranges::move(group, std::back_inserter(plans));
+  };
+  const bool usual = options.pairs.empty();
+  const std::vector<MethodPair> pairs =
+      usual ? std::vector<MethodPair>{{"pinch", "baseline"}} : options.pairs;
   if (options.singles) {
-    plans = {plan("pinch", {pinch}, ending), plan("baseline", {baseline}, ending),
-             plan("poster", {pinch, baseline}, ".png")};
+    std::vector<ClipPlan> singles;
+    for (const auto& [first, second] : pairs) {
+      for (const std::string& name : {first, second}) {
+        if (std::ranges::find(singles, name, &ClipPlan::role) != singles.end()) continue;
+        singles.push_back(plan(name, {method_of(scene, name)}, ending));
+      }
+    }
+    add_equal(std::move(singles));
   }
-  if (options.side_by_side) {
-    plans.push_back(plan("left-pinch", {pinch, baseline}, ending));
-    plans.push_back(plan("left-baseline", {baseline, pinch}, ending));
+  std::set<MethodPair> known;
+  for (const auto& [first, second] : pairs) {
+    if (!known.insert(std::minmax(first, second)).second) {
+      throw std::invalid_argument(fmt::format("the pair {},{} is asked for twice", first, second));
+    }
+    const Configuration one = method_of(scene, first), other = method_of(scene, second);
+    const std::string both = first + "-" + second;
+    if (options.singles) {
+      plans.push_back(plan("poster", {one, other}, ".png"));
+      if (!usual) plans.back().file = fmt::format("{}.{}.poster.png", scene.name, both);
+    }
+    if (options.side_by_side) {
+      add_equal({plan(usual ? "left-pinch" : both, {one, other}, ending),
+                 plan(usual ? "left-baseline" : second + "-" + first, {other, one}, ending)});
+    }
+    if (options.report) plans.push_back(plan("report", {one, other}, ".png"));
   }
-  if (options.report) plans.push_back(plan("report", {pinch, baseline}, ".png"));
   if (options.checks) {
-    plans.push_back(plan("check-left", {pinch, pinch}, ending));
-    plans.back().upside_down = 1;
-    plans.push_back(plan("check-right", {pinch, pinch}, ending));
-    plans.back().upside_down = 0;
+    const Configuration pinch = Method::pinch;
+    std::vector<ClipPlan> checks = {plan("check-left", {pinch, pinch}, ending),
+                                    plan("check-right", {pinch, pinch}, ending)};
+    checks[0].upside_down = 1;
+    checks[1].upside_down = 0;
+    add_equal(std::move(checks));
   }
   return plans;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "demos/clip.h"
@@ -12,11 +13,18 @@
 
 namespace pinchlab {
 
+/// Names of two methods that are to be compared, as method_of has them.
+using MethodPair = std::pair<std::string, std::string>;
+
+/// "pinch,cable". Throws std::invalid_argument with the form that is expected.
+MethodPair pair_from(const std::string& text);
+
 struct BatchOptions {
   std::vector<std::filesystem::path> scenes;  ///< files, or folders of NN-name.json
   std::filesystem::path out = "clips";        ///< made if missing
   std::optional<std::string> method;  ///< only this one ("baseline": each scene's own), no poster
-  int width = 960, height = 960;      ///< px, of one panel
+  std::vector<MethodPair> pairs;  ///< these instead of pinch and baseline, both orders side by side
+  int width = 960, height = 960;  ///< px, of one panel
   Timing timing;
   Codec codec = Codec::h264;
   ThemeFile theme;

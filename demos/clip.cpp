@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 
+#include "base/partial_file.h"
 #include "base/sha256.h"
 #include "demos/pair_report.h"
 #include "demos/scenes/player.h"
@@ -132,6 +133,11 @@ int panel_width(const ClipPlan& plan) {
                                        : plan.video.width;
 }
 
+std::string made_as(const ClipPlan& plan) {
+  return plan.equal_sizes_with.empty() ? plan.file
+                                       : fmt::format("{}.unpadded{}", plan.file, partial_ending);
+}
+
 int poster_frame(const ClipPlan& plan) {
   const auto nearest =
       static_cast<int>(std::lround(plan.source->poster_time * plan.scene.frames_per_second));
@@ -176,13 +182,14 @@ ordered_json plan_entry(const ClipPlan& plan) {
     entry["theme_sha256"] = plan.theme.sha256;
   }
   if (plan.burn_time) entry["burn_time"] = true;
+  if (!plan.equal_sizes_with.empty()) entry["equal_sizes_with"] = plan.equal_sizes_with;
   entry["version"] = version;
   return entry;
 }
 
 ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
                        const std::function<void()>& tick, std::optional<double> time_limit) {
-  const std::string path = (folder / plan.file).string();
+  const std::string path = (folder / made_as(plan)).string();
   ordered_json entry = plan_entry(plan);
   Made made;
   switch (plan.product) {

@@ -26,7 +26,7 @@ enum class Product {
 struct ClipPlan {
   std::string file;  ///< name in the output folder, e.g. "03-drop.pinch.mp4"
   /// "pinch", "baseline", "left-pinch", "left-baseline", "check-left", "check-right", "poster",
-  /// "report", or a method
+  /// "report", a method, or two as "pinch-cable" from left to right
   std::string role;
   const SceneFile* source = nullptr;
   Scene scene;                         ///< the source's, with the timing to use
@@ -38,7 +38,13 @@ struct ClipPlan {
   std::vector<std::int64_t> steps;  ///< shown by the frames of a video
   bool burn_time = false;           ///< the time in a corner of each panel
   Product product = Product::clip;
+  /// The other files of its pair, that are to be as large (equal_sizes.h).
+  std::vector<std::string> equal_sizes_with;
 };
+
+/// The name that make_clip gives the file: the plan's, or another one where its size is yet to be
+/// made equal to others'.
+std::string made_as(const ClipPlan& plan);
 
 /// px of one panel.
 int panel_width(const ClipPlan& plan);
@@ -49,8 +55,8 @@ int poster_frame(const ClipPlan& plan);
 /// What the manifest says of the plan before the file is made. Free of paths, dates and hosts.
 nlohmann::ordered_json plan_entry(const ClipPlan& plan);
 
-/// Makes the file in `folder` and returns its manifest entry: the plan's, the hashes, and in
-/// `broken_promises` what Player says of it, if anything. Calls `tick` after every frame. Throws
+/// Makes the file in `folder`, as made_as says, and returns its manifest entry: the plan's, the
+/// hashes, and in `broken_promises` what Player says of it, if anything. Calls `tick` after every frame. Throws
 /// std::runtime_error where the simulation, OpenGL or the file fails, or where one method takes
 /// longer than `time_limit` (s).
 nlohmann::ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What libav_writer.cpp and libav_reader.cpp share, the only files that know FFmpeg's libraries.
+// What libav_writer.cpp, libav_reader.cpp and equal_sizes.cpp share, the only files that know
+// FFmpeg's libraries.
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -19,6 +20,10 @@ extern "C" {
 #include <string>
 
 namespace pinchlab::libav {
+
+/// For MP4. No bit rates are written (`btrt`): the two files of a pair may differ in them, which
+/// would tell them apart.
+constexpr const char* mp4_options = "movflags=+faststart+write_colr:write_btrt=0";
 
 /// What FFmpeg says of an error code.
 inline std::string reason(int error) {

@@ -91,6 +91,7 @@ struct VideoReader::State {
     DecodedFrame out;
     out.time_s = static_cast<double>(frame->best_effort_timestamp) * av_q2d(stream->time_base);
     out.key = frame->key_frame != 0;
+    out.stored_bytes = frame->pkt_size;
     if (frame->format == AV_PIX_FMT_YUV420P) {
       for (int y = 0; y < h; ++y) {
         const std::uint8_t* from = frame->data[0] + std::ptrdiff_t{y} * frame->linesize[0];

@@ -21,9 +21,7 @@ using libav::Owned;
 
 namespace {
 
-/// What differs from codec to codec. Options are FFmpeg's; "g" is the distance of key frames. No
-/// bit rates are written (`btrt`): the two files of a pair differ in them, which would tell them
-/// apart.
+/// What differs from codec to codec. Options are FFmpeg's; "g" is the distance of key frames.
 struct CodecTraits {
   const char* name;
   const char* ending;
@@ -36,15 +34,16 @@ struct CodecTraits {
 
 const CodecTraits& traits(Codec codec) {
   // Stimuli: adaptive quantisation spoils flat areas, so it is off; one encoder thread and x264's
-  // plain arithmetic order make the bytes the same on any processor. FFV1 has key frames only.
+  // plain arithmetic order make the bytes the same on any processor. Kinds of frames follow one
+  // another in the same order in every clip (equal_sizes.h). FFV1 has key frames only.
   static constexpr CodecTraits h264{
       "h264",
       ".mp4",
       "libx264",
       "mp4",
       AV_PIX_FMT_YUV420P,
-      "preset=veryfast:crf=14:aq-mode=0:x264-params=cpu-independent=1",
-      "movflags=+faststart+write_colr:write_btrt=0"};
+      "preset=veryfast:crf=14:aq-mode=0:b_strategy=0:sc_threshold=0:x264-params=cpu-independent=1",
+      libav::mp4_options};
   static constexpr CodecTraits vp9{"vp9",
                                    ".webm",
                                    "libvpx-vp9",

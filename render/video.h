@@ -88,6 +88,7 @@ struct VideoInfo {
 struct DecodedFrame {
   double time_s = 0.0;             // presentation time
   bool key = false;                // decoding can start here
+  int stored_bytes = 0;            // in the file
   std::vector<std::uint8_t> luma;  // width * height, as stored; empty for RGB codecs
   std::vector<std::uint8_t> rgba;  // width * height * 4
 };

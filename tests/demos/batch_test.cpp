@@ -114,23 +114,94 @@ TEST(Batch, ManifestSaysWhatEachFileIs) {
                      {"frame_count", 60},
                      {"duration_s", 2.0},
                      {"codec", "h264"},
-                     {"settings", describe({Codec::h264, 64, 64, 30, ""})}};
+                     {"settings", describe({Codec::h264, 64, 64, 30, ""})},
+                     {"equal_sizes_with", {"01-long.pinch.mp4"}}};
   EXPECT_EQ(entry("01-long.baseline.mp4"), clip);
   json pair = clip;
   pair["file"] = "01-long.left-baseline.mp4";
   pair["role"] = "left-baseline";
   pair["methods"] = {"cable", "pinch"};
   pair["settings"] = describe({Codec::h264, 128, 64, 30, ""});
+  pair["equal_sizes_with"] = {"01-long.left-pinch.mp4"};
   EXPECT_EQ(entry("01-long.left-baseline.mp4"), pair);
   json poster = clip;
   poster["file"] = "01-long.poster.png";
   poster["role"] = "poster";
   poster["methods"] = {"pinch", "cable"};
   poster["time_s"] = 1.0;
-  for (const char* key : {"frame_count", "duration_s", "codec", "settings"}) {
+  for (const char* key : {"frame_count", "duration_s", "codec", "settings", "equal_sizes_with"}) {
     poster.erase(key);
   }
   EXPECT_EQ(entry("01-long.poster.png"), poster);
+}
+
+// Bytes of each frame in the file, in order of presentation.
+std::vector<int> stored_bytes(const fs::path& path) {
+  VideoReader reader(path.string());
+  std::vector<int> bytes;
+  while (const auto frame = reader.next()) bytes.push_back(frame->stored_bytes);
+  return bytes;
+}
+
+TEST(Batch, FilesOfAPairHaveEqualSizes) {
+  const fs::path folder = scratch_folder();
+  const std::string drop = (fs::path(PINCHLAB_SOURCE_DIR) / "demos/03-drop.json").string();
+  ASSERT_EQ(
+      run_program(folder, render_with({drop, "--side-by-side", "--attention-checks"})).exit_code,
+      0);
+  for (const auto& [one, other] : {std::pair{"pinch", "baseline"},
+                                   {"left-pinch", "left-baseline"},
+                                   {"check-left", "check-right"}}) {
+    const fs::path a = folder / "clips" / fmt::format("03-drop.{}.mp4", one);
+    const fs::path b = folder / "clips" / fmt::format("03-drop.{}.mp4", other);
+    EXPECT_EQ(fs::file_size(a), fs::file_size(b)) << one;
+    EXPECT_EQ(stored_bytes(a), stored_bytes(b)) << one;
+    EXPECT_FALSE(text_of(a) == text_of(b)) << one << ": nothing to be padded";
+  }
+}
+
+TEST(Batch, PairsOfAnyMethods) {
+  const fs::path folder = folder_with_demos();
+  const auto pairs = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"demos/02-short.json", "--pair", "pinch,thesis", "--pair",
+                                    "cable,pinch"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_program(folder, render_with(all));
+  };
+  ASSERT_EQ(pairs({}).exit_code, 0);
+  EXPECT_EQ(names_in(folder / "clips"),
+            (std::set<std::string>{"02-short.pinch.mp4", "02-short.thesis.mp4",
+                                   "02-short.cable.mp4", "02-short.pinch-thesis.mp4",
+                                   "02-short.thesis-pinch.mp4", "02-short.cable-pinch.mp4",
+                                   "02-short.pinch-cable.mp4", "02-short.pinch-thesis.poster.png",
+                                   "02-short.cable-pinch.poster.png", "manifest.json"}));
+  const json manifest = json::parse(text_of(folder / "clips/manifest.json"));
+  for (const json& clip : manifest["clips"]) {
+    if (clip["file"] != "02-short.thesis-pinch.mp4") continue;
+    EXPECT_EQ(clip["methods"], json({"thesis", "pinch"}));
+    EXPECT_EQ(clip["role"], "thesis-pinch");
+  }
+  EXPECT_EQ(stored_bytes(folder / "clips/02-short.cable-pinch.mp4"),
+            stored_bytes(folder / "clips/02-short.pinch-cable.mp4"));
+  EXPECT_EQ(stored_bytes(folder / "clips/02-short.cable.mp4"),
+            stored_bytes(folder / "clips/02-short.thesis.mp4"));
+  EXPECT_EQ(pairs({}).err, "clips: 0 made, 9 up to date already, 0 failed\n");
+  ASSERT_EQ(pairs({"--only-side-by-side", "--out", "study"}).exit_code, 0);
+  EXPECT_EQ(names_in(folder / "study").size(), 5U);
+
+  const auto refused = [&](const std::vector<std::string>& arguments, const std::string& why) {
+    const RunResult run = run_program(folder, render_with(arguments));
+    EXPECT_EQ(run.exit_code, 2) << why;
+    EXPECT_NE(run.err.find(why), std::string::npos) << run.err;
+  };
+  refused({"--pair", "pinch"}, "with a comma between, as pinch,thesis, not pinch");
+  refused({"--pair", "pinch,rope"}, "not pinch,rope");
+  refused({"--pair", "pinch,cable,thesis"}, "not pinch,cable,thesis");
+  refused({"--pair", "cable,cable"}, "cable,cable: a pair needs two methods");
+  refused({"--pair", "cable,pinch", "--pair", "pinch,cable"},
+          "the pair pinch,cable is asked for twice");
+  refused({"--pair", "cable,pinch", "--method", "cable"}, "excludes");
+  refused({"--pair", "cable,pinch", "--report"}, "excludes");
 }
 
 TEST(Batch, SameBytesForAnyJobs) {
@@ -216,9 +287,9 @@ TEST(Batch, MakesOnlyWhatIsMissingOrOutOfDate) {
   };
 
   fs::remove(folder / "clips/01-long.pinch.mp4");
-  EXPECT_EQ(made_again(), "clips: 1 made, 5");
+  EXPECT_EQ(made_again(), "clips: 2 made, 4") << "with its partner: their sizes hang together";
   std::ofstream(folder / "clips/02-short.baseline.mp4", std::ios::app) << "damaged";
-  EXPECT_EQ(made_again(), "clips: 1 made, 5");
+  EXPECT_EQ(made_again(), "clips: 2 made, 4");
   std::ofstream(folder / "clips/02-short.pinch.mp4.partial") << "left by a killed run";
   EXPECT_EQ(made_again(), "clips: 0 made, 6");
   EXPECT_EQ(files_in(folder / "clips"), files);
@@ -252,8 +323,12 @@ TEST(Batch, OneFailureDoesNotStopTheOthers) {
   fs::create_directories(folder / "clips/01-long.pinch.mp4");  // in the way
   const RunResult run = run_program(folder, render);
   EXPECT_EQ(run.exit_code, 1);
+  EXPECT_FALSE(fs::exists(folder / "clips/01-long.baseline.mp4")) << "without its partner";
+  for (const auto& entry : fs::directory_iterator(folder / "clips")) {
+    EXPECT_NE(entry.path().extension(), ".partial") << entry.path();
+  }
   EXPECT_NE(run.err.find("01-long.pinch.mp4: not made: "), std::string::npos) << run.err;
-  EXPECT_NE(run.err.find("clips: 5 made, 0 up to date already, 1 failed"), std::string::npos)
+  EXPECT_NE(run.err.find("clips: 4 made, 0 up to date already, 2 failed"), std::string::npos)
       << run.err;
 }
 
@@ -292,7 +367,7 @@ fs::path folder_with_long_demo() {
 TEST(Batch, KilledRunLeavesNoHalfFile) {
   const fs::path folder = folder_with_long_demo();
   const pid_t process = start_program(folder, render);
-  ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.partial"));
+  ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
   ::kill(process, SIGKILL);
   EXPECT_EQ(wait_for_program(folder, process).signal, SIGKILL);
   EXPECT_FALSE(fs::exists(folder / "clips/01-long.pinch.mp4"));
@@ -314,7 +389,7 @@ TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path folder = folder_with_long_demo();
     const pid_t process = start_program(folder, render);
-    ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.partial"));
+    ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
     ::kill(process, signal);
     EXPECT_EQ(wait_for_program(folder, process).signal, signal);
     for (const std::string& name : names_in(folder / "clips")) {
