@@ -72,6 +72,7 @@ ordered_json plan_entry(const PlanOptions& options, const std::string& graded_hi
                         {"attention_checks", options.attention_checks.size()}};
   if (!options.methods.empty()) entry["methods"] = options.methods;
   if (!options.graded.empty()) entry["graded_hit"] = graded_hit;
+  if (options.adaptive_trials > 0) entry["adaptive"] = "psi";
   return entry;
 }
 

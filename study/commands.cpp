@@ -235,7 +235,7 @@ fs::path existing_folder(const fs::path& folder) {
 }
 
 struct ExportOptions {
-  fs::path answers, csv, psych_ds;
+  fs::path answers, csv, participants_csv, psych_ds, bids;
   fs::path jatos, clips, config;
   std::uint64_t participants = 0, seed = 0;
   bool has_seed = false, no_webm = false;
@@ -244,6 +244,12 @@ struct ExportOptions {
 void export_study(const ExportOptions& options, const Stimuli& stimuli) {
   if (!options.csv.empty()) {
     write_text(options.csv, answers_csv(existing_folder(options.answers)));
+  }
+  if (!options.participants_csv.empty()) {
+    write_text(options.participants_csv, participants_csv(existing_folder(options.answers)));
+  }
+  if (!options.bids.empty()) {
+    write_bids(existing_folder(options.answers), options.bids);
   }
   if (!options.psych_ds.empty()) {
     write_psych_ds(existing_folder(options.answers), options.psych_ds);
@@ -267,6 +273,13 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
   CLI::Option_group* what = command->add_option_group("what");
   what->add_option("--csv", options->csv, "Tidy table, one row a trial; - is standard output")
       ->type_name("FILE.csv")
+      ->needs(answers);
+  what->add_option("--participants-csv", options->participants_csv,
+                   "Table, one row a participant; - is standard output")
+      ->type_name("FILE.csv")
+      ->needs(answers);
+  what->add_option("--bids", options->bids, "BIDS dataset (behaviour); a new folder")
+      ->type_name("DIR")
       ->needs(answers);
   what->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
       ->type_name("DIR")

@@ -48,6 +48,14 @@ std::string what_varies(const json& design, const Config& config) {
   const json& plan = design.at("plan");
   const std::size_t shown = plan.at("demonstrations").size();
   const int each = plan.at("answers_per_demonstration");
+  if (config.adaptive_trials > 0) {
+    return fmt::format(
+        "Thresholds of {} graded series: in each, {} trials show a graded clip beside its "
+        "reference, "
+        "at the level whose answer is expected to tell most about the participant's threshold and "
+        "width (Psi method, Kontsevich and Tyler 1999). It is a hit to choose the {}.",
+        shown, each, config.graded_hit == "reference" ? "reference" : "graded one");
+  }
   if (!config.graded.empty()) {
     return fmt::format(
         "Thresholds of {} graded series: in each, {} trials show a graded clip beside its "
