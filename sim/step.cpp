@@ -60,13 +60,8 @@ bool solve_part(const Scene& scene, const World& world, Workspace& work, const P
                 Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   const TimeSpan interval = whole_step(world);
-  work.solve.step_length = world.step_length;
-  work.solve.reach = infinity;
   steady_light_bodies(world, work.parts, part, interval.kick, s);
-  make_segment_rows(scene, world, work.parts, part, interval, s);
-  watch.lap(Stage::init_segments);
-  make_contact_rows(scene, world, work.parts, part, interval, s, work.solve);
-  watch.lap(Stage::init_contacts);
+  make_rows(scene, world, work.parts, part, interval, s, work.solve, watch);
   if (world.configuration.solver == Solver::direct) {
     return solve_direct(world, work.parts, part, s, work.solve);
   }
@@ -98,10 +93,6 @@ void note_velocities(const World& world, Workspace& work) {
   work.velocity_before = world.velocity;
   work.angular_velocity_before = world.angular_velocity;
 }
-
-}  // namespace
-
-namespace {
 
 /// A step in one: events take effect in the step in which they fall.
 StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, StageTimes* times) {

@@ -43,8 +43,8 @@ struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<double> material, wrap;  // of the links, cable after cable
-  std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
+  std::vector<double> material;  // of the links, cable after cable
+  std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
 /// Storage of find_contacts and configure_pinches.
@@ -76,6 +76,7 @@ struct Workspace {
   bool settled = true;          // every solve of the last trial; by move_part
   double missed = 0.0;  // by lengths and gaps, over the part\'s extent, where not met; by move_part
   bool violated = false;     // what an interval began with, more than it makes up for; by move_part
+  std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
   double local_error = 0.0;  // m, of the last trial; by move_part
   std::vector<Happening> events;  // of the interval being tried
 

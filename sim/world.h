@@ -99,7 +99,7 @@ struct Diagnostics {
   std::int64_t events = 0;     // located since the start
   std::int64_t intervals = 0;  // into which steps have been divided, since the start
   double local_errors = 0.0;   // m, sum of the intervals' estimates since the start
-  std::int64_t clusters = 0;   // steps with more events than are located in one
+  std::int64_t clusters = 0;   // steps with so many events that what came last did not rebound
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same

@@ -12,6 +12,7 @@
 #include "analysis/experiments/features.h"
 #include "analysis/experiments/instructions.h"
 #include "analysis/experiments/pinch_detection.h"
+#include "analysis/experiments/population.h"
 #include "analysis/experiments/render_cost.h"
 #include "analysis/experiments/stability/stability.h"
 #include "analysis/experiments/stress.h"
@@ -104,6 +105,25 @@ void add_render(CLI::App& bench) {
   });
 }
 
+void add_population(CLI::App& bench) {
+  auto run = std::make_shared<PopulationRun>();
+  CLI::App* command = bench.add_subcommand(
+      "population", "What no motion may show, counted over random scenes at three step lengths");
+  command->add_option("--out", run->options.out, "Folder for table and page [results]")
+      ->type_name("DIR");
+  command->add_option("--scenes", run->scenes, "How many [2000]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  command->callback([run] {
+    run->options.command = fmt::format("pinchlab bench population --scenes {} --first {} --out {}",
+                                       run->scenes, run->first, run->options.out.string());
+    run_population(*run);
+  });
+}
+
 struct Counting {
   Options options;
   int scene = -1, steps = 0;
@@ -171,6 +191,7 @@ void add_bench_commands(CLI::App& app) {
   for (const Experiment& experiment : experiments) add_experiment(*bench, experiment);
   add_render(*bench);
   add_instructions(*bench);
+  add_population(*bench);
   add_all(*bench);
   bench->footer(
       "Each writes raw tables (CSV), figures (SVG and PDF, by gnuplot) and a page that says in "

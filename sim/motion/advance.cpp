@@ -2,7 +2,6 @@
 #include "sim/motion/advance.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -11,276 +10,33 @@
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
 #include "sim/motion/impact.h"
+#include "sim/motion/interval.h"
 #include "sim/motion/repair.h"
-#include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
-#include "sim/solve/solution.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
 
 namespace {
 
-constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
-
-constexpr int most_events = 24;              // that are located in one step
-constexpr double share_of_error = 2e-4;      // of Configuration::error that an interval may take
-constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
-constexpr double shortest_corrected = 1e-6;  // of a step
-constexpr double sound = 1e-3;  // of a part's extent: more than friction that cycles may miss
-constexpr int shake_rounds = 12;
-constexpr int most_trials = 60;   // of an interval's length
-constexpr int most_halvings = 5;  // of an interval that does not converge
-
-bool is_exact_row(const Row& row) {
-  if (row.kind == RowKind::tangent) return false;
-  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
-}
-
-void note_start(const World& world, Start& start) {
-  start.fallbacks = world.diagnostics.fallbacks;
-  start.position = world.position;
-  start.velocity = world.velocity;
-  start.angle = world.angle;
-  start.angular_velocity = world.angular_velocity;
-  start.material.clear();
-  start.wrap.clear();
-  for (const CableState& cable : world.cables) {
-    for (const Link& link : cable.links) {
-      start.material.push_back(link.material);
-      start.wrap.push_back(link.wrap);
-    }
-  }
-}
-
-/// Everything that moves of a part, `length` seconds after the interval's start.
-void place_part(World& world, Workspace& work, const Part& part, double length, bool begins) {
-  const Start& start = work.start;
-  for (const int number : bodies_of(work.parts, part)) {
-    const auto b = index(number);
-    world.position[b] = start.position[b] + length * world.velocity[b];
-    world.angle[b] = start.angle[b] + length * world.angular_velocity[b];
-  }
-  for (const int c : cables_of(work.parts, part)) {
-    CableState& cable = at(world.cables, c);
-    if (part.slides) {
-      const auto first = index(at(work.first_link, c));
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
-      }
-    }
-    const bool moved = update_cable(world, cable, begins);
-    work.spans_moved = work.spans_moved || moved;
-  }
-}
-
-/// Adds to the rows' biases what their conditions have missed at the present positions; returns the
-/// most (m).
-double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
-                  PartSystem& s) {
-  const CapstanScratch& capstan = work.solve.capstan;
-  double most = 0.0;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Row& row = s.rows[r];
-    if (row.idle || !is_exact_row(row)) continue;
-    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0);
-    if (!row.on && row.kind == RowKind::pinch_middle) continue;
-    const bool grouped = !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
-    if (grouped && !row.on) continue;
-    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
-    const bool made_up = row.clearance <= s.reach;
-    const double left = row.clearance < -t.made_up ? row.clearance
-                        : made_up                  ? (1.0 - t.length / t.repair) * row.clearance
-                                                   : 0.0;
-    double missed = clearance_of(scene, world, row) - left;
-    if (row.compliance > 0.0) {
-      if (!row.on || grouped) continue;
-      // The stretch over the interval's end is the real one.
-      const double straight = row_speed(s, r) - row.bias;
-      const double curvature = (missed + left - row.clearance) / t.length - straight;
-      missed = (curvature - row.curvature) * t.length;
-      row.curvature = curvature;
-    }
-    // Of a group that is slack as a whole no segment is held to its length.
-    const bool bears = row.on && !(grouped && row.impulse == 0.0 &&
-                                   at(capstan.groups, capstan.group_of_row[r]).slack >= 0);
-    if (!bears) missed = std::min(missed, 0.0);
-    row.bias += missed / t.length;
-    most = std::max(most, std::abs(missed));
-  }
-  return most;
-}
-
-void forget_flips(PartSystem& s) {
-  for (Row& row : s.rows) {
-    row.flipped = 0;
-    row.returned = false;
-  }
-}
-
-/// Solves and moves a part; whether its lengths and gaps are exact then.
-bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               int most_rounds, bool begins, Stopwatch& watch) {
-  PartSystem& s = at(work.systems, part.system);
-  SolveScratch& set = work.solve;
-  set.step_length = t.repair;
-  set.reach = t.reach;
-  steady_light_bodies(world, work.parts, part, t.kick, s);
-  make_segment_rows(scene, world, work.parts, part, t, s);
-  watch.lap(Stage::init_segments);
-  make_contact_rows(scene, world, work.parts, part, t, s, set);
-  watch.lap(Stage::init_contacts);
-  double last = infinity, before_last = infinity;
-  Diagnostics& d = world.diagnostics;
-  for (int round = 0;; ++round) {
-    if (round > 0) forget_flips(s);
-    const bool settled = solve_direct(world, work.parts, part, s, set);
-    if (!settled) ++d.fallbacks;
-    work.settled = work.settled && settled;
-    d.active_set_solves = std::max(d.active_set_solves, set.solves);
-    store_solution(work.parts, part, s, set.capstan, t.kick, world);
-    part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
-    watch.lap(Stage::solve);
-    place_part(world, work, part, t.length, begins && round == 0);
-    watch.lap(Stage::move_bodies);
-    // SHAKE's first correction is the curvature of the way, and the second what the constraints'
-    // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(scene, world, work, t, s);
-    watch.lap(Stage::update_segments);
-    if (round == 1) work.local_error = std::max(work.local_error, missed);
-    // In so short an interval there is nothing to correct but round-off.
-    if (missed <= exact * s.reach || t.length < shortest_corrected * t.repair) return true;
-    // Where states flip it may get worse for a round.
-    work.missed = std::max(work.missed, missed / s.extent);
-    if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
-      return false;
-    before_last = last;
-    last = missed;
-  }
-}
-
-/// Tries an interval from where the last began; whether lengths and gaps are exact at its end. Lists
-/// what has happened in it.
-bool try_interval(const Scene& scene, World& world, Workspace& work, double length, bool locate,
-                  int most_rounds, bool begins, Stopwatch& watch) {
-  TimeSpan t;
-  t.length = length;
-  t.repair = world.step_length;
-  t.lag = world.lag;
-  t.clamps = true;
-  t.kick = world.lag + 0.5 * length;
-  t.start = work.start.time;
-  apply_forces(scene, world, t, work);
-  watch.lap(Stage::apply_forces);
-  work.local_error = 0.0;
-  work.settled = true;
-  work.violated = false;
-  work.missed = 0.0;
-  for (Happening& event : work.events) event.seen = false;
-  bool met = true;
-  for (int p = 0; index(p) < work.parts.list.size(); ++p) {
-    Part& part = at(work.parts.list, p);
-    if (part.asleep) continue;
-    PartSystem& s = at(work.systems, part.system);
-    t.made_up = s.reach;
-    t.reach = locate ? s.reach : infinity;
-    met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
-    if (!locate) continue;
-    find_catches(scene, world, work, p);
-    find_gone_links(world, work, p);
-  }
-  if (locate) find_span_hits(scene, world, work);
-  for (Happening& event : work.events) {
-    if (!event.seen) event.clearance = infinity;
-  }
-  return met;
-}
-
-/// Puts everything back to where the interval began.
-void go_back(World& world, Workspace& work) {
-  const Start& start = work.start;
-  world.diagnostics.fallbacks = start.fallbacks;
-  world.position = start.position;
-  world.velocity = start.velocity;
-  world.angle = start.angle;
-  world.angular_velocity = start.angular_velocity;
-  std::size_t k = 0;
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    CableState& cable = world.cables[c];
-    for (Link& link : cable.links) link.material = start.material[k++];
-    if (!sleeps(work.parts, c)) update_cable(world, cable, false);
-  }
-}
-
-/// The longest interval of at most `length` in which nothing happens but at its end; the world is at
-/// its end. Returns its length. `met`: lengths and gaps are exact there.
-double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
-                     Stopwatch& watch) {
-  work.events.clear();
-  met = try_interval(scene, world, work, length, true, shake_rounds, true, watch);
-  const double allowed = share_of_error * world.configuration.error;
-  while (allowed > 0.0 && met && work.local_error > allowed &&
-         length > shortest * world.step_length) {
-    go_back(world, work);
-    work.events.clear();
-    length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
-    met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
-  }
-  const auto unsound = [&work, &met] { return !met && (work.settled || work.missed > sound); };
-  for (int halvings = 0; unsound() && halvings < most_halvings; ++halvings) {
-    go_back(world, work);
-    work.events.clear();
-    length *= 0.5;
-    met = try_interval(scene, world, work, length, true, shake_rounds, false, watch);
-  }
-  if (!met && work.settled) {  // the linear solution is sound at least; what it misses is repaired
-    go_back(world, work);
-    work.events.clear();
-    try_interval(scene, world, work, length, true, 0, false, watch);
-  }
-  if (work.events.empty()) return length;
-
-  double late = length, early = 0.0;
-  double late_by = least_clearance(work.events), early_by = infinity;
-  double tried = length;
-  for (int trial = 0; trial < most_trials; ++trial) {
-    const double least = least_clearance(work.events);
-    if (std::abs(least) <= 0.5 * aim) return tried;
-    if (least < 0.0) {
-      if (trial > 0 && late_by < 0.0 && early_by < infinity) early_by *= 0.5;  // Illinois
-      late = tried;
-      late_by = least;
-    } else {
-      early = tried;
-      early_by = least;
-    }
-    double share = 0.5;
-    if (early_by < infinity && early_by > 0.0) share = early_by / (early_by - late_by);
-    const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
-    if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
-    tried = next;
-    go_back(world, work);
-    met =
-        try_interval(scene, world, work, tried, true, met ? shake_rounds : 0, false, watch) && met;
-  }
-  return tried;
-}
+constexpr int most_rebounds = 24;  // of a step's events: what comes after them does not rebound
+constexpr int most_events = 48;    // that are located in one step
 
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part) {
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
+  t.repair = world.step_length;
   t.kick = t.lag = world.lag;
   t.reach = s.reach;
   t.held_only = t.clamps = true;
-  work.solve.step_length = world.step_length;
-  work.solve.reach = -infinity;
   steady_light_bodies(world, work.parts, part, t.kick, s);
-  make_segment_rows(scene, world, work.parts, part, t, s);
-  make_contact_rows(scene, world, work.parts, part, t, s, work.solve);
-  solve_direct(world, work.parts, part, s, work.solve);
+  Stopwatch untimed(nullptr);
+  make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
+  solve_passively(world, work.parts, part, s, work.solve);
 }
 
 /// Brings the velocities to the positions' time.
@@ -298,6 +54,50 @@ void catch_up(const Scene& scene, World& world, double time, Workspace& work) {
   world.lag = 0.0;
 }
 
+/// Forces of an instant at the positions' time.
+void apply_no_forces(const Scene& scene, const World& world, double time, Workspace& work) {
+  TimeSpan instant;
+  instant.start = time;
+  apply_forces(scene, world, instant, work);
+}
+
+bool is_squeezed(const World& world) {
+  return std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
+    return c.gap < c.target - 10.0 * reach_at(world, c.a);
+  });
+}
+
+void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
+  apply_no_forces(scene, world, time, work);
+  for (const Part& part : work.parts.list) {
+    if (!part.asleep) strike(scene, world, work, part, rebounds);
+  }
+}
+
+/// Puts right in the positions what an interval has left, and then the velocities to fit them.
+void settle_end(const Scene& scene, World& world, Workspace& work, double time, bool violated,
+                bool happened, bool rebounds) {
+  if (violated || happened) apply_no_forces(scene, world, time, work);
+  bool repaired = false;
+  for (Part& part : work.parts.list) {
+    if (part.asleep || !(violated || happened)) continue;
+    repaired = repair(scene, world, work, part) || repaired;
+  }
+  if (repaired && world.lag > 0.0) catch_up(scene, world, time, work);
+  if (!happened && !repaired) return;
+  strike_all(scene, world, work, time, rebounds);
+}
+
+/// Moves the world by an interval of at most `left` (s), to its next event; its length, in which
+/// `met` is as for find_interval.
+double move(const Scene& scene, World& world, Workspace& work, double left, bool locate, bool& met,
+            Stopwatch& watch) {
+  begin_interval(world, work, world.time() + (world.step_length - left));
+  if (locate) return find_interval(scene, world, work, left, met, watch);
+  met = cross_interval(scene, world, work, left, watch);
+  return left;
+}
+
 }  // namespace
 
 void find_present_velocities(const Scene& scene, const World& world, double time, Workspace& work) {
@@ -312,55 +112,35 @@ void find_present_velocities(const Scene& scene, const World& world, double time
 
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
-  world.diagnostics.active_set_solves = 0;
-  const std::int64_t fallbacks = world.diagnostics.fallbacks;
+  Diagnostics& d = world.diagnostics;
+  d.active_set_solves = 0;
+  const std::int64_t fallbacks = d.fallbacks;
   double left = world.step_length;
   int events = 0;
-  for (int interval = 0; left > 0.0; ++interval) {
-    note_start(world, work.start);
-    work.start.time = world.time() + (world.step_length - left);
-    work.first_link.clear();
-    int links = 0;
-    for (const CableState& cable : world.cables) {
-      work.first_link.push_back(links);
-      links += static_cast<int>(cable.links.size());
-    }
-    work.released.clear();
-    work.spans_moved = false;
-    work.events.clear();
+  // Velocities that the scene starts with need not fit its cables: they meet them at once.
+  if (world.step == 0) strike_all(scene, world, work, 0.0, true);
+  for (bool first = true; left > 0.0; first = false) {
     const double lag = world.lag;
     const int changes = changes_of_cables(world);
     bool met = true;
-    double length = left;
-    if (events < most_events) {
-      length = find_interval(scene, world, work, left, met, watch);
-    } else {
-      met = try_interval(scene, world, work, left, false, shake_rounds, true, watch);
-      if (!met) {
-        go_back(world, work);
-        try_interval(scene, world, work, left, false, 0, false, watch);
-      }
-      ++world.diagnostics.clusters;
-    }
+    const double length = move(scene, world, work, left, events < most_events, met, watch);
     if (!check_finite(scene, world)) return StepStatus::not_finite;
-    if (interval == 0 && world.configuration.diagnostics) {
+    if (first && world.configuration.diagnostics) {
       work.lag_before = lag;
       work.kick_before = lag + 0.5 * length;
-      world.diagnostics.energy += kinetic_energy(world, work);
+      d.energy += kinetic_energy(world, work);
     }
-    ++world.diagnostics.intervals;
-    world.diagnostics.local_errors += work.local_error;
-    if (!met) ++events;
-    world.diagnostics.total_solves += world.diagnostics.active_set_solves;
+    ++d.intervals;
+    d.local_errors += work.local_error;
+    d.total_solves += d.active_set_solves;
     left = length < left ? left - length : 0.0;
     world.lag = 0.5 * length;
     const double now = work.start.time + length;
-    TimeSpan instant;
-    instant.start = now;
     const bool happened = !work.events.empty();
+    if (!met) ++events;
     if (happened) {
-      ++world.diagnostics.events;
       ++events;
+      ++d.events;
       catch_up(scene, world, now, work);
       change_courses(world, work);
     }
@@ -368,30 +148,15 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       if (left == 0.0 && !part.asleep) note_rest(scene, work.parts, part, world);
     }
     detect_after_moving(scene, world, work, times);
-    if (happened) empty_pinches(world);
     watch = Stopwatch(times);
-    const bool squeezed =
-        work.violated ||
-        std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
-          return c.gap < c.target - 10.0 * reach_at(world, c.a);
-        });
-    bool repaired = false;
-    const bool changed = changes_of_cables(world) != changes;
-    if (!met || happened || changed || squeezed) apply_forces(scene, world, instant, work);
-    for (Part& part : work.parts.list) {
-      if (part.asleep || (met && !happened && !changed && !squeezed)) continue;
-      repaired = repair(scene, world, work, part) || repaired;
-    }
-    if (repaired && world.lag > 0.0) catch_up(scene, world, now, work);
-    if (happened || repaired) {
-      apply_forces(scene, world, instant, work);
-      for (const Part& part : work.parts.list) {
-        if (!part.asleep) strike(scene, world, work, part);
-      }
-    }
+    empty_pinches(world);
+    const bool violated =
+        !met || work.violated || changes_of_cables(world) != changes || is_squeezed(world);
+    settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);
     watch.lap(Stage::solve);
   }
-  world.diagnostics.fallbacks = std::min(world.diagnostics.fallbacks, fallbacks + 1);
+  if (events > most_rebounds) ++d.clusters;
+  d.fallbacks = std::min(d.fallbacks, fallbacks + 1);
   return StepStatus::ok;
 }
 

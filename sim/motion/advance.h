@@ -14,9 +14,9 @@
 //   event      velocities at its time, from half a kick with the old constraints; then the cable's
 //              course changes, and an impact (impact.h) makes the velocities fit it.
 //
-// Of a step's events only so many are located. What comes after them in the same step (a body that
-// chatters to rest) is met without a rebound, by constraints that bear force as early as it takes
-// (Diagnostics::clusters).
+// After so many events in a step nothing rebounds any more, so that a body that chatters comes to
+// rest (Diagnostics::clusters); after twice as many the rest of the step is met at once, by
+// constraints that bear force as early as it takes.
 //
 // What no interval has put right, as where a constraint has no gradient, is repaired in the
 // positions alone: a repair never becomes velocity.

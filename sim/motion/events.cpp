@@ -2,6 +2,8 @@
 #include "sim/motion/events.h"
 
 #include <algorithm>
+#include <memory>
+#include <span>
 #include <tuple>
 
 #include "base/at.h"
@@ -15,31 +17,24 @@ namespace pinchlab {
 
 namespace {
 
-/// The event of that key, or a new one.
-Happening& note(std::vector<Happening>& events, const Happening& key) {
-  for (Happening& e : events) {
-    if (e.kind == key.kind && e.part == key.part && e.row == key.row && e.cable == key.cable &&
-        e.item == key.item && e.body == key.body) {
-      return e;
-    }
-  }
-  events.push_back(key);
-  return events.back();
+/// The event of that key, or null.
+Happening* find(std::span<Happening> events, const Happening& key) {
+  const auto it = std::find_if(events.begin(), events.end(), [&key](const Happening& e) {
+    return e.kind == key.kind && e.part == key.part && e.row == key.row && e.cable == key.cable &&
+           e.item == key.item && e.body == key.body;
+  });
+  return it == events.end() ? nullptr : std::to_address(it);
 }
 
 /// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0: or
 /// nearly there).
 void measure(std::vector<Happening>& events, const Happening& key, double clearance, double late) {
   if (events.empty() && clearance >= -late) return;
-  bool known = false;
-  for (const Happening& e : events) {
-    known = known || (e.kind == key.kind && e.part == key.part && e.row == key.row &&
-                      e.cable == key.cable && e.item == key.item && e.body == key.body);
-  }
-  if (!known && clearance >= -late) return;
-  Happening& event = note(events, key);
-  event.clearance = clearance;
-  event.seen = true;
+  Happening* event = find(events, key);
+  if (!event && clearance >= -late) return;
+  if (!event) event = &events.emplace_back(key);
+  event->clearance = clearance;
+  event->seen = true;
 }
 
 }  // namespace
@@ -115,13 +110,8 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
     event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
                                      event.body, event.orientation);
     event.seen = true;
-    bool again = event.clearance >= -0.5 * event.reach;
-    for (std::size_t j = 0; j < known; ++j) {
-      const Happening& old = work.events[j];
-      again = again || (old.kind == EventKind::hit && old.cable == event.cable &&
-                        old.item == event.item && old.body == event.body);
-    }
-    if (!again) work.events[kept++] = event;
+    const bool met = event.clearance < -0.5 * event.reach;
+    if (met && !find(std::span(work.events).first(known), event)) work.events[kept++] = event;
   }
   work.events.resize(kept);
 }

@@ -2,7 +2,7 @@
 #include "sim/motion/impact.h"
 
 #include "base/at.h"
-#include "sim/solve/active_set.h"
+#include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
 #include "sim/workspace.h"
@@ -37,67 +37,22 @@ double greatest_speed(const PartSystem& s) {
   return speed;
 }
 
-void forget_flips(PartSystem& s) {
-  for (Row& row : s.rows) {
-    row.flipped = 0;
-    row.returned = false;
-  }
-  for (Friction& friction : s.frictions) {
-    friction.dropped = friction.frozen = false;
-    friction.slid = Slip::stick;
-  }
-}
-
-/// Twice the kinetic energy of a part's bodies (J) at the given velocities.
-double twice_kinetic(const World& world, std::span<const int> bodies,
-                     const std::vector<Eigen::Vector3d>& velocity) {
-  double energy = 0.0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyProperties& body = at(world.bodies, bodies[i]);
-    if (can_move(body)) energy += body.mass * velocity[i].head<2>().squaredNorm();
-    if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
-      energy += disc_inertia(body) * velocity[i].z() * velocity[i].z();
-    }
-  }
-  return energy;
-}
-
-/// Solves for the velocities after a blow; whether the states settled. Coulomb's and the capstan
-/// law, taken over a whole impact, may make energy where they turn the way of sliding. Then nothing
-/// slides on cables and nothing rubs: what is left is a projection.
-bool solve_blow(const World& world, Workspace& work, const Part& part, PartSystem& s) {
-  const std::span<const int> bodies = bodies_of(work.parts, part);
-  const double before = twice_kinetic(world, bodies, s.free_velocity);
-  const auto makes_energy = [&] {
-    constexpr double rounding = 1e-9;
-    return !(twice_kinetic(world, bodies, s.velocity) <= before * (1.0 + rounding));
-  };
-  forget_flips(s);
-  const bool settled = solve_direct(world, work.parts, part, s, work.solve);
-  if (!makes_energy()) return settled;
-  forget_flips(s);
-  for (Friction& friction : s.frictions) friction.dropped = true;
-  Part held = part;
-  held.may_slide = false;
-  return solve_direct(world, work.parts, held, s, work.solve);
-}
-
 }  // namespace
 
-void strike(const Scene& scene, World& world, Workspace& work, const Part& part) {
+void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
   TimeSpan instant;
   instant.reach = s.reach;
   instant.clamps = true;
-  set.step_length = world.step_length;
-  set.reach = s.reach;
-  make_segment_rows(scene, world, work.parts, part, instant, s);
-  make_contact_rows(scene, world, work.parts, part, instant, s, set);
+  instant.repair = world.step_length;
+  Stopwatch untimed(nullptr);
+  make_rows(scene, world, work.parts, part, instant, s, set, untimed);
 
   // One blow a contact and neighbour is plenty; what is left then is stopped.
-  const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);
+  const int contact_rows = static_cast<int>(s.rows.size()) - s.first_contact_row;
+  const int most_blows = rebounds ? 4 * contact_rows : 0;
   constexpr double rounding = 1e-12;
   s.velocity = s.free_velocity;
   const double least = rounding * greatest_speed(s);
@@ -115,7 +70,8 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
     row.bias = 0.0;
     const double e = restitution_of(scene, world, at(world.contacts, row.index));
     row.bias = e * row_speed(s, index(struck));
-    solve_blow(world, work, part, s);
+    forget_flips(s);
+    solve_passively(world, work.parts, part, s, set);
     at(s.rows, struck).bias = 0.0;
     s.free_velocity = s.velocity;
     at(world.contacts, at(s.rows, struck).index).rebounds = rebounded = true;
@@ -126,7 +82,8 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part)
     row.idle = row.clearance > s.reach;
     row.on = !row.idle && at(world.contacts, row.index).touching && !rebounded;
   }
-  if (!solve_blow(world, work, part, s)) ++world.diagnostics.fallbacks;
+  forget_flips(s);
+  if (!solve_passively(world, work.parts, part, s, set)) ++world.diagnostics.fallbacks;
   store_solution(work.parts, part, s, set.capstan, 0.0, world);
   for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];

@@ -17,6 +17,8 @@ struct Workspace;
 /// approaches then is stopped, all at once: of all contacts and cables J v+ >= 0, inelastic, with
 /// friction. Each of these solves is a projection of the velocities (but for a share e <= 1 of the
 /// normal one), so that none of them makes energy.
-void strike(const Scene& scene, World& world, Workspace& work, const Part& part);
+///
+/// `rebounds`: false leaves out the blows, as if all restitution were 0.
+void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds);
 
 }  // namespace pinchlab

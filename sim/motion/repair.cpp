@@ -44,22 +44,29 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
   for (const int c : cables_of(work.parts, part)) update_cable(world, at(world.cables, c), false);
 }
 
+/// Whether a segment is a pinch that is pressed, or nearly so: no material gets through.
+bool is_closed(const World& world, const CableState& cable, int segment) {
+  constexpr double nearly = 1e-3;  // of the half width: a body that rattles is closed
+  const Segment& s = at(cable.segments, segment);
+  if (!s.pinched || s.contact < 0) return false;
+  const Contact& contact = at(world.contacts, s.contact);
+  return contact.gap - contact.target <= nearly * cable.half_width;
+}
+
 }  // namespace
 
 void empty_pinches(World& world) {
   for (CableState& cable : world.cables) {
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
-      const Segment& segment = at(cable.segments, i);
-      if (!segment.pinched || segment.contact < 0 || segment.rest_length <= 0.0) continue;
-      const Contact& contact = at(world.contacts, segment.contact);
-      if (contact.gap - contact.target > 10.0 * reach_at(world, contact.a)) continue;
-      const int from = previous_link(cable, i), after = next_link(cable, i);
+      const double slack = at(cable.segments, i).rest_length;
+      if (slack <= 0.0 || !is_closed(world, cable, i)) continue;
+      const int before = previous_link(cable, i), after = next_link(cable, i);
       if (after < 0) continue;
-      const bool before_slack = at(cable.segments, from).slack;
-      const bool after_slack = at(cable.segments, after).slack;
-      const double share = before_slack == after_slack ? 0.5 : before_slack ? 1.0 : 0.0;
-      const double slack = segment.rest_length;
-      at(cable.links, from).material += share * slack;
+      const bool opens_before = !is_closed(world, cable, before);
+      const bool opens_after = !is_closed(world, cable, after);
+      if (!opens_before && !opens_after) continue;
+      const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
+      at(cable.links, before).material += share * slack;
       at(cable.links, i).material -= (1.0 - share) * slack;
       update_wraps_and_rest_lengths(world, cable);
     }
@@ -71,8 +78,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;
-  work.solve.step_length = 1.0;
-  work.solve.reach = infinity;
+  Stopwatch untimed(nullptr);
   double share = 0.0, before = infinity;
   bool any = false;
   for (int k = 0; k < most_repairs; ++k) {
@@ -81,8 +87,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
       return k > 1;
     }
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
-    make_segment_rows(scene, world, work.parts, part, t, s);
-    make_contact_rows(scene, world, work.parts, part, t, s, work.solve);
+    make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     before = violation(scene, world, s);
     if (before <= s.reach) break;
     any = true;

@@ -9,8 +9,8 @@ namespace pinchlab {
 struct Part;
 struct Workspace;
 
-/// Slack that a closing pinch would enclose goes to the spans beside it: to those that are slack
-/// already, or to both.
+/// Slack that a closing pinch would enclose goes to the spans beside it, half to either; all to the
+/// one where the other is a closed pinch itself.
 void empty_pinches(World& world);
 
 /// Puts right what is too long or too near in a part by moving its bodies, the heavier the less;

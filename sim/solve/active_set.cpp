@@ -239,40 +239,6 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
   }
 }
 
-/// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
-/// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy
-/// comes in.
-void sweep(PartSystem& s, CapstanScratch& capstan) {
-  for (Row& row : s.rows) {
-    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
-  }
-  for (Run& run : capstan.runs) run.speed = 0.0;
-  apply_impulses(s);
-  constexpr int sweeps = 200;
-  for (int k = 0; k < sweeps; ++k) {
-    for (std::size_t r = 0; r < s.rows.size(); ++r) {
-      Row& row = s.rows[r];
-      if (row.diagonal == 0.0 || row.idle) continue;
-      double least = row.clamped ? -infinity : 0.0, most = infinity;
-      if (is_friction(row)) {
-        const Friction& friction = at(s.frictions, row.friction);
-        const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
-        most = friction.dropped ? 0.0 : most_friction(friction.bound, force);
-        least = -most;
-      }
-      const double before = row.impulse;
-      const double w = row_speed(s, r) + row.compliance * before;
-      row.impulse = std::clamp(before - w / (row.diagonal + row.compliance), least, most);
-      push(s, r, row.impulse - before);
-    }
-  }
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Row& row = s.rows[r];
-    row.speed = row_speed(s, r);
-    if (!is_friction(row)) row.on = row.impulse > 0.0;
-  }
-}
-
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time.
@@ -314,6 +280,37 @@ bool settle(PartSystem& s, SolveScratch& set) {
 
 }  // namespace
 
+void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
+  for (Row& row : s.rows) {
+    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
+  }
+  for (Run& run : capstan.runs) run.speed = 0.0;
+  apply_impulses(s);
+  constexpr int sweeps = 200;
+  for (int k = 0; k < sweeps; ++k) {
+    for (std::size_t r = 0; r < s.rows.size(); ++r) {
+      Row& row = s.rows[r];
+      if (row.diagonal == 0.0 || row.idle) continue;
+      double least = row.clamped ? -infinity : 0.0, most = infinity;
+      if (is_friction(row)) {
+        const Friction& friction = at(s.frictions, row.friction);
+        const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
+        most = friction.dropped ? 0.0 : most_friction(friction.bound, force);
+        least = -most;
+      }
+      const double before = row.impulse;
+      const double w = row_speed(s, r) + row.compliance * before;
+      row.impulse = std::clamp(before - w / (row.diagonal + row.compliance), least, most);
+      push(s, r, row.impulse - before);
+    }
+  }
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    row.speed = row_speed(s, r);
+    if (!is_friction(row)) row.on = row.impulse > 0.0;
+  }
+}
+
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {
   set.solves = 0;
@@ -323,7 +320,7 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
   if (s.rows.empty()) return true;
   order_rows(s, set.ordering);
   find_runs(world, parts, part, s, set);
-  if (!settle(s, set)) sweep(s, set.capstan);
+  if (!settle(s, set)) sweep_rows(s, set.capstan);
   for (Row& row : s.rows) {
     if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
   }

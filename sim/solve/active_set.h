@@ -6,6 +6,7 @@
 
 namespace pinchlab {
 
+struct CapstanScratch;
 struct Part;
 struct Parts;
 struct PartSystem;
@@ -24,5 +25,10 @@ struct SolveScratch;
 /// step; projected sweeps are the last resort.
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                   SolveScratch& scratch);
+
+/// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
+/// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy
+/// comes in.
+void sweep_rows(PartSystem& system, CapstanScratch& capstan);
 
 }  // namespace pinchlab

@@ -20,9 +20,8 @@ constexpr double negligible = 0.05;
 
 /// Whether the segment counts for `body` at its one end; `other` is at its other end.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, int body, int other,
-              PartSystem& system) {
+              double h, PartSystem& system) {
   if (body < 0 || !can_move(at(world.bodies, body))) return false;
-  const double h = world.step_length;
   const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
   if (!(twice > negligible * at(world.bodies, body).mass * segment.length)) return false;
   const double mass = twice / segment.length;
@@ -84,8 +83,8 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
                          PartSystem& system) {
   const std::span<const int> bodies = bodies_of(parts, part);
   restore(world, bodies, kick, system);
-  if (!part.can_move) return;
-  const double least = negligible * part.lightest / (2.0 * world.step_length * world.step_length);
+  if (!part.can_move || kick == 0.0) return;
+  const double least = negligible * part.lightest / (2.0 * kick * kick);
   bool any = false;
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
@@ -95,8 +94,8 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
       if (segment.length <= 2.0 * cable.half_width) continue;
       const int head = cable.links[s].body;
       const int tail = at(cable.links, previous_link(cable, static_cast<int>(s))).body;
-      any = note_end(world, parts, segment, head, tail, system) || any;
-      any = note_end(world, parts, segment, tail, head, system) || any;
+      any = note_end(world, parts, segment, head, tail, kick, system) || any;
+      any = note_end(world, parts, segment, tail, head, kick, system) || any;
     }
   }
   if (!any) return;

@@ -160,6 +160,18 @@ inline void forget(PartSystem& s) {
   s.assembled.clear();
 }
 
+/// Leaves nothing of what the last solve has flipped, for another solve of the same rows.
+inline void forget_flips(PartSystem& s) {
+  for (Row& row : s.rows) {
+    row.flipped = 0;
+    row.returned = false;
+  }
+  for (Friction& friction : s.frictions) {
+    friction.dropped = friction.frozen = false;
+    friction.slid = Slip::stick;
+  }
+}
+
 /// J v + bias at the present velocities (m/s).
 inline double row_speed(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];

@@ -368,4 +368,14 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   }
 }
 
+void make_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+               const TimeSpan& interval, PartSystem& s, SolveScratch& scratch, Stopwatch& watch) {
+  scratch.step_length = interval.repair;
+  scratch.reach = interval.held_only ? -infinity : interval.reach;
+  make_segment_rows(scene, world, parts, part, interval, s);
+  watch.lap(Stage::init_segments);
+  make_contact_rows(scene, world, parts, part, interval, s, scratch);
+  watch.lap(Stage::init_contacts);
+}
+
 }  // namespace pinchlab

@@ -3,6 +3,7 @@
 // Constraint rows: one scalar condition on the velocities of at most two bodies each.
 
 #include "sim/solve/part_system.h"
+#include "sim/stages.h"
 
 namespace pinchlab {
 
@@ -18,9 +19,14 @@ double restitution_of(const Scene& scene, const World& world, const Contact& con
 /// Of a body by itself, for a velocity kick of `kick` seconds.
 Mobility mobility_of(const BodyProperties& body, double kick);
 
-/// Rows of a part's cables at the present positions, from the first row on (thesis: SegmentsInit).
-/// Where the rows made last were for the same links and the same kick, only those of segments that
-/// have moved are made anew.
+/// Rows of a part for one solve at the present positions: of its cables, then of its contacts. Notes
+/// in `scratch` what the solve must know of the interval.
+void make_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+               const TimeSpan& interval, PartSystem& system, SolveScratch& scratch,
+               Stopwatch& watch);
+
+/// Rows of a part's cables, from the first row on (thesis: SegmentsInit). Where the rows made last
+/// were for the same links and the same kick, only those of segments that have moved are made anew.
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                        const TimeSpan& interval, PartSystem& system);
 

@@ -87,12 +87,12 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0xf924414fc747a9ff, 0x75be8c6b50056422},
-    {"02-stack", 0x5eccc582e570a9a2, 0x02b07284710a1622},
+    {"01-roll-over", 0xa235b5117e94accd, 0x32dce44412dcfb35},
+    {"02-stack", 0x037969bb46fe69ac, 0x33f6b8d7c83a19e3},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
-    {"04-two-blocking", 0x331c67c923469af5, 0xd023f030d581e77c},
-    {"05-notch", 0x22933451bab780b4, 0x36d90430265e5a15},
-    {"06-windlass", 0x55aada682ff9689b, 0x9e4cc8b161dc2ea5},
+    {"04-two-blocking", 0xe0dd367497362411, 0x2e67c128eb48bad7},
+    {"05-notch", 0x21e1bdd1f284f664, 0xcb73a0473485c56a},
+    {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
     {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},
 };

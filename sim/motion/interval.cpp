@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/motion/clearance.h"
+#include "sim/motion/events.h"
+#include "sim/solve/active_set.h"
+#include "sim/solve/forces.h"
+#include "sim/solve/light_bodies.h"
+#include "sim/solve/passive.h"
+#include "sim/solve/rows.h"
+#include "sim/solve/solution.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
+
+constexpr double share_of_error = 4e-5;      // of Configuration::error that an interval may take
+constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
+constexpr double shortest_corrected = 1e-6;  // of a step
+constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss
+constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
+constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
+constexpr int shake_rounds = 12;
+constexpr int most_trials = 60;   // of an interval's length
+constexpr int most_halvings = 5;  // of an interval that does not converge
+
+bool is_exact_row(const Row& row) {
+  if (row.kind == RowKind::tangent) return false;
+  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
+}
+
+/// Everything that moves of a part, `length` seconds after the interval's start.
+void place_part(World& world, Workspace& work, const Part& part, double length, bool begins) {
+  const Start& start = work.start;
+  for (const int number : bodies_of(work.parts, part)) {
+    const auto b = index(number);
+    world.position[b] = start.position[b] + length * world.velocity[b];
+    world.angle[b] = start.angle[b] + length * world.angular_velocity[b];
+  }
+  for (const int c : cables_of(work.parts, part)) {
+    CableState& cable = at(world.cables, c);
+    if (part.slides) {
+      const auto first = index(at(work.first_link, c));
+      for (std::size_t i = 0; i < cable.links.size(); ++i) {
+        cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
+      }
+    }
+    const bool moved = update_cable(world, cable, begins);
+    work.spans_moved = work.spans_moved || moved;
+  }
+}
+
+/// Adds to the rows' biases what their conditions have missed at the present positions; returns the
+/// most (m).
+double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
+                  PartSystem& s) {
+  const CapstanScratch& capstan = work.solve.capstan;
+  double most = 0.0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    const int group = capstan.runs.empty() ? -1 : capstan.group_of_row[r];
+    // Of a group that is slack somewhere any segment may run short of its share of the material.
+    const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
+    if (!is_exact_row(row) || (row.idle && !shares)) continue;
+    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0);
+    if (!row.on && row.kind == RowKind::pinch_middle) continue;
+    if (group >= 0 && !row.on && !shares) continue;
+    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
+    const bool made_up = row.clearance <= s.reach;
+    const double left = row.clearance < -t.made_up ? row.clearance
+                        : made_up                  ? (1.0 - t.length / t.repair) * row.clearance
+                                                   : 0.0;
+    double missed = clearance_of(scene, world, row) - left;
+    if (row.compliance > 0.0) {
+      if (!row.on || group >= 0) continue;
+      // The stretch over the interval's end is the real one.
+      const double straight = row_speed(s, r) - row.bias;
+      const double curvature = (missed + left - row.clearance) / t.length - straight;
+      missed = (curvature - row.curvature) * t.length;
+      row.curvature = curvature;
+    }
+    // Without tension no segment of a group is held to its length.
+    const bool bears = row.on && !(shares && row.impulse == 0.0);
+    if (!bears) missed = std::min(missed, 0.0);
+    row.bias += missed / t.length;
+    most = std::max(most, std::abs(missed));
+  }
+  return most;
+}
+
+/// The greatest speed of a part's bodies and their rims (m/s), of `velocity` less `other`.
+double greatest_speed(const World& world, std::span<const int> bodies,
+                      const std::vector<Eigen::Vector3d>& velocity,
+                      const std::vector<Eigen::Vector3d>* other) {
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Eigen::Vector3d v = velocity[i];
+    if (other) v -= (*other)[i];
+    const double rim = at(world.bodies, bodies[i]).radius * v.z();
+    greatest = std::max({greatest, std::abs(v.x()), std::abs(v.y()), std::abs(rim)});
+  }
+  return greatest;
+}
+
+/// Solves and moves a part; whether its lengths and gaps are exact then.
+bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
+               int most_rounds, bool begins, Stopwatch& watch) {
+  PartSystem& s = at(work.systems, part.system);
+  SolveScratch& set = work.solve;
+  steady_light_bodies(world, work.parts, part, t.kick, s);
+  make_rows(scene, world, work.parts, part, t, s, set, watch);
+  double last = infinity, before_last = infinity, fastest = 0.0;
+  const std::span<const int> bodies = bodies_of(work.parts, part);
+  Diagnostics& d = world.diagnostics;
+  for (int round = 0;; ++round) {
+    if (round > 0) forget_flips(s);
+    const bool settled = round == 0 ? solve_passively(world, work.parts, part, s, set)
+                                    : solve_direct(world, work.parts, part, s, set);
+    if (!settled) ++d.fallbacks;
+    if (round == 0) {
+      work.linear_velocity = s.velocity;
+      fastest = greatest_speed(world, bodies, s.velocity, nullptr);
+    } else if (greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
+      work.missed = infinity;
+      return false;
+    }
+    work.settled = work.settled && settled;
+    d.active_set_solves = std::max(d.active_set_solves, set.solves);
+    const bool tells_forces = t.kick > shortest_told * t.repair;
+    store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
+    part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
+    watch.lap(Stage::solve);
+    place_part(world, work, part, t.length, begins && round == 0);
+    watch.lap(Stage::move_bodies);
+    // SHAKE's first correction is the curvature of the way, and the second what the constraints'
+    // turning on that way makes of it: of the order of the interval's own error.
+    const double missed = add_missed(scene, world, work, t, s);
+    watch.lap(Stage::update_segments);
+    if (round == 1) work.local_error = std::max(work.local_error, missed);
+    // In so short an interval there is nothing to correct but round-off.
+    if (missed <= exact * s.reach || t.length < shortest_corrected * t.repair) return true;
+    // Where states flip it may get worse for a round.
+    work.missed = std::max(work.missed, missed / s.extent);
+    if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
+      return false;
+    before_last = last;
+    last = missed;
+  }
+}
+
+/// Tries an interval from where the last began; whether lengths and gaps are exact at its end. Lists
+/// what has happened in it.
+bool try_interval(const Scene& scene, World& world, Workspace& work, double length, bool locate,
+                  int most_rounds, bool begins, Stopwatch& watch) {
+  TimeSpan t;
+  t.length = length;
+  t.repair = world.step_length;
+  t.lag = world.lag;
+  t.clamps = true;
+  t.kick = world.lag + 0.5 * length;
+  t.start = work.start.time;
+  apply_forces(scene, world, t, work);
+  watch.lap(Stage::apply_forces);
+  work.local_error = 0.0;
+  work.settled = true;
+  work.violated = false;
+  work.missed = 0.0;
+  for (Happening& event : work.events) event.seen = false;
+  bool met = true;
+  for (int p = 0; index(p) < work.parts.list.size(); ++p) {
+    Part& part = at(work.parts.list, p);
+    if (part.asleep) continue;
+    PartSystem& s = at(work.systems, part.system);
+    t.made_up = s.reach;
+    t.reach = locate ? s.reach : infinity;
+    met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
+    if (!locate) continue;
+    find_catches(scene, world, work, p);
+    find_gone_links(world, work, p);
+  }
+  if (locate) find_span_hits(scene, world, work);
+  for (Happening& event : work.events) {
+    if (!event.seen) event.clearance = infinity;
+  }
+  return met;
+}
+
+/// Puts everything back to where the interval began.
+void go_back(World& world, Workspace& work) {
+  const Start& start = work.start;
+  world.diagnostics.fallbacks = start.fallbacks;
+  world.position = start.position;
+  world.velocity = start.velocity;
+  world.angle = start.angle;
+  world.angular_velocity = start.angular_velocity;
+  std::size_t k = 0;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    CableState& cable = world.cables[c];
+    for (Link& link : cable.links) link.material = start.material[k++];
+    if (!sleeps(work.parts, c)) update_cable(world, cable, false);
+  }
+}
+
+/// Tries an interval from the same start again.
+bool try_again(const Scene& scene, World& world, Workspace& work, double length, int most_rounds,
+               Stopwatch& watch) {
+  go_back(world, work);
+  return try_interval(scene, world, work, length, true, most_rounds, false, watch);
+}
+
+/// The longest interval of at most `length` that is exact at its end and errs by no more than the
+/// scene allows, whatever happens in it; likewise.
+double find_sound_interval(const Scene& scene, World& world, Workspace& work, double length,
+                           bool& met, Stopwatch& watch) {
+  const auto again = [&](int most_rounds) {
+    work.events.clear();
+    return try_again(scene, world, work, length, most_rounds, watch);
+  };
+  met = try_interval(scene, world, work, length, true, shake_rounds, true, watch);
+  const double allowed = share_of_error * world.configuration.error;
+  while (allowed > 0.0 && met && work.local_error > allowed &&
+         length > shortest * world.step_length) {
+    length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
+    met = again(shake_rounds);
+  }
+  const auto unsound = [&work, &met] { return !met && (work.settled || work.missed > sound); };
+  const double whole = length;
+  for (int halvings = 0; unsound() && halvings < most_halvings; ++halvings) {
+    const double missed = work.missed;
+    length *= 0.5;
+    met = again(shake_rounds);
+    // A way that bends misses a quarter then. What misses half contradicts itself, as a motor that
+    // turns against a jammed cable does: no interval is short enough.
+    if (unsound() && missed < infinity && work.missed > 0.4 * missed) {
+      length = whole;
+      break;
+    }
+  }
+  // The linear solution is sound at least; what it misses is repaired.
+  if (!met && (work.settled || length == whole)) again(0);
+  return length;
+}
+
+/// Shortens the interval that was tried last to the first of its events; likewise.
+double locate_first_event(const Scene& scene, World& world, Workspace& work, double length,
+                          bool& met, Stopwatch& watch) {
+  double late = length, early = 0.0;
+  double late_by = least_clearance(work.events), early_by = infinity;
+  double tried = length;
+  for (int trial = 0; trial < most_trials; ++trial) {
+    const double least = least_clearance(work.events);
+    if (std::abs(least) <= 0.5 * aim) break;
+    if (least < 0.0) {
+      if (trial > 0 && late_by < 0.0 && early_by < infinity) early_by *= 0.5;  // Illinois
+      late = tried;
+      late_by = least;
+    } else {
+      early = tried;
+      early_by = least;
+    }
+    double share = 0.5;
+    if (early_by < infinity && early_by > 0.0) share = early_by / (early_by - late_by);
+    const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
+    if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
+    tried = next;
+    met = try_again(scene, world, work, tried, met ? shake_rounds : 0, watch) && met;
+  }
+  return tried;
+}
+
+}  // namespace
+
+void begin_interval(const World& world, Workspace& work, double time) {
+  Start& start = work.start;
+  start.time = time;
+  start.fallbacks = world.diagnostics.fallbacks;
+  start.position = world.position;
+  start.velocity = world.velocity;
+  start.angle = world.angle;
+  start.angular_velocity = world.angular_velocity;
+  start.material.clear();
+  work.first_link.clear();
+  for (const CableState& cable : world.cables) {
+    work.first_link.push_back(static_cast<int>(start.material.size()));
+    for (const Link& link : cable.links) start.material.push_back(link.material);
+  }
+  work.released.clear();
+  work.spans_moved = false;
+  work.events.clear();
+}
+
+double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
+                     Stopwatch& watch) {
+  length = find_sound_interval(scene, world, work, length, met, watch);
+  if (work.events.empty()) return length;
+  return locate_first_event(scene, world, work, length, met, watch);
+}
+
+bool cross_interval(const Scene& scene, World& world, Workspace& work, double length,
+                    Stopwatch& watch) {
+  if (try_interval(scene, world, work, length, false, shake_rounds, true, watch)) return true;
+  go_back(world, work);
+  try_interval(scene, world, work, length, false, 0, false, watch);
+  return false;
+}
+
+}  // namespace pinchlab

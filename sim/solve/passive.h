@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// A solve that makes no energy.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Part;
+struct Parts;
+struct PartSystem;
+struct SolveScratch;
+
+/// Whether the impulses p that were just solved for have given the bodies more energy than they had:
+/// sum p (J v- + J v+) / 2 > 0 beyond round-off and what is made up for of it. That is exactly
+/// the change of (kinetic) energy that they made, with the work of motors taken out. Elastic
+/// segments may give back what they store: where one bears force, the answer is no.
+bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
+
+/// As solve_direct. Constraints, Coulomb's law and the capstan law only ever take energy from
+/// motion as it flows; taken over a whole kick they may make some, where they turn the way of
+/// sliding, or where the states did not settle. Then nothing slides on cables and bare surfaces do
+/// not rub: what is left is a projection. Where even that makes energy, its matrix is next to
+/// singular, and sweeps that start from no impulse stop short of the solution: each of them only
+/// takes energy.
+bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& system,
+                     SolveScratch& scratch);
+
+}  // namespace pinchlab
