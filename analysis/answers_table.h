@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,13 @@ struct Exclusion {
   std::string reason;
 };
 
+/// What holding answers against the frozen design of their study showed (design_check.h).
+struct DesignCheck {
+  std::string sha256, frozen_utc;
+  std::vector<std::string> kept;        ///< in words, what was done as planned
+  std::vector<std::string> deviations;  ///< in words; empty: the design was followed
+};
+
 /// All answers, checked and in an order that does not depend on the order of the inputs:
 /// participants by name, demonstrations by natural order, answers by participant, demonstration and
 /// position.
@@ -69,6 +77,7 @@ struct AnswersTable {
   std::vector<Exclusion> exclusions;
   int answers_per_demonstration = 1;    ///< that a complete participant gave
   std::vector<std::string> incomplete;  ///< participants with answers missing (if that is allowed)
+  std::optional<DesignCheck> design;    ///< if the study has a frozen one
 };
 
 /// How inputs are to be read.
@@ -81,7 +90,8 @@ struct ReadOptions {
   int repetitions = 1;  ///< answers a participant gives to each demonstration (CSV), 1..100
   bool allow_missing = false;
   std::filesystem::path groups_file;   ///< empty: group column, or the default by leading number
-  std::filesystem::path exclude_file;  ///< empty: nobody is left out
+  std::filesystem::path exclude_file;  ///< empty: nobody is left out by hand
+  std::vector<Exclusion> by_rule;      ///< who is left out by a rule of the study's design
 };
 
 /// Reads answer files (.json), folders of them, tidy CSV files and tables of counts (.csv) into one

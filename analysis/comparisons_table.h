@@ -22,6 +22,7 @@ struct ComparisonsTable {
   bool is_pilot = false;                      ///< answers of a trial run
   bool has_session_records = false;
   std::int64_t answers = 0, ties = 0;
+  std::optional<DesignCheck> design;  ///< if the study has a frozen one
 };
 
 /// Is this a CSV file with the columns `left` and `right`, or an answer file (or a folder of them)

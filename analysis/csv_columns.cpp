@@ -92,8 +92,7 @@ void CsvColumns::fail(const std::string& message) const {
   throw InputError(reader_.place(), message);
 }
 
-Exclusions::Exclusions(const ReadOptions& options) {
-  if (!options.exclude_file.empty()) list_ = read_exclusions(options.exclude_file);
+Exclusions::Exclusions(const ReadOptions& options) : list_(exclusions_of(options)) {
   for (const Exclusion& exclusion : list_) found_.emplace(exclusion.participant, false);
 }
 

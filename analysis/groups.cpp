@@ -147,4 +147,15 @@ std::vector<Exclusion> read_exclusions(const std::filesystem::path& path) {
   return exclusions;
 }
 
+std::vector<Exclusion> exclusions_of(const ReadOptions& options) {
+  std::vector<Exclusion> exclusions = options.by_rule;
+  if (options.exclude_file.empty()) return exclusions;
+  for (Exclusion& exclusion : read_exclusions(options.exclude_file)) {
+    const bool is_new = std::ranges::find(options.by_rule, exclusion.participant,
+                                          &Exclusion::participant) == options.by_rule.end();
+    if (is_new) exclusions.push_back(std::move(exclusion));
+  }
+  return exclusions;
+}
+
 }  // namespace pinchlab::analysis

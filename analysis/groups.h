@@ -16,4 +16,7 @@ void assign_groups(AnswersTable& table, const std::filesystem::path& groups_file
 /// Reads a list of participants to leave out: CSV `participant,reason`, both required.
 std::vector<Exclusion> read_exclusions(const std::filesystem::path& path);
 
+/// Who is left out: by a rule, and by the file where no rule does.
+std::vector<Exclusion> exclusions_of(const ReadOptions& options);
+
 }  // namespace pinchlab::analysis

@@ -21,8 +21,9 @@ struct LevelsTable {
   std::vector<std::string> sources;
   std::vector<Series> series;  ///< in natural order
   std::vector<Exclusion> exclusions;
-  bool is_pilot = false;  ///< answers of a trial run
-  bool correct = false;   ///< hits are correct answers; otherwise choices of the method under test
+  bool is_pilot = false;              ///< answers of a trial run
+  std::optional<DesignCheck> design;  ///< if the study has a frozen one
+  bool correct = false;  ///< hits are correct answers; otherwise choices of the method under test
 };
 
 /// Does the first line of this CSV file have a column of levels? False for other kinds of files.

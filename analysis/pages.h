@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/document.h"
+#include "base/partial_file.h"
 
 namespace pinchlab::analysis {
 
@@ -13,5 +14,13 @@ namespace pinchlab::analysis {
 std::string html_page(const Document& document, const std::vector<Figure>& figures);
 /// The same as Markdown.
 std::string markdown_page(const Document& document, const std::vector<Figure>& figures);
+
+/// Its tables for a LaTeX document, numbered and with their captions; needs the package booktabs,
+/// and UTF-8.
+std::string latex_tables(const Document& document);
+
+/// Draws the figures and writes the document to the folder: report.html, report.md and tables.tex,
+/// of each figure its script, SVG and PDF. Throws std::runtime_error.
+void write_pages(const Document& document, std::vector<Figure> figures, StagingFolder& folder);
 
 }  // namespace pinchlab::analysis

@@ -2,6 +2,7 @@
 // The first paragraph of every report: the answer, in words that need no statistics.
 #include <fmt/format.h>
 
+#include "analysis/design_check.h"
 #include "analysis/document.h"
 
 namespace pinchlab::analysis {
@@ -121,7 +122,7 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
   }
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
+  return text + design_words(table.design);
 }
 
 }  // namespace pinchlab::analysis

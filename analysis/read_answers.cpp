@@ -86,9 +86,7 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
   if (inputs.empty())
     throw InputError("input", "name at least one answer file, folder or CSV file");
   check_no_input_twice(inputs);
-  TableBuilder builder(options.exclude_file.empty() ? std::vector<Exclusion>{}
-                                                    : read_exclusions(options.exclude_file),
-                       options.allow_missing);
+  TableBuilder builder(exclusions_of(options), options.allow_missing);
   AnswerFiles answer_files(builder, options.allow_missing);
   for (const fs::path& input : inputs) {
     if (fs::is_directory(input) || input.extension() == ".json") {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/design_check.h"
 #include "analysis/document.h"
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "analysis/scale_report.h"
 #include "base/partial_file.h"
-#include "base/read_file.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -322,7 +322,9 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
       fmt::format("The methods {} ({}, p = {}). ",
                   differ ? "are not chosen equally often" : "cannot be told apart by these answers",
                   test, p_text(p));
-  if (!fit.why_not.empty()) return text + fmt::format("They have no scale: {}.", fit.why_not);
+  if (!fit.why_not.empty()) {
+    return text + fmt::format("They have no scale: {}.", fit.why_not) + design_words(table.design);
+  }
   text += fmt::format("From the most chosen to the least, on the {} scale:",
                       model_name(report.options.model));
   for (const std::size_t i : report.order) {
@@ -346,7 +348,7 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
         "unlike cases.",
         p_text(report.difference.p));
   }
-  return text;
+  return text + design_words(table.design);
 }
 
 std::vector<std::string> write_scale_report(const ScaleReport& report,
@@ -355,17 +357,8 @@ std::vector<std::string> write_scale_report(const ScaleReport& report,
                                             bool with_figures) {
   StagingFolder staging(folder);
   std::vector<Figure> figures;
-  if (with_figures && report.fit().why_not.empty()) {
-    Figure& figure = figures.emplace_back(scale_figure(report, table));
-    staging.write(figure.name + ".gp", figure.script);
-    run_gnuplot(staging.path(), figure.name + ".gp");
-    staging.add(figure.name + ".svg");
-    staging.add(figure.name + ".pdf");
-    figure.svg = read_whole(staging.path() / (figure.name + ".svg"));
-  }
-  const Document document = Writer(report, table).write();
-  staging.write("report.html", html_page(document, figures));
-  staging.write("report.md", markdown_page(document, figures));
+  if (with_figures && report.fit().why_not.empty()) figures.push_back(scale_figure(report, table));
+  write_pages(Writer(report, table).write(), std::move(figures), staging);
   staging.write("report.json", scale_json(report, table));
   for (const CsvTable& csv : scale_csv(report, table)) staging.write(csv.name, csv.content);
   return staging.keep();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "analysis/design_check.h"
 #include "analysis/scale_report.h"
 #include "base/csv.h"
 
@@ -87,6 +88,59 @@ std::string participants_csv(const ScaleReport& report, const ComparisonsTable& 
   return csv;
 }
 
+// Every two methods against one another.
+void put_pairs(const ScaleReport& report, const ComparisonsTable& table, ordered_json& document) {
+  document["pairs"] = ordered_json::array();
+  for (const ScalePair& pair : report.pairs) {
+    ordered_json object = {{"first", table.methods[pair.first]},
+                           {"second", table.methods[pair.second]},
+                           {"first_wins", pair.wins},
+                           {"second_wins", pair.losses},
+                           {"ties", pair.ties}};
+    put(object, "difference",
+        pair.low ? Estimate(pair.difference) : Estimate::none(pair.low.why_not));
+    put(object, "low", pair.low);
+    put(object, "high", pair.high);
+    put(object, "p", pair.p);
+    put(object, "p_holm", pair.p_holm);
+    document["pairs"].push_back(std::move(object));
+  }
+}
+
+// Do methods and demonstrations differ, does the model fit, does the side matter?
+void put_tests(const ScaleReport& report, ordered_json& document) {
+  ordered_json equal = {{"score", report.equal.score},
+                        {"df", report.equal.df},
+                        {"p_chi_square", report.equal.p_chi_square},
+                        {"sign_flip_exact", report.equal.exact}};
+  put(equal, "p_sign_flip", report.equal.p_sign_flip);
+  document["equal"] = std::move(equal);
+  ordered_json difference;
+  put(difference, "statistic", report.difference.statistic);
+  put(difference, "p", report.difference.p);
+  document["demonstrations_differ"] = std::move(difference);
+  const ScaleFit& fit = report.fit();
+  if (fit.why_not.empty()) document["fit"] = {{"deviance", fit.deviance}, {"df", fit.df}};
+  ordered_json side;
+  put(side, "value", report.p_side ? report.with_side.side : Estimate::none(report.p_side.why_not));
+  put(side, "p", report.p_side);
+  document["left"] = std::move(side);
+}
+
+void put_transitivity(const Transitivity& t, ordered_json& document) {
+  ordered_json transitivity = {{"rounds", t.rounds},
+                               {"circular_triads", t.triads},
+                               {"rounds_without", t.without},
+                               {"by_chance_a_round", t.by_chance},
+                               {"triples", t.triples},
+                               {"weak_broken", t.weak},
+                               {"moderate_broken", t.moderate},
+                               {"strong_broken", t.strong}};
+  put(transitivity, "consistence", t.consistence);
+  put(transitivity, "p", t.p);
+  document["transitivity"] = std::move(transitivity);
+}
+
 }  // namespace
 
 double jod_of(double thurstone) {
@@ -100,6 +154,7 @@ std::string scale_json(const ScaleReport& report, const ComparisonsTable& table)
   document["version"] = 1;
   document["software_version"] = PINCHLAB_VERSION;
   document["answer"] = scale_words(report, table);
+  document["design"] = design_json(table.design);
   document["model"] =
       report.options.model == ScaleModel::bradley_terry ? "bradley-terry" : "thurstone";
   document["alpha"] = report.options.alpha;
@@ -117,49 +172,9 @@ std::string scale_json(const ScaleReport& report, const ComparisonsTable& table)
   document["demonstrations"] = ordered_json::array();
   for (const Scale& one : report.demonstrations)
     document["demonstrations"].push_back(scale_object(one, table));
-  document["pairs"] = ordered_json::array();
-  for (const ScalePair& pair : report.pairs) {
-    ordered_json object = {{"first", table.methods[pair.first]},
-                           {"second", table.methods[pair.second]},
-                           {"first_wins", pair.wins},
-                           {"second_wins", pair.losses},
-                           {"ties", pair.ties}};
-    put(object, "difference",
-        pair.low ? Estimate(pair.difference) : Estimate::none(pair.low.why_not));
-    put(object, "low", pair.low);
-    put(object, "high", pair.high);
-    put(object, "p", pair.p);
-    put(object, "p_holm", pair.p_holm);
-    document["pairs"].push_back(std::move(object));
-  }
-  ordered_json equal = {{"score", report.equal.score},
-                        {"df", report.equal.df},
-                        {"p_chi_square", report.equal.p_chi_square},
-                        {"sign_flip_exact", report.equal.exact}};
-  put(equal, "p_sign_flip", report.equal.p_sign_flip);
-  document["equal"] = std::move(equal);
-  ordered_json difference;
-  put(difference, "statistic", report.difference.statistic);
-  put(difference, "p", report.difference.p);
-  document["demonstrations_differ"] = std::move(difference);
-  const ScaleFit& fit = report.fit();
-  if (fit.why_not.empty()) document["fit"] = {{"deviance", fit.deviance}, {"df", fit.df}};
-  ordered_json side;
-  put(side, "value", report.p_side ? report.with_side.side : Estimate::none(report.p_side.why_not));
-  put(side, "p", report.p_side);
-  document["left"] = std::move(side);
-  const Transitivity& t = report.transitivity;
-  ordered_json transitivity = {{"rounds", t.rounds},
-                               {"circular_triads", t.triads},
-                               {"rounds_without", t.without},
-                               {"by_chance_a_round", t.by_chance},
-                               {"triples", t.triples},
-                               {"weak_broken", t.weak},
-                               {"moderate_broken", t.moderate},
-                               {"strong_broken", t.strong}};
-  put(transitivity, "consistence", t.consistence);
-  put(transitivity, "p", t.p);
-  document["transitivity"] = std::move(transitivity);
+  put_pairs(report, table, document);
+  put_tests(report, document);
+  put_transitivity(report.transitivity, document);
   document["far_out"] = ordered_json::array();
   for (const ObserverFit& observer : report.observers) {
     if (observer.is_far_out)

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "analysis/gsl_support.h"
@@ -215,6 +217,43 @@ std::string stopping_text(const StoppingQuestion& question, const StoppingAnswer
   };
   return text + "\n" + line("Without any difference", answer.without) +
          line(fmt::format("At a share of {:g}", question.truth.share).c_str(), answer.with);
+}
+
+std::string stopping_json(const StoppingQuestion& question, const StoppingAnswer& answer) {
+  static const std::map<StoppingRule, const char*> names = {
+      {StoppingRule::fixed, "fixed"},
+      {StoppingRule::obrien_fleming, "obrien-fleming"},
+      {StoppingRule::pocock, "pocock"},
+      {StoppingRule::bayes_factor, "bayes-factor"}};
+  const bool is_bayes = question.rule == StoppingRule::bayes_factor;
+  const std::size_t skipped = question.participants.size() - answer.looks.size();
+  nlohmann::ordered_json participants = nlohmann::ordered_json::array(), looks = participants;
+  for (std::size_t i = 0; i < answer.looks.size(); ++i) {
+    const Look& look = answer.looks[i];
+    participants.push_back(question.participants[i + skipped]);
+    nlohmann::ordered_json entry = nlohmann::ordered_json::object();
+    if (!is_bayes) entry = {{"p_at_most", look.nominal_p}, {"z", look.z}, {"spent", look.spent}};
+    looks.push_back(std::move(entry));
+  }
+  const auto characteristics = [](const Characteristics& result) {
+    return nlohmann::ordered_json{{"finds", result.finds},
+                                  {"finds_none", result.finds_none},
+                                  {"participants", result.participants},
+                                  {"stopped_at", result.stopped_at}};
+  };
+  nlohmann::ordered_json file = {{"format", "pinchlab-stopping 1"},
+                                 {"rule", names.at(question.rule)},
+                                 {"participants", participants},
+                                 {"looks", looks},
+                                 {"alpha", question.truth.alpha},
+                                 {"share", question.truth.share},
+                                 {"trials", question.truth.trials},
+                                 {"icc", question.truth.icc},
+                                 {"studies", answer.studies},
+                                 {"without_difference", characteristics(answer.without)},
+                                 {"at_share", characteristics(answer.with)}};
+  if (is_bayes) file["bayes_factor"] = question.bayes_factor;
+  return file.dump(2) + "\n";
 }
 
 }  // namespace pinchlab::analysis

@@ -61,4 +61,7 @@ StoppingAnswer stopping_rule(const StoppingQuestion& question, int studies, std:
 /// The answer in words, as `pinchlab stopping` prints it.
 std::string stopping_text(const StoppingQuestion& question, const StoppingAnswer& answer);
 
+/// The answer for `pinchlab study freeze` (base/design_file.h reads it).
+std::string stopping_json(const StoppingQuestion& question, const StoppingAnswer& answer);
+
 }  // namespace pinchlab::analysis

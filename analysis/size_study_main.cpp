@@ -4,29 +4,25 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 
 #include "analysis/gnuplot.h"
+#include "analysis/result_main.h"
 #include "analysis/size_study.h"
 #include "base/partial_file.h"
 
 using namespace pinchlab::analysis;
 using pinchlab::StagingFolder;
-namespace fs = std::filesystem;
 
 namespace {
 
-struct Settings {
-  fs::path out;
+struct Settings : ResultSettings {
   int studies = 10000;
   int resamples = 499;
   double alpha = 0.05;
-  std::uint64_t seed = 1;
 };
 
 struct Measured {
@@ -157,31 +153,22 @@ void run(const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    Settings settings;
-    CLI::App app{
-        "Simulates studies without a true preference and charts how often each pooled test claims "
-        "one"};
-    app.add_option("--out", settings.out, "Folder for the chart, its data and a page")->required();
-    app.add_option("--studies", settings.studies, "Simulated studies a condition")
-        ->capture_default_str()
-        ->check(CLI::Range(100, 1000000));
-    app.add_option("--resamples", settings.resamples, "Bootstrap resamples a study")
-        ->capture_default_str()
-        ->check(CLI::Range(99, 100000));
-    app.add_option("--alpha", settings.alpha, "Level at which each test rejects")
-        ->capture_default_str()
-        ->check(CLI::Range(0.001, 0.5));
-    app.add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-    run(settings);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "pinchlab_size_study: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  Settings settings;
+  return result_main(
+      argc, argv, "pinchlab_size_study",
+      "Simulates studies without a true preference and charts how often each pooled test claims "
+      "one",
+      settings,
+      [&](CLI::App& app) {
+        app.add_option("--studies", settings.studies, "Simulated studies a condition")
+            ->capture_default_str()
+            ->check(CLI::Range(100, 1000000));
+        app.add_option("--resamples", settings.resamples, "Bootstrap resamples a study")
+            ->capture_default_str()
+            ->check(CLI::Range(99, 100000));
+        app.add_option("--alpha", settings.alpha, "Level at which each test rejects")
+            ->capture_default_str()
+            ->check(CLI::Range(0.001, 0.5));
+      },
+      [&] { run(settings); });
 }

@@ -8,12 +8,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "analysis/design_check.h"
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "base/csv.h"
 #include "base/input_error.h"
 #include "base/partial_file.h"
-#include "base/read_file.h"
 
 namespace pinchlab::analysis {
 
@@ -348,7 +348,7 @@ std::string threshold_words(const ThresholdReport& report, const LevelsTable& ta
                           p_text(fit.p_deviance));
     }
   }
-  return text;
+  return text + design_words(table.design);
 }
 
 std::string threshold_json(const ThresholdReport& report, const LevelsTable& table) {
@@ -357,6 +357,7 @@ std::string threshold_json(const ThresholdReport& report, const LevelsTable& tab
   document["version"] = 1;
   document["software_version"] = PINCHLAB_VERSION;
   document["answer"] = threshold_words(report, table);
+  document["design"] = design_json(table.design);
   document["function"] = shape_name(report.model.shape);
   document["threshold_at"] = report.model.threshold_at;
   document["hits"] = hits_name(table);
@@ -400,17 +401,8 @@ std::vector<std::string> write_threshold_report(const ThresholdReport& report,
                                                 bool with_figures) {
   StagingFolder staging(folder);
   std::vector<Figure> figures;
-  if (with_figures) {
-    Figure& figure = figures.emplace_back(threshold_figure(report, table));
-    staging.write(figure.name + ".gp", figure.script);
-    run_gnuplot(staging.path(), figure.name + ".gp");
-    staging.add(figure.name + ".svg");
-    staging.add(figure.name + ".pdf");
-    figure.svg = read_whole(staging.path() / (figure.name + ".svg"));
-  }
-  const Document document = threshold_document(report, table);
-  staging.write("report.html", html_page(document, figures));
-  staging.write("report.md", markdown_page(document, figures));
+  if (with_figures) figures.push_back(threshold_figure(report, table));
+  write_pages(threshold_document(report, table), std::move(figures), staging);
   staging.write("report.json", threshold_json(report, table));
   staging.write("thresholds.csv", thresholds_csv(report, table));
   staging.write("participants.csv", participants_csv(report, table));

@@ -4,24 +4,20 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 
+#include "analysis/result_main.h"
 #include "analysis/threshold_study.h"
 #include "base/partial_file.h"
 
 using namespace pinchlab::analysis;
-namespace fs = std::filesystem;
 
 namespace {
 
-struct Settings {
-  fs::path out;
+struct Settings : ResultSettings {
   int studies = 1000;
   int resamples = 0;
-  std::uint64_t seed = 1;
 };
 
 struct Named {
@@ -82,27 +78,18 @@ void run(const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    Settings settings;
-    CLI::App app{"Simulates threshold studies and tells how well their truth is recovered"};
-    app.add_option("--out", settings.out, "Folder for the page and its data")->required();
-    app.add_option("--studies", settings.studies, "Simulated studies a condition")
-        ->capture_default_str()
-        ->check(CLI::Range(100, 1000000));
-    app.add_option("--resamples", settings.resamples,
-                   "Bootstrap resamples a study (0: none, which is much faster)")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 10000));
-    app.add_option("--seed", settings.seed, "Seed of all random numbers")->capture_default_str();
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : 2;
-    }
-    run(settings);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "pinchlab_threshold_study: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  Settings settings;
+  return result_main(
+      argc, argv, "pinchlab_threshold_study",
+      "Simulates threshold studies and tells how well their truth is recovered", settings,
+      [&](CLI::App& app) {
+        app.add_option("--studies", settings.studies, "Simulated studies a condition")
+            ->capture_default_str()
+            ->check(CLI::Range(100, 1000000));
+        app.add_option("--resamples", settings.resamples,
+                       "Bootstrap resamples a study (0: none, which is much faster)")
+            ->capture_default_str()
+            ->check(CLI::Range(0, 10000));
+      },
+      [&] { run(settings); });
 }

@@ -125,6 +125,7 @@ void read_plan(JsonObject plan, AnswerFile& file) {
     file.graded_hit = plan.choice("graded_hit", {"reference", "graded"});
     if (!file.methods.empty()) plan.fail("graded_hit", "a plan has either levels or methods");
   }
+  if (plan.has("adaptive")) plan.choice("adaptive", {"psi"});
   const long most = file.methods.empty() && file.graded_hit.empty() ? 100 : 10000;
   file.answers_per_demonstration =
       static_cast<int>(plan.whole("answers_per_demonstration", 1, most));

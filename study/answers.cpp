@@ -20,17 +20,6 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
-ordered_json plan_entry(const PlanOptions& options, const std::string& graded_hit) {
-  ordered_json entry = {{"demonstrations", options.demonstrations},
-                        {"answers_per_demonstration", answers_per_demonstration(options)},
-                        {"both_orders", options.both_orders},
-                        {"training_trials", options.training.size()},
-                        {"attention_checks", options.attention_checks.size()}};
-  if (!options.methods.empty()) entry["methods"] = options.methods;
-  if (!options.graded.empty()) entry["graded_hit"] = graded_hit;
-  return entry;
-}
-
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
   if (trial.kind == TrialKind::attention) {
@@ -74,6 +63,18 @@ void check(const std::string& bytes, const fs::path& path) {
 }
 
 }  // namespace
+
+ordered_json plan_entry(const PlanOptions& options, const std::string& graded_hit) {
+  ordered_json entry = {{"demonstrations", options.demonstrations},
+                        {"answers_per_demonstration", answers_per_demonstration(options)},
+                        {"both_orders", options.both_orders},
+                        {"training_trials", options.training.size()},
+                        {"attention_checks", options.attention_checks.size()}};
+  if (!options.methods.empty()) entry["methods"] = options.methods;
+  if (!options.graded.empty()) entry["graded_hit"] = graded_hit;
+  if (options.adaptive_trials > 0) entry["adaptive"] = "psi";
+  return entry;
+}
 
 ordered_json answer_file(const Session& session, const AnsweredStudy& study,
                          const ShownFiles& shown,

@@ -29,6 +29,9 @@ struct AnsweredStudy {
   bool is_pilot = false;                 ///< a trial run
 };
 
+/// The plan as answer files hold it.
+nlohmann::ordered_json plan_entry(const PlanOptions& options, const std::string& graded_hit);
+
 /// The answer file of a finished session. `code_hash` is withdrawal_hash() of the participant's
 /// code.
 nlohmann::ordered_json answer_file(const Session& session, const AnsweredStudy& study,

@@ -14,10 +14,13 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/design_file.h"
 #include "base/durable_file.h"
 #include "study/answers.h"
+#include "study/command_options.h"
 #include "study/config.h"
 #include "study/desk.h"
+#include "study/freeze_command.h"
 #include "study/jatos.h"
 #include "study/server.h"
 #include "study/simulate.h"
@@ -99,6 +102,9 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   if (options.pilot) {
     fmt::print("This is a pilot: its answers are marked, and are never analysed with others\n");
   }
+  if (fs::exists(design_path(options.answers))) {
+    fmt::print("Frozen design      {}\n", read_design(design_path(options.answers)).sha256);
+  }
   fmt::print("Participants open  {}/\nYou can watch at   {}/researcher#{}\n", server.address(),
              server.address(), server.researcher_token());
   fmt::print("Seed {}; {} trials; answers go to {}; Ctrl-C ends\n", desk.seed(),
@@ -118,27 +124,11 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
              end.running.size());
 }
 
-void add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
-  command.add_option("--seed", seed, help)
-      ->type_name("S")
-      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
-}
-
-void add_config(CLI::App& command, fs::path& config) {
-  command
-      .add_option("--config", config, "What to show and say; study/README.md has the keys [all]")
-      ->type_name("study.json");
-}
-
 void add_serve(CLI::App& study, const Stimuli& stimuli) {
   auto options = std::make_shared<ServeOptions>();
   CLI::App* command = study.add_subcommand("serve", "Run the study for participants' browsers");
-  command->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
-      ->type_name("DIR")
-      ->required();
-  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
-      ->type_name("DIR")
-      ->required();
+  add_clips(*command, options->clips);
+  add_answers(*command, options->answers);
   command->add_option("--port", options->server.port, "Port to listen on; 0: any that is free")
       ->type_name("N")
       ->capture_default_str()
@@ -166,8 +156,7 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
       ->check(CLI::Range(1, 60 * 24 * 365));
   add_seed(*command, options->seed, "Seed of the plan [the answers folder's, or a random one]");
   add_config(*command, options->config);
-  command->add_flag("--no-webm", options->no_webm,
-                    "Do not render a second encoding for browsers without H.264");
+  add_no_webm(*command, options->no_webm);
   command->add_flag("--pilot", options->pilot,
                     "A trial run: answers are marked, and never analysed with those of the study");
   command->footer(
@@ -205,8 +194,7 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
       ->type_name("N")
       ->required()
       ->check(CLI::Range(1, 100000));
-  add_seed(*command, options->seed, "Seed of the plan");
-  command->get_option("--seed")->required();
+  add_seed(*command, options->seed, "Seed of the plan")->required();
   add_config(*command, options->config);
   command->add_option("--csv", options->csv, "File for one row a trial; - is standard output [-]")
       ->type_name("FILE.csv");
@@ -247,7 +235,7 @@ fs::path existing_folder(const fs::path& folder) {
 }
 
 struct ExportOptions {
-  fs::path answers, csv, psych_ds;
+  fs::path answers, csv, participants_csv, psych_ds, bids;
   fs::path jatos, clips, config;
   std::uint64_t participants = 0, seed = 0;
   bool has_seed = false, no_webm = false;
@@ -256,6 +244,12 @@ struct ExportOptions {
 void export_study(const ExportOptions& options, const Stimuli& stimuli) {
   if (!options.csv.empty()) {
     write_text(options.csv, answers_csv(existing_folder(options.answers)));
+  }
+  if (!options.participants_csv.empty()) {
+    write_text(options.participants_csv, participants_csv(existing_folder(options.answers)));
+  }
+  if (!options.bids.empty()) {
+    write_bids(existing_folder(options.answers), options.bids);
   }
   if (!options.psych_ds.empty()) {
     write_psych_ds(existing_folder(options.answers), options.psych_ds);
@@ -280,6 +274,13 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
   what->add_option("--csv", options->csv, "Tidy table, one row a trial; - is standard output")
       ->type_name("FILE.csv")
       ->needs(answers);
+  what->add_option("--participants-csv", options->participants_csv,
+                   "Table, one row a participant; - is standard output")
+      ->type_name("FILE.csv")
+      ->needs(answers);
+  what->add_option("--bids", options->bids, "BIDS dataset (behaviour); a new folder")
+      ->type_name("DIR")
+      ->needs(answers);
   what->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
       ->type_name("DIR")
       ->needs(answers);
@@ -298,14 +299,9 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
           ->check(CLI::Range(1, 10000))
           ->needs(jatos);
   jatos->needs(clips)->needs(participants);
-  add_seed(*command, options->seed, "Seed of the plan [a random one]");
-  command->get_option("--seed")->needs(jatos);
-  add_config(*command, options->config);
-  command->get_option("--config")->needs(jatos);
-  command
-      ->add_flag("--no-webm", options->no_webm,
-                 "Do not render a second encoding for browsers without H.264")
-      ->needs(jatos);
+  add_seed(*command, options->seed, "Seed of the plan [a random one]")->needs(jatos);
+  add_config(*command, options->config)->needs(jatos);
+  add_no_webm(*command, options->no_webm)->needs(jatos);
   command->footer(
       "Examples:\n"
       "  pinchlab study export --answers answers --csv answers.csv\n"
@@ -333,9 +329,7 @@ void add_import(CLI::App& study) {
   command->add_option("--key", options->key, "What `study export --jatos` wrote beside the archive")
       ->type_name("FILE.key.json")
       ->required();
-  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
-      ->type_name("DIR")
-      ->required();
+  add_answers(*command, options->answers);
   command->footer(
       "In JATOS: Results, Export Results, Data Only, Plain Text. Who is in the folder already is "
       "not "
@@ -365,16 +359,10 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
   command->add_option("--truth", options->truth, "How they choose; study/README.md has the keys")
       ->type_name("FILE")
       ->required();
-  command->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
-      ->type_name("DIR")
-      ->required();
-  command->add_option("--answers", options->answers, "Folder for the answers, made if missing")
-      ->type_name("DIR")
-      ->required();
-  command->add_option("--seed", options->seed, "Seed of the plan and of the participants")
-      ->type_name("S")
-      ->capture_default_str()
-      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+  add_clips(*command, options->clips);
+  add_answers(*command, options->answers);
+  add_seed(*command, options->seed, "Seed of the plan and of the participants")
+      ->capture_default_str();
   add_config(*command, options->config);
   command->footer(
       "They start, see clips, answer and save over HTTP, at full speed, and their answers are "
@@ -440,6 +428,7 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
           ->require_subcommand(1);
   add_serve(*study, stimuli);
   add_plan(*study, stimuli);
+  add_freeze(*study, stimuli);
   add_export(*study, stimuli);
   add_import(*study);
   add_withdraw(*study);

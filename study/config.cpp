@@ -169,6 +169,12 @@ void read_series(JsonObject& object, const std::string& file, Config& config) {
   if (object.has("graded_hit")) {
     config.graded_hit = object.choice("graded_hit", {"reference", "graded"});
   }
+  if (object.has("adaptive_trials")) {
+    if (object.has("repetitions") || object.has("both_orders")) {
+      object.fail("adaptive_trials", "cannot be combined with repetitions or both_orders");
+    }
+    config.adaptive_trials = static_cast<int>(object.whole("adaptive_trials", 2, most_trials));
+  }
 }
 
 // Texts of a language that is not delivered must be complete: half a translation is worse than
@@ -244,7 +250,7 @@ Config parse_config(const json& document, const std::string& file) {
   object.expect_only(
       {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
        "both_orders", "participant_limit", "one_time_links", "texts", "methods",
-       "pairs_per_demonstration", "series", "graded_hit", "shared_computer"},
+       "pairs_per_demonstration", "series", "graded_hit", "adaptive_trials", "shared_computer"},
       key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
@@ -260,8 +266,8 @@ Config parse_config(const json& document, const std::string& file) {
     object.fail("pairs_per_demonstration", "needs methods");
   }
   if (object.has("series")) read_series(object, file, config);
-  if (object.has("graded_hit") && config.graded.empty()) {
-    object.fail("graded_hit", "needs series");
+  for (const char* key : {"graded_hit", "adaptive_trials"}) {
+    if (object.has(key) && config.graded.empty()) object.fail(key, "needs series");
   }
   if (object.has("shared_computer")) config.shared_computer = object.flag("shared_computer");
   if (object.has("training")) config.training = read_names(object, "training");
@@ -298,6 +304,7 @@ PlanOptions plan_options(const Config& config) {
   options.methods = config.methods;
   options.pairs_per_demonstration = config.pairs_per_demonstration;
   for (const GradedStimulus& stimulus : config.graded) options.graded.push_back(stimulus.clip);
+  options.adaptive_trials = config.adaptive_trials;
   options.repetitions = config.repetitions;
   options.both_orders = config.both_orders;
   return options;

@@ -34,6 +34,7 @@ struct Config {
   int pairs_per_demonstration = 0;     ///< 0: all
   std::vector<GradedStimulus> graded;  ///< of a study of thresholds; demonstrations are its series
   std::string graded_hit = "reference";  ///< or "graded": what it is a hit to choose
+  int adaptive_trials = 0;  ///< of each series, if its levels are chosen by the answers
   int repetitions = 1;
   bool both_orders = false;
   bool shared_computer = false;  ///< the last page leads to the next participant

@@ -9,6 +9,7 @@
 #include "base/durable_file.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
+#include "study/adaptive.h"
 #include "study/answers.h"
 #include "study/secrets.h"
 #include "study/utc.h"
@@ -41,6 +42,13 @@ std::string printable(const std::string& text) {
   std::ranges::replace_if(
       clean, [](char c) { return c < ' ' || c > '~'; }, '?');
   return clean;
+}
+
+// The clips of a trial; where its level is not chosen yet, of one of its series, in turn.
+std::string any_clip_key(const Config& config, const PlannedTrial& trial, std::size_t turn) {
+  if (!is_open(trial)) return clip_key(trial);
+  const std::vector<double> levels = levels_of(config, trial.demonstration);
+  return clip_key(GradedClip{trial.demonstration, levels[turn % levels.size()]});
 }
 
 }  // namespace
@@ -100,6 +108,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
     }
     session.number = number_for(link);
     session.plan = make_plan(study_.seed, session.number, plan_options(options_.config));
+    choose_level(session, options_.config);
     for (std::size_t i = 0; i < session.plan.size(); ++i) {
       session.media.push_back(random_hex(16));
     }
@@ -155,11 +164,13 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
     throw Refused(507, "the disk does not take it");
   }
   entry->session.answers = std::move(next.answers);
+  entry->session.plan = std::move(next.plan);
   entry->session.shown_utc = std::move(next.shown_utc);
   entry->session.last_seen_utc = std::move(next.last_seen_utc);
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
   note(entry->session);
+  offer(entry->session, entry->session.answers.size());
 }
 
 Progress Desk::progress_of(const Session& session) const {
@@ -168,8 +179,9 @@ Progress Desk::progress_of(const Session& session) const {
     progress.trials.push_back({session.media[i], session.plan[i].kind == TrialKind::training});
   }
   progress.has_webm = std::ranges::all_of(session.plan, [&](const PlannedTrial& trial) {
-    return options_.clips.at(clip_key(trial)).webm.has_value();
+    return options_.clips.at(any_clip_key(options_.config, trial, 0)).webm.has_value();
   });
+  progress.is_adaptive = options_.config.adaptive_trials > 0;
   progress.next = session.answers.size();
   return progress;
 }
@@ -210,13 +222,14 @@ void Desk::show(const std::string& token, std::size_t index) {
 void Desk::answer(const std::string& token, const SentAnswer& sent) {
   change(token, [&](Session& session) {
     const PairFiles* files = nullptr;
-    if (sent.index < session.plan.size()) {
+    if (sent.index < session.plan.size() && !is_open(session.plan[sent.index])) {
       files = &options_.clips.at(clip_key(session.plan[sent.index]));
     }
     if (files != nullptr && sent.answer.encoding == Encoding::webm && !files->webm) {
       throw Refused(422, "request: /encoding: was not offered");
     }
     study::answer(session, sent.index, sent.answer);
+    choose_level(session, options_.config);
   });
 }
 
@@ -348,13 +361,17 @@ Overview Desk::overview() {
 }
 
 std::pair<std::uint64_t, std::vector<PlannedTrial>> Desk::plan_of(const std::string& id) {
-  const std::scoped_lock lock(mutex_);
-  const auto found = places_.find(id);
-  if (found == places_.end()) {
-    throw Refused(404, "nobody of that name is running");
+  std::shared_ptr<Entry> entry;
+  {
+    const std::scoped_lock lock(mutex_);
+    const auto found = places_.find(id);
+    if (found == places_.end()) {
+      throw Refused(404, "nobody of that name is running");
+    }
+    entry = found->second.entry;
   }
-  const Session& session = found->second.entry->session;  // its number and plan never change
-  return {session.number, session.plan};
+  const std::scoped_lock lock(entry->mutex);
+  return {entry->session.number, entry->session.plan};
 }
 
 Progress Desk::preview(std::uint64_t number) {
@@ -365,7 +382,9 @@ Progress Desk::preview(std::uint64_t number) {
   std::erase_if(media_, [](const auto& entry) { return entry.second.participant.empty(); });
   for (const PlannedTrial& trial : plan) {
     const std::string media = random_hex(16);
-    media_[media] = {&options_.clips.at(clip_key(trial)), trial.pinch, ""};
+    const std::string key =
+        any_clip_key(options_.config, trial, static_cast<std::size_t>(trial.round));
+    media_[media] = {&options_.clips.at(key), trial.pinch, ""};
     progress.trials.push_back({media, trial.kind == TrialKind::training});
   }
   return progress;

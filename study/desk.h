@@ -48,8 +48,9 @@ struct Progress {
     bool is_practice = false;
   };
   std::vector<Trial> trials;
-  bool has_webm = false;  ///< all of them do: one without would stand out
-  std::size_t next = 0;   ///< trial to show; trials.size(): all are answered
+  bool has_webm = false;     ///< all of them do: one without would stand out
+  bool is_adaptive = false;  ///< the clip of a trial can be had once those before are answered
+  std::size_t next = 0;      ///< trial to show; trials.size(): all are answered
 };
 
 struct Overview {
@@ -150,6 +151,7 @@ class Desk {
   void read_running();
   void add(const std::shared_ptr<Entry>& entry, const std::string& address);
   void note(const Session& session);
+  void offer(const Session& session, std::size_t trial);
   void remove(const Entry& entry);
   void drop_idle();
   void drop(const std::shared_ptr<Entry>& entry, const std::string& why,

@@ -10,6 +10,7 @@
 #include "base/partial_file.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
+#include "study/adaptive.h"
 #include "study/answers.h"
 #include "study/desk.h"
 #include "study/secrets.h"
@@ -90,17 +91,21 @@ void Desk::sweep() const {
 
 void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
   const Session& session = entry->session;
-  for (std::size_t i = 0; i < session.plan.size(); ++i) {
-    const auto files = options_.clips.find(clip_key(session.plan[i]));
-    if (files == options_.clips.end()) {
-      throw std::runtime_error(fmt::format(
-          "{}: no clips of `{}`", session_path(session.id).string(), clip_key(session.plan[i])));
-    }
-    media_[session.media[i]] = {&files->second, session.plan[i].pinch, session.id};
-  }
+  for (std::size_t i = 0; i < session.plan.size(); ++i) offer(session, i);
   taken_.insert(session.number);
   places_[session.id] = {entry, address, ++starts_, {}, false, false};
   note(session);
+}
+
+// Lets the clip of a trial be had, once its level is chosen. Under mutex_.
+void Desk::offer(const Session& session, std::size_t trial) {
+  if (trial >= session.plan.size() || is_open(session.plan[trial])) return;
+  const auto files = options_.clips.find(clip_key(session.plan[trial]));
+  if (files == options_.clips.end()) {
+    throw std::runtime_error(fmt::format("{}: no clips of `{}`", session_path(session.id).string(),
+                                         clip_key(session.plan[trial])));
+  }
+  media_[session.media[trial]] = {&files->second, session.plan[trial].pinch, session.id};
 }
 
 // Under mutex_.

@@ -235,6 +235,41 @@ std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
   return trials;
 }
 
+// Sides of trials whose levels are chosen later: in every eight as many on both, none more than
+// three times running; the second of a pair of participants sees the opposite.
+std::vector<bool> sides_in_eights(std::uint64_t seed, std::uint64_t number, std::size_t trials) {
+  Random coins(seed, Purpose::sides, number / 2);
+  SidesSoFar so_far;
+  std::vector<bool> sides;
+  while (sides.size() < trials) {
+    std::vector<bool> some(std::min<std::size_t>(8, trials - sides.size()));
+    std::generate(some.begin(), some.end(), [&] { return coins.coin(); });
+    SidesSoFar next = so_far;
+    bool passes = true;
+    for (const bool is_right : some) passes = next.add(is_right) && passes;
+    if (!passes || !next.is_balanced()) continue;
+    so_far = next;
+    sides.insert(sides.end(), some.begin(), some.end());
+  }
+  if (number % 2 == 1) sides.flip();
+  return sides;
+}
+
+std::vector<PlannedTrial> adaptive_trials(std::uint64_t seed, std::uint64_t number,
+                                          const PlanOptions& options) {
+  const std::size_t n = options.demonstrations.size();
+  const Orders orders = orders_of(seed, number, options.adaptive_trials, n);
+  const std::vector<bool> sides = sides_in_eights(seed, number, n * orders.size());
+  std::vector<PlannedTrial> trials;
+  for (std::size_t round = 0; round < orders.size(); ++round) {
+    for (const std::size_t i : orders[round]) {
+      trials.push_back({TrialKind::main, options.demonstrations[i], side_of(sides[trials.size()]),
+                        static_cast<int>(round), "reference", "graded"});
+    }
+  }
+  return trials;
+}
+
 using Edge = std::pair<std::size_t, std::size_t>;
 
 // Turns each edge of a graph so that every vertex has as many that begin there as end there, or one
@@ -389,6 +424,7 @@ int answers_per_demonstration(const PlanOptions& options) {
     const auto m = static_cast<int>(options.methods.size());
     return options.pairs_per_demonstration > 0 ? options.pairs_per_demonstration : m * (m - 1) / 2;
   }
+  if (options.adaptive_trials > 0) return options.adaptive_trials;
   if (!options.graded.empty()) {
     const auto levels = static_cast<int>(options.graded.size() / options.demonstrations.size());
     return levels * options.repetitions * (options.both_orders ? 2 : 1);
@@ -399,9 +435,10 @@ int answers_per_demonstration(const PlanOptions& options) {
 std::vector<PlannedTrial> make_plan(std::uint64_t seed, std::uint64_t number,
                                     const PlanOptions& options) {
   assert(!options.demonstrations.empty());
-  std::vector<PlannedTrial> trials = options.methods.empty()
-                                         ? main_trials(seed, number, options)
-                                         : comparison_trials(seed, number, options);
+  std::vector<PlannedTrial> trials =
+      options.adaptive_trials > 0 ? adaptive_trials(seed, number, options)
+      : options.methods.empty()   ? main_trials(seed, number, options)
+                                  : comparison_trials(seed, number, options);
   insert_checks(trials, seed, number, options.attention_checks);
   std::vector<PlannedTrial> plan;
   Random training(seed, Purpose::training, number);

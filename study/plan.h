@@ -39,6 +39,9 @@ struct PlanOptions {
   int pairs_per_demonstration = 0;  ///< of methods, that a participant sees; 0: all
   /// Of a study of thresholds; `demonstrations` are then its series.
   std::vector<GradedClip> graded;
+  /// Of each series, whose levels are chosen by the answers (adaptive.h); 0: each clip is shown
+  /// `repetitions` times.
+  int adaptive_trials = 0;
 };
 
 struct PlannedTrial {
@@ -48,7 +51,7 @@ struct PlannedTrial {
   int round = 0;              ///< of main trials: how often the demonstration came before
   /// What the sides show: `first` on the side `pinch`, `second` on the other.
   std::string first = "pinch", second = "baseline";
-  std::optional<double> level = std::nullopt;  ///< of the graded clip
+  std::optional<double> level = std::nullopt;  ///< of the graded clip; none: chosen later
 
   friend bool operator==(const PlannedTrial&, const PlannedTrial&) = default;
 };
@@ -87,7 +90,9 @@ int answers_per_demonstration(const PlanOptions& options);
 /// - each participant sees each method on both sides equally often, or once more on one; and each
 ///   method about equally often;
 /// - participants 2k and 2k + 1 see the same pairs, with opposite sides.
-/// With graded clips each is a demonstration of its own, and answers count by their series.
+/// With graded clips each is a demonstration of its own, and answers count by their series. Where
+/// levels are chosen by the answers, series are the demonstrations, of adaptive_trials rounds, and
+/// sides are balanced in every eight trials.
 /// Attention checks are spread over the main trials, never first; each pair of participants sees
 /// their right answer on both sides. Training trials come first, with fair sides.
 std::vector<PlannedTrial> make_plan(std::uint64_t seed, std::uint64_t number,

@@ -97,7 +97,9 @@ json progress_json(const Progress& progress) {
     }
     trials.push_back(entry);
   }
-  return {{"trials", trials}, {"next", progress.next}};
+  json object = {{"trials", trials}, {"next", progress.next}};
+  if (progress.is_adaptive) object["ahead"] = 1;
+  return object;
 }
 
 }  // namespace

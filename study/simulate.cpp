@@ -51,13 +51,15 @@ class Simulated {
     HttpClient client(address);
     const json started = post(client, "/api/start", {{"consent", true}});
     token_ = started.at("token");
-    const auto [number, plan] = desk_.plan_of(token_.substr(0, token_.find('.')));
+    const std::string id = token_.substr(0, token_.find('.'));
+    const auto [number, first_plan] = desk_.plan_of(id);
+    const std::size_t count = first_plan.size();
     become(number);
-    for (std::size_t i = started.at("next"); i < plan.size(); ++i) {
+    for (std::size_t i = started.at("next"); i < count; ++i) {
       post(client, "/api/show", {{"index", i}});
       const auto clip = client.get(started.at("trials").at(i).at("mp4"), {{"Range", "bytes=0-0"}});
       if (!clip || clip->status != 206) throw std::runtime_error("a clip could not be fetched");
-      post(client, "/api/answer", answer_to(plan[i], i));
+      post(client, "/api/answer", answer_to(desk_.plan_of(id).second[i], i));
     }
     post(client, "/api/save", {{"free_text", json::object()}});
   }

@@ -37,6 +37,7 @@ json fingerprint(const Config& config) {
     plan["graded_hit"] = config.graded_hit;
     for (const GradedClip& clip : options.graded) plan["graded"].push_back(clip_key(clip));
   }
+  if (options.adaptive_trials > 0) plan["adaptive_trials"] = options.adaptive_trials;
   if (config.is_pilot) plan["pilot"] = true;
   return plan;
 }

@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "base/answer_file.h"
 #include "base/csv.h"
+#include "base/design_file.h"
 #include "base/durable_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -194,54 +198,204 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 
 namespace {
 
-// The CSV of a folder, and what kind of study it is of.
-std::pair<std::string, unsigned> read_folder(const fs::path& folder) {
-  std::string csv;
-  unsigned kind = 0;
+using Cells = std::vector<std::string>;
+
+// The answers of a folder: the columns of its kind of study, and each participant's rows.
+struct Answers {
+  unsigned kind = two_methods;  // of an empty folder
+  Cells names;
+  std::vector<std::pair<json, std::vector<Cells>>> participants;  // answer file, rows
+};
+
+Answers read_folder(const fs::path& folder) {
+  Answers answers;
   SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
-    const json file = read_json_file(path, largest_file);
+    json file = read_json_file(path, largest_file);
     same_study.check(parse_answer_file(file, path.string()), path.string());
-    kind = kind_of(file);
+    answers.kind = kind_of(file);
+    std::vector<Cells> rows;
     for (const json& trial : file["trials"]) {
-      std::vector<std::string> values;
+      Cells& values = rows.emplace_back();
       for (const Column& column : columns) {
-        if ((column.kinds & kind) == 0) continue;
+        if ((column.kinds & answers.kind) == 0) continue;
         values.push_back(column.value != nullptr ? column.value(file, trial)
                                                  : value_of(trial, column.name));
       }
-      csv += row(values);
     }
+    answers.participants.emplace_back(std::move(file), std::move(rows));
   }
-  if (kind == 0) kind = two_methods;  // an empty folder
-  std::vector<std::string> names;
   for (const Column& column : columns) {
-    if ((column.kinds & kind) != 0) names.emplace_back(column.name);
+    if ((column.kinds & answers.kind) != 0) answers.names.emplace_back(column.name);
   }
-  return {row(names) + csv, kind};
+  return answers;
+}
+
+std::string csv_of(const Answers& answers) {
+  std::string csv = row(answers.names);
+  for (const auto& [file, rows] : answers.participants) {
+    for (const Cells& values : rows) csv += row(values);
+  }
+  return csv;
+}
+
+// What an exclusion rule is about, of one participant; empty where the file does not hold it.
+std::string measured(const json& file, const char* key) {
+  const auto rule = std::ranges::find(exclusion_rules(), key, &ExclusionRule::key);
+  const double value = measure(*rule, file);
+  return std::isnan(value) ? "" : fmt::format("{}", value);
+}
+
+std::string of_first_trial(const json& file, const char* key) {
+  return value_of(file["trials"].front(), key);
+}
+
+std::string free_text(const json& file, const char* key) {
+  return file.contains("free_text") ? value_of(file["free_text"], key) : "";
+}
+
+struct ParticipantColumn {
+  const char* name;
+  const char* description;
+  std::string (*value)(const json& file) = nullptr;  // without: the file's key of that name
+};
+
+const std::vector<ParticipantColumn> participant_columns = {
+    {"participant", "Random name of the participant"},
+    {"participant_number", "Number that the plan was counterbalanced by, from 0"},
+    {"language", "Of the page"},
+    {"started_utc", "When the participant began"},
+    {"saved_utc", "When the answers were saved"},
+    {"resumed_count", "Times that the page was loaded again"},
+    {"answers", "Main trials",
+     [](const json& file) {
+       return std::to_string(std::ranges::count(file["trials"], json("main"),
+                                                [](const json& trial) { return trial["kind"]; }));
+     }},
+    {"one_side_share", "Share of main trials in which the side that was chosen more often was",
+     [](const json& file) { return measured(file, "one_side_over"); }},
+    {"median_reaction_time_s", "Seconds from the moment the buttons appeared, of main trials",
+     [](const json& file) { return measured(file, "median_reaction_time_s_under"); }},
+    {"failed_checks", "Attention checks without the right answer",
+     [](const json& file) { return measured(file, "failed_checks_over"); }},
+    {"focus_lost_count", "Times the window lost the focus or was hidden in main trials",
+     [](const json& file) { return measured(file, "focus_lost_over"); }},
+    {"dropped_frames_share", "Share of the frames of main trials that the browser dropped",
+     [](const json& file) { return measured(file, "dropped_frames_over"); }},
+    {"smallest_clip_width_px", "Least width at which a main trial was shown, CSS pixels",
+     [](const json& file) { return measured(file, "clip_width_px_under"); }},
+    {"screen_width_px", "Width of the screen in the first trial, CSS pixels",
+     [](const json& file) { return of_first_trial(file, "screen_width_px"); }},
+    {"screen_height_px", "Height of the screen in the first trial, CSS pixels",
+     [](const json& file) { return of_first_trial(file, "screen_height_px"); }},
+    {"device_pixel_ratio", "Device pixels a CSS pixel in the first trial",
+     [](const json& file) { return of_first_trial(file, "device_pixel_ratio"); }},
+    {"user_agent", "What the browser says it is"},
+    {"common_details", "Optional text: details that choices were based on",
+     [](const json& file) { return free_text(file, "common_details"); }},
+    {"thoughts", "Optional text: thoughts about the test",
+     [](const json& file) { return free_text(file, "thoughts"); }}};
+
+Cells cells_of(const json& file) {
+  Cells cells;
+  for (const ParticipantColumn& column : participant_columns) {
+    cells.push_back(column.value != nullptr ? column.value(file) : value_of(file, column.name));
+  }
+  return cells;
+}
+
+Cells participant_names() {
+  Cells names;
+  for (const ParticipantColumn& column : participant_columns) names.emplace_back(column.name);
+  return names;
+}
+
+// BIDS writes what is not there as n/a, and has no quotes for tabs and ends of lines.
+std::string tsv_row(const Cells& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    std::string text = cells[i].empty() ? "n/a" : cells[i];
+    std::ranges::replace_if(
+        text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    line += (i == 0 ? "" : "\t") + text;
+  }
+  return line + "\n";
+}
+
+void write_files(const std::map<std::string, std::string>& files, const fs::path& out) {
+  if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
+    throw std::runtime_error(
+        fmt::format("{}: is there already; name a new folder, or empty it", out.string()));
+  }
+  for (const auto& [name, bytes] : files) {
+    fs::create_directories((out / name).parent_path());
+    write_durably(out / name, bytes);
+  }
 }
 
 }  // namespace
 
 std::string answers_csv(const fs::path& folder) {
-  return read_folder(folder).first;
+  return csv_of(read_folder(folder));
+}
+
+std::string participants_csv(const fs::path& folder) {
+  std::string csv = row(participant_names());
+  for (const auto& [file, rows] : read_folder(folder).participants) csv += row(cells_of(file));
+  return csv;
+}
+
+std::map<std::string, std::string> bids_files(const fs::path& folder) {
+  const Answers answers = read_folder(folder);
+  std::map<std::string, std::string> files;
+  Cells names = participant_names();
+  names.front() = "participant_id";
+  std::string participants = tsv_row(names);
+  for (const auto& [file, rows] : answers.participants) {
+    const std::string id = "sub-" + value_of(file, "participant");
+    Cells cells = cells_of(file);
+    cells.front() = id;
+    participants += tsv_row(cells);
+    std::string& table = files[fmt::format("{}/beh/{}_task-cables_beh.tsv", id, id)];
+    table = tsv_row(answers.names);
+    for (const Cells& values : rows) table += tsv_row(values);
+  }
+  files["participants.tsv"] = participants;
+  ordered_json of_participants, of_trials = {{"TaskName", "cables"}};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    of_participants[names[i]] = {{"Description", participant_columns[i].description}};
+  }
+  for (const Column& column : columns) {
+    if ((column.kinds & answers.kind) != 0)
+      of_trials[column.name] = {{"Description", column.description}};
+  }
+  files["participants.json"] = of_participants.dump(2) + "\n";
+  files["task-cables_beh.json"] = of_trials.dump(2) + "\n";
+  const ordered_json dataset = {
+      {"Name", "Which cable looks most realistic?"},
+      {"BIDSVersion", "1.9.0"},
+      {"DatasetType", "raw"},
+      {"GeneratedBy", {{{"Name", "Pinchlab"}, {"Version", PINCHLAB_VERSION}}}}};
+  files["dataset_description.json"] = dataset.dump(2) + "\n";
+  files["README"] =
+      "Answers of the perception study of Pinchlab, exported by `pinchlab study export --bids`.\n"
+      "Forced choices between simulations of cables, shown side by side; one row a trial.\n";
+  return files;
+}
+
+void write_bids(const fs::path& folder, const fs::path& out) {
+  write_files(bids_files(folder), out);
 }
 
 std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
-  const auto [csv, kind] = read_folder(folder);
-  return {{"data/study-cables_data.csv", csv},
+  const Answers answers = read_folder(folder);
+  return {{"data/study-cables_data.csv", csv_of(answers)},
           {"README.md", dataset_readme},
-          {"dataset_description.json", description(kind).dump(2) + "\n"}};
+          {"dataset_description.json", description(answers.kind).dump(2) + "\n"}};
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {
-  const std::map<std::string, std::string> files = psych_ds_files(folder);
-  if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
-    throw std::runtime_error(
-        fmt::format("{}: is there already; name a new folder, or empty it", out.string()));
-  }
-  fs::create_directories(out / "data");
-  for (const auto& [name, bytes] : files) write_durably(out / name, bytes);
+  write_files(psych_ds_files(folder), out);
 }
 
 }  // namespace pinchlab::study

@@ -22,6 +22,17 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 /// that is no answer file.
 std::string answers_csv(const std::filesystem::path& folder);
 
+/// The same as one row a participant: times, measures that exclusion rules are about, screen, texts.
+std::string participants_csv(const std::filesystem::path& folder);
+
+/// The files of a BIDS dataset (1.9.0, behaviour) of a folder's answers, by their paths:
+/// participants.tsv and sub-<participant>/beh/sub-<participant>_task-cables_beh.tsv with their
+/// descriptions.
+std::map<std::string, std::string> bids_files(const std::filesystem::path& folder);
+
+/// Makes it. `out` must not exist, or be empty.
+void write_bids(const std::filesystem::path& folder, const std::filesystem::path& out);
+
 /// The files of a Psych-DS dataset of a folder's answers, by their paths.
 std::map<std::string, std::string> psych_ds_files(const std::filesystem::path& folder);
 

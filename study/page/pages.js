@@ -155,10 +155,9 @@ function playableEncoding(trials) {
  * that the longest study needs the memory of a few clips.
  */
 export class Clips {
-  static ahead = 3;
-
   constructor(session, encoding, onTrouble) {
     this.trials = session.trials;
+    this.ahead = session.ahead ?? 3;  // 1 where which clip comes next follows from the answers
     this.encoding = encoding;
     this.onTrouble = onTrouble;
     this.urls = new Map();  // of trials, by index: promises
@@ -169,7 +168,7 @@ export class Clips {
 
   /** Begins to fetch the clips of trial `index` and those after it. */
   want(index) {
-    for (let i = index; i < Math.min(index + Clips.ahead, this.trials.length); ++i) {
+    for (let i = index; i < Math.min(index + this.ahead, this.trials.length); ++i) {
       if (this.urls.has(i)) continue;
       const url = this.last.then(async () => URL.createObjectURL(await download(this.trials[i][this.encoding], (share) => {
         this.shares.set(i, share);
@@ -206,7 +205,7 @@ export async function preload(stage, texts, session, onTrouble) {
     return new Promise(() => {});
   }
   const clips = new Clips(session, encoding, onTrouble);
-  const first = [...session.trials.keys()].slice(session.next, session.next + Clips.ahead);
+  const first = [...session.trials.keys()].slice(session.next, session.next + clips.ahead);
   const bar = make('progress', { max: 1, value: 0, 'aria-label': texts.preload_heading });
   const words = make('p', { role: 'status' });
   const show = (share) => {

@@ -5,6 +5,7 @@
 
 #include "analysis/document.h"
 #include "analysis/gnuplot.h"
+#include "analysis/pages.h"
 #include "base/input_error.h"
 #include "tests/analysis/support.h"
 
@@ -273,6 +274,19 @@ TEST(Pages, TextFromOutsideCannotBecomeMarkup) {
   EXPECT_NE(markdown.find("\\| \\*no\\*"), std::string::npos);
 }
 
+TEST(Pages, LatexShowsWhatTheTablesSay) {
+  Document document;
+  document.title = "A\nB";
+  document.blocks = {Heading{"h"}, Paragraph{"p"},
+                     TableBlock{"50 % & more_", {"", "p"}, {{{"a\\b"}, {"<0.05", true}}, {{"–"}}}}};
+  EXPECT_EQ(latex_tables(document),
+            "% A B. Needs \\usepackage{booktabs}.\n\n"
+            "\\begin{table}\n  \\centering\n  \\caption{50 \\% \\& more\\_}\n"
+            "  \\label{tab:pinchlab-1}\n  \\begin{tabular}{lr}\n  \\toprule\n   & p \\\\\n"
+            "  \\midrule\n  a\\textbackslash{}b & \\textbf{$<$0.05} \\\\\n  -- &  \\\\\n"
+            "  \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
+}
+
 TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   const AnswersTable table = test::clustered_table();
   const Report report = analyse_table(table, {});
@@ -297,7 +311,7 @@ TEST(WriteReport, WritesEveryFileAndLeavesNothingUnfinished) {
   const fs::path out = folder.path() / "deep" / "out";
   const auto written = write_report(report, table, out, true);
   for (const char* name :
-       {"report.html", "report.md", "report.json", "demonstrations.csv", "groups.csv",
+       {"report.html", "report.md", "tables.tex", "report.json", "demonstrations.csv", "groups.csv",
         "answers.csv", "shares.svg", "shares.pdf", "groups.svg", "effects.svg"}) {
     EXPECT_NE(std::find(written.begin(), written.end(), name), written.end()) << name;
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "analysis/gsl_support.h"
+#include "base/design_file.h"
 #include "base/input_error.h"
 
 namespace pinchlab::analysis {
@@ -115,6 +116,28 @@ TEST(Sequential, BayesFactorsStopBothWays) {
   EXPECT_LT(answer.without.finds, 0.05);
   EXPECT_GT(answer.without.finds_none, 0.3);
   EXPECT_NE(stopping_text(q, answer).find("none in"), std::string::npos);
+}
+
+TEST(Sequential, ARuleThatIsWrittenIsReadBack) {
+  for (const StoppingRule rule : {StoppingRule::fixed, StoppingRule::obrien_fleming,
+                                  StoppingRule::pocock, StoppingRule::bayes_factor}) {
+    StoppingQuestion q = question(rule);
+    if (rule == StoppingRule::bayes_factor) {
+      q.truth.trials = 1;
+      q.truth.icc = 0;
+    }
+    const StoppingAnswer answer = stopping_rule(q, 100, 1);
+    const Sample sample =
+        parse_stopping(nlohmann::json::parse(stopping_json(q, answer)), "rule.json");
+    EXPECT_EQ(sample.looks.back(), q.participants.back());
+    EXPECT_EQ(sample.looks.size(), answer.looks.size());
+    ASSERT_EQ(sample.p_at_most.size(),
+              rule == StoppingRule::bayes_factor ? 0 : answer.looks.size());
+    for (std::size_t i = 0; i < sample.p_at_most.size(); ++i)
+      EXPECT_EQ(sample.p_at_most[i], answer.looks[i].nominal_p);
+  }
+  EXPECT_THROW(parse_stopping({{"format", "pinchlab-stopping 1"}, {"rule", "guess"}}, "rule.json"),
+               InputError);
 }
 
 TEST(Sequential, RefusesWhatCannotBe) {

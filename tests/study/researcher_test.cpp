@@ -18,35 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class RunningServer {
- public:
-  explicit RunningServer(DeskOptions options)
-      : desk(std::move(options)), server(desk, ServerOptions{}), thread_([this] { server.run(); }) {
-    EXPECT_TRUE(HttpClient(server.address()).get("/api/study"));
-  }
-  ~RunningServer() {
-    server.stop();
-    thread_.join();
-  }
-
-  Desk desk;
-  Server server;
-
- private:
-  std::thread thread_;
-};
-
-// Takes part, always choosing `side`; returns the withdrawal code.
+// Takes part on a small screen, always choosing `side`; returns the withdrawal code.
 std::string take_part(Desk& desk, const char* side) {
-  const std::string token = desk.start("", "browser");
-  const std::size_t trials = desk.progress(token).trials.size();
-  for (std::size_t i = 0; i < trials; ++i) {
-    desk.show(token, i);
-    json body = answer_body(i, side);
+  return study::take_part(desk, [&](json& body) {
+    body["choice"] = side;
     body["clip_width_px"] = 800;
-    desk.answer(token, parse_answer(body));
-  }
-  return desk.save(token, {});
+  });
 }
 
 TEST(Researcher, ResultsAreBlindUnlessAskedFor) {

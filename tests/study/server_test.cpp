@@ -28,25 +28,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class RunningServer {
- public:
-  explicit RunningServer(const fs::path& folder, const ServerOptions& options = {})
-      : desk(desk_options(folder)), server(desk, options), thread_([this] { server.run(); }) {
-    HttpClient client(server.address());
-    EXPECT_TRUE(client.get("/api/study"));
-  }
-  ~RunningServer() {
-    server.stop();
-    thread_.join();
-  }
-
-  Desk desk;
-  Server server;
-
- private:
-  std::thread thread_;
-};
-
 // A whole session up to saving. Returns the token.
 std::string take_part(HttpClient& client, bool fetches_media) {
   const auto started = client.post("/api/start", {{"consent", true}});
@@ -69,7 +50,7 @@ std::string take_part(HttpClient& client, bool fetches_media) {
 
 TEST(Server, AHundredParticipantsAtOnce) {
   const fs::path folder = scratch_folder();
-  RunningServer running(folder);
+  RunningServer running(desk_options(folder));
   std::vector<std::thread> people;
   std::atomic<int> saved = 0;
   people.reserve(100);
@@ -98,7 +79,7 @@ TEST(Server, AHundredParticipantsAtOnce) {
 }
 
 TEST(Server, PartsOfClips) {
-  RunningServer running(scratch_folder());
+  RunningServer running(desk_options(scratch_folder()));
   HttpClient client(running.server.address());
   const json session = json::parse(client.post("/api/start", {{"consent", true}})->body);
   const std::string path = session["trials"][0]["mp4"];
@@ -259,7 +240,7 @@ std::vector<std::string> malformed_requests(const std::string& token) {
 
 TEST(Server, MalformedRequestsChangeNothing) {
   const fs::path folder = scratch_folder();
-  RunningServer running(folder);
+  RunningServer running(desk_options(folder));
   HttpClient client(running.server.address());
   const std::string token =
       json::parse(client.post("/api/start", {{"consent", true}})->body)["token"];
@@ -278,7 +259,7 @@ TEST(Server, MalformedRequestsChangeNothing) {
 
 // The answer to a header alone: the server must not wait for a body that it will not take.
 TEST(Server, WhatIsTooLongIsRefusedBeforeItIsRead) {
-  RunningServer running(scratch_folder());
+  RunningServer running(desk_options(scratch_folder()));
   const std::string head = "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\n";
   const std::string& address = running.server.address();
   EXPECT_EQ(raw_status(address, head + "Content-Length: 400000000\r\n\r\n"), 413);
@@ -293,7 +274,7 @@ TEST(Server, SlowConnectionsHoldUpNobodyAndEnd) {
   ServerOptions options;
   options.limits.header_time = options.limits.body_time = std::chrono::seconds(2);
   options.limits.connections_of_address = 40;
-  RunningServer running(folder, options);
+  RunningServer running(desk_options(folder), options);
   const std::string get = "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ";
   const std::string post =
       "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n";
@@ -316,7 +297,7 @@ TEST(Server, SlowConnectionsHoldUpNobodyAndEnd) {
 }
 
 TEST(Server, FourHundredFetchesAtOnceAreAllServed) {
-  RunningServer running(scratch_folder());
+  RunningServer running(desk_options(scratch_folder()));
   HttpClient client(running.server.address());
   const json session = json::parse(client.post("/api/start", {{"consent", true}})->body);
   const std::string path = session["trials"][0]["mp4"];
@@ -391,7 +372,7 @@ TEST(Http, AnAddressForAllIsToldAsOneThatCanBeOpened) {
 }
 
 TEST(Server, HeadersOfEveryReply) {
-  RunningServer running(scratch_folder());
+  RunningServer running(desk_options(scratch_folder()));
   HttpClient client(running.server.address());
   for (const char* path :
        {"/", "/main.js", "/researcher", "/api/study", "/api/session", "/nothing"}) {

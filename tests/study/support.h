@@ -8,11 +8,15 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/sha256.h"
 #include "study/desk.h"
+#include "study/http_client.h"
 #include "study/secrets.h"
+#include "study/server.h"
 #include "tests/study/server_process.h"
 
 namespace pinchlab::study {
@@ -53,6 +57,41 @@ inline DeskOptions desk_options(const std::filesystem::path& folder) {
   options.answers = folder / "answers";
   options.seed = 7;
   return options;
+}
+
+/// A desk and its server, on a free port.
+class RunningServer {
+ public:
+  explicit RunningServer(DeskOptions desk_options, const ServerOptions& options = {})
+      : desk(std::move(desk_options)), server(desk, options), thread_([this] { server.run(); }) {
+    EXPECT_TRUE(HttpClient(server.address()).get("/api/study"));
+  }
+  ~RunningServer() {
+    server.stop();
+    thread_.join();
+  }
+  RunningServer(const RunningServer&) = delete;
+  RunningServer& operator=(const RunningServer&) = delete;
+
+  Desk desk;
+  Server server;
+
+ private:
+  std::thread thread_;
+};
+
+/// Takes part with what answer_body() sends, changed by `change`; returns the withdrawal code.
+template <class Change>
+std::string take_part(Desk& desk, const Change& change) {
+  const std::string token = desk.start("", "browser");
+  const std::size_t trials = desk.progress(token).trials.size();
+  for (std::size_t i = 0; i < trials; ++i) {
+    desk.show(token, i);
+    nlohmann::json body = answer_body(i);
+    change(body);
+    desk.answer(token, parse_answer(body));
+  }
+  return desk.save(token, {});
 }
 
 /// The status with which the desk refuses what `action` asks of it, or 0.

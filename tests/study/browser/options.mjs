@@ -79,3 +79,32 @@ test('one-time links: who has one starts, once', () => withStudy({ one_time_link
   assert.match(await refusal(new URL(`?link=${'0'.repeat(32)}`, server.address).href), /used already/, 'a link that nobody was given');
   assert.deepEqual(openSessions(server), []);
 }));
+
+test('chosen levels: one clip at a time, and a reload goes on', () => {
+  const pair = (name, level) => ({ level, left: `${name}.left-pinch.mp4`, right: `${name}.left-baseline.mp4` });
+  const series = [{ name: 'squeeze', clips: [pair('01-roll-over', 0.1), pair('03-drop', 0.2), pair('07-driven-roller', 0.3)] }];
+  return withStudy({ demonstrations: undefined, series, adaptive_trials: 4 }, async (server, context) => {
+    const page = await open(context, server.address);
+    const fetched = new Set();
+    page.on('request', (request) => { if (request.url().includes('/media/')) fetched.add(request.url()); });
+    await page.waitForSelector('#start');
+    await consent(page);
+    for (let i = 0; i < 4; ++i) {
+      if (i === 2) {
+        await page.reload();
+        await page.click('#continue');
+      }
+      await page.waitForSelector('#left');
+      assert.equal(fetched.size, i + 1, 'which clip comes next is not known before');
+      await (i < 3 ? answer(page, i % 2 === 0 ? 'left' : 'right') : page.click('#left'));
+    }
+    await page.click('#next');
+    await page.click('#save');
+    await page.waitForSelector('#code');
+    const [file] = answersIn(server);
+    assert.equal(file.plan.adaptive, 'psi');
+    assert.equal(file.trials.length, 4);
+    for (const { level } of file.trials) assert.ok([0.1, 0.2, 0.3].includes(level));
+    assert.deepEqual(page.problems, []);
+  });
+});

@@ -161,17 +161,38 @@ export async function assertAccessible(page, where) {
   assert.deepEqual(violations, [], where);
 }
 
-/** Waits until the clip that is shown has ended `wanted` loops. */
+/**
+ * Waits until `wanted` loops of the clip that is shown were seen. A loop of which the machine, being busy, showed less than
+ * nine tenths (frames half a second of the clip apart show nothing between) is none, on the page as here.
+ */
 export function watchLoops(page, wanted) {
   return page.evaluate((count) => new Promise((resolve) => {
     const video = document.querySelector('video');
-    let last = 0, ends = 0;
+    let last = null, shown = 0, loops = 0;
     video.requestVideoFrameCallback(function note(now, { mediaTime }) {
-      if (mediaTime < last && ++ends === count) return resolve();
+      const isEnd = last !== null && mediaTime < last;
+      const step = last === null ? 0 : mediaTime - last + (isEnd ? video.duration : 0);  // s
+      if (step <= 0.5) shown += step;
+      if (isEnd) {
+        if (shown >= 0.9 * video.duration) ++loops;
+        if (loops === count) return resolve();
+        shown = 0;
+      }
       last = mediaTime;
       return video.requestVideoFrameCallback(note);
     });
   }), wanted);
+}
+
+/** Says that question, clips and buttons are all on the screen, and that a question of a few words takes one line. */
+export async function assertAllIsOnTheScreen(page) {
+  const { top, question, bottom, height, width, clips } = await page.evaluate(() => {
+    const box = (selector) => document.querySelector(selector).getBoundingClientRect();
+    return { top: box('h1').top, question: box('h1').height, bottom: Math.max(box('#left').bottom, box('#right').bottom),
+      height: innerHeight, width: document.documentElement.scrollWidth - innerWidth, clips: box('video').width };
+  });
+  assert.ok(top >= 0 && bottom <= height && width <= 0, `from ${top} to ${bottom} of ${height} px; ${width} px too wide; clips ${clips} px wide`);
+  assert.ok(question < 40, `the question is ${question} px high`);
 }
 
 /** Keeps a screenshot where PINCHLAB_SCREENSHOTS says. */

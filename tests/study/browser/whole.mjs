@@ -8,7 +8,7 @@ import { readFileSync, readdirSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, killServers, open, picture, program, root, scratch, serve, watchLoops } from './support.mjs';
+import { answer, answersIn, assertAllIsOnTheScreen, browse, consent, killServers, open, picture, program, root, scratch, serve, watchLoops } from './support.mjs';
 
 const loops = 5;
 const milliseconds = (seconds) => (1000 * seconds).toFixed(1).padStart(7);
@@ -27,6 +27,7 @@ async function takePart(server, [width, height], wanted) {
       if (i === 0) await picture(page, `whole-${width}-first-loop`);
       if (wanted > 1) await watchLoops(page, wanted);
       await page.waitForSelector('#left');
+      await assertAllIsOnTheScreen(page);
       await picture(page, `whole-${width}-trial-${i + 1}`);
       await answer(page, i % 2 === 0 ? 'left' : 'right');
     }

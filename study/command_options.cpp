@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/command_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "study/plan.h"
+
+namespace pinchlab::study {
+
+namespace fs = std::filesystem;
+
+CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+  return command.add_option("--seed", seed, help)
+      ->type_name("S")
+      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+}
+
+CLI::Option* add_config(CLI::App& command, fs::path& config) {
+  return command
+      .add_option("--config", config, "What to show and say; study/README.md has the keys [all]")
+      ->type_name("study.json");
+}
+
+CLI::Option* add_no_webm(CLI::App& command, bool& no_webm) {
+  return command.add_flag("--no-webm", no_webm,
+                          "Do not render a second encoding for browsers without H.264");
+}
+
+CLI::Option* add_clips(CLI::App& command, fs::path& clips) {
+  return command.add_option("--clips", clips, "Folder of the clips; missing ones are rendered")
+      ->type_name("DIR")
+      ->required();
+}
+
+CLI::Option* add_answers(CLI::App& command, fs::path& answers) {
+  return command.add_option("--answers", answers, "Folder for the answers, made if missing")
+      ->type_name("DIR")
+      ->required();
+}
+
+}  // namespace pinchlab::study
