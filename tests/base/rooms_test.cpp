@@ -35,7 +35,7 @@ const Graph may_know = {
     {"study", {"base"}},
     {"analysis/experiments",
      {"base", "sim", "sim/cable", "sim/detect", "sim/solve", "render/picture", "demos/scenes",
-      "render", "demos", "analysis"}},
+      "render", "demos", "analysis", "study"}},
 };
 
 // The longest of the rooms' names that begins the path; empty if it is in none.
