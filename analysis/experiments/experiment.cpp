@@ -183,7 +183,8 @@ std::string column_where(const std::string& column,
                          const std::vector<std::pair<std::string, std::string>>& where) {
   std::string condition;
   for (const auto& [name, text] : where) {
-    condition += fmt::format("{}strcol('{}') eq '{}'", condition.empty() ? "" : " && ", name, text);
+    condition += fmt::format("{}strcol('{}') eq {}", condition.empty() ? "" : " && ", name,
+                             analysis::gnuplot_quote(text));
   }
   return fmt::format("({} ? column('{}') : NaN)", condition, column);
 }

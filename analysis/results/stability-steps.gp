@@ -38,27 +38,6 @@ set rmargin at screen 0.3561
 set bmargin at screen 0.1758
 set tmargin at screen 0.9091
 unset arrow
-set arrow from -0.5,1.5 to 0.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,1.5 to 0.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from -0.5,2.5 to 0.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,2.5 to 0.5,3.5 nohead front lw 3 lc rgb '#000000'
-set arrow from -0.5,3.5 to 0.5,3.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,0.5 to 1.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,2.5 to 1.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,0.5 to 2.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,1.5 to 2.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,2.5 to 2.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,-0.5 to 3.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,0.5 to 3.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,0.5 to 3.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,1.5 to 3.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,1.5 to 3.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,2.5 to 3.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,-0.5 to 4.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,0.5 to 4.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,0.5 to 4.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,1.5 to 4.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,0.5 to 5.5,0.5 nohead front lw 3 lc rgb '#000000'
 set title 'ours (pinch)' offset 0,-0.6
 plot 'stability-steps-map.csv' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(0.5):(0.5):(log10(shown(column('severity')))) with boxxyerror fs solid lc palette notitle, \
   '' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle
@@ -121,27 +100,6 @@ set rmargin at screen 0.3561
 set bmargin at screen 0.1758
 set tmargin at screen 0.9091
 unset arrow
-set arrow from -0.5,1.5 to 0.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,1.5 to 0.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from -0.5,2.5 to 0.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,2.5 to 0.5,3.5 nohead front lw 3 lc rgb '#000000'
-set arrow from -0.5,3.5 to 0.5,3.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,0.5 to 1.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 0.5,2.5 to 1.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,0.5 to 2.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,1.5 to 2.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 1.5,2.5 to 2.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,-0.5 to 3.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,0.5 to 3.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,0.5 to 3.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,1.5 to 3.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,1.5 to 3.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 2.5,2.5 to 3.5,2.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,-0.5 to 4.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,0.5 to 4.5,0.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,0.5 to 4.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 3.5,1.5 to 4.5,1.5 nohead front lw 3 lc rgb '#000000'
-set arrow from 4.5,0.5 to 5.5,0.5 nohead front lw 3 lc rgb '#000000'
 set title 'ours (pinch)' offset 0,-0.6
 plot 'stability-steps-map.csv' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(0.5):(0.5):(log10(shown(column('severity')))) with boxxyerror fs solid lc palette notitle, \
   '' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle

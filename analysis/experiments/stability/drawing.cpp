@@ -145,9 +145,9 @@ Drawing draw_curves(const ItemResults& done) {
       const std::string& method = item.methods[m];
       text += fmt::format(
           ", \\\n  '{}.csv' using (place(column('x'))):(strcol('method') eq '{}' && "
-          "strcol('series') eq '{}' ? shown(column('severity')) : NaN) with linespoints ls {} "
+          "strcol('series') eq {} ? shown(column('severity')) : NaN) with linespoints ls {} "
           "notitle",
-          table, method, series[s], line_style(method));
+          table, method, analysis::gnuplot_quote(series[s]), line_style(method));
     }
     text += "\n";
   }
