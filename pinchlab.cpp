@@ -46,7 +46,7 @@ void add_fps(CLI::App& command, Timing& timing) {
                   "About how far bodies may be from their exact places, m; steps are divided where "
                   "that takes it, 0: nowhere [the scene's error_m, or 0]")
       ->type_name("M")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_in(0.0, 1.0));
 }
 
 void add_theme(CLI::App& command, ThemeFile& theme, bool& burn_time) {
@@ -58,6 +58,91 @@ void add_theme(CLI::App& command, ThemeFile& theme, bool& burn_time) {
   command.add_flag("--burn-time", burn_time, "Write the time into a corner of each picture");
 }
 
+/// What a clip is made of: its method, pixels, timing, codec and looks.
+void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
+  add_method(
+      command, options.method,
+      "Make one clip a scene: pinch, pinch_no_contact, cable, baseline (each scene's own) or "
+      "thesis (all of the thesis' ways, its iterative solver too) [the pair]");
+  add_size(command, size,
+           "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
+  add_fps(command, options.timing);
+  command
+      .add_option_function<std::string>(
+          "--codec",
+          [&options](const std::string& name) { options.codec = codec_from_string(name); },
+          "h264 (MP4), vp9 (WebM), ffv1 (Matroska, lossless), or for previews that play for ever "
+          "apng, webp or gif (with --fps 50) [h264]")
+      ->type_name("C")
+      ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
+  add_time_limit(command, options.time_limit, "Give up on a clip");
+  command.add_option("--jobs", options.jobs, "Clips made at a time [one a core]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  add_theme(command, options.theme, options.burn_time);
+}
+
+/// A clip's time that is not the scene's.
+void add_playback(CLI::App& command, Playback& playback) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--slow",
+          [&playback](const std::vector<std::string>& windows) {
+            for (const std::string& text : windows) {
+              playback.slow.push_back(slow_from(text));
+            }
+          },
+          "Slow motion of a part, from steps between the frames: 1.2-1.6:0.25 shows these 0.4 s in "
+          "1.6 s")
+      ->type_name("FROM-TO:FACTOR");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--freeze",
+          [&playback](const std::vector<std::string>& stops) {
+            for (const std::string& text : stops) {
+              playback.freeze.push_back(freeze_from(text));
+            }
+          },
+          "Hold the frame at a time for so long: 1.2:0.5")
+      ->type_name("TIME:SECONDS");
+}
+
+/// What is made besides each scene's two clips, or instead of them.
+void add_kinds_of_clip(CLI::App& command, BatchOptions& options) {
+  CLI::Option* also =
+      command.add_flag("--side-by-side", options.side_by_side,
+                       "Also each pair in one picture, in both left/right orders (for the study)");
+  add_playback(command, options.playback);
+  command
+      .add_flag_callback(
+          "--only-side-by-side",
+          [&options] {
+            options.side_by_side = true;
+            options.singles = false;
+          },
+          "Nothing but these, as `study serve` makes them")
+      ->excludes(also)
+      ->excludes("--method");
+  CLI::Option* report = command.add_flag(
+      "--report", options.report,
+      "Also how each pair differs and when, as a table, report.html and strips of pictures");
+  report->excludes("--method");
+  command
+      .add_flag_callback(
+          "--only-report",
+          [&options] {
+            options.report = true;
+            options.singles = false;
+          },
+          "Nothing but this")
+      ->excludes("--method")
+      ->excludes(report);
+  command
+      .add_flag("--attention-checks", options.checks,
+                "Also the clip with pinch joints beside itself upside down, in both orders")
+      ->excludes("--method");
+}
+
 void add_render(CLI::App& app) {
   auto options = std::make_shared<BatchOptions>();
   auto size = std::make_shared<Size>(Size{options->width, options->height});
@@ -67,78 +152,8 @@ void add_render(CLI::App& app) {
       ->type_name("SCENE");
   command->add_option("--out", options->out, "Folder for the files, made if missing [clips]")
       ->type_name("DIR");
-  add_method(
-      *command, options->method,
-      "Make one clip a scene: pinch, pinch_no_contact, cable, baseline (each scene's own) or "
-      "thesis (all of the thesis' ways, its iterative solver too) [the pair]");
-  add_size(*command, *size,
-           "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
-  add_fps(*command, options->timing);
-  command
-      ->add_option_function<std::string>(
-          "--codec",
-          [options](const std::string& name) { options->codec = codec_from_string(name); },
-          "h264 (MP4), vp9 (WebM), ffv1 (Matroska, lossless), or for previews that play for ever "
-          "apng, webp or gif (with --fps 50) [h264]")
-      ->type_name("C")
-      ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
-  add_time_limit(*command, options->time_limit, "Give up on a clip");
-  command->add_option("--jobs", options->jobs, "Clips made at a time [one a core]")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  add_theme(*command, options->theme, options->burn_time);
-  CLI::Option* also =
-      command->add_flag("--side-by-side", options->side_by_side,
-                        "Also each pair in one picture, in both left/right orders (for the study)");
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--slow",
-          [options](const std::vector<std::string>& windows) {
-            for (const std::string& text : windows) {
-              options->playback.slow.push_back(slow_from(text));
-            }
-          },
-          "Slow motion of a part, from steps between the frames: 1.2-1.6:0.25 shows these 0.4 s in "
-          "1.6 s")
-      ->type_name("FROM-TO:FACTOR");
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--freeze",
-          [options](const std::vector<std::string>& stops) {
-            for (const std::string& text : stops) {
-              options->playback.freeze.push_back(freeze_from(text));
-            }
-          },
-          "Hold the frame at a time for so long: 1.2:0.5")
-      ->type_name("TIME:SECONDS");
-  command
-      ->add_flag_callback(
-          "--only-side-by-side",
-          [options] {
-            options->side_by_side = true;
-            options->singles = false;
-          },
-          "Nothing but these, as `study serve` makes them")
-      ->excludes(also)
-      ->excludes("--method");
-  CLI::Option* report = command->add_flag(
-      "--report", options->report,
-      "Also how each pair differs and when, as a table, report.html and strips of pictures");
-  report->excludes("--method");
-  command
-      ->add_flag_callback(
-          "--only-report",
-          [options] {
-            options->report = true;
-            options->singles = false;
-          },
-          "Nothing but this")
-      ->excludes("--method")
-      ->excludes(report);
-  command
-      ->add_flag("--attention-checks", options->checks,
-                 "Also the clip with pinch joints beside itself upside down, in both orders")
-      ->excludes("--method");
+  add_clip_options(*command, *options, *size);
+  add_kinds_of_clip(*command, *options);
   command->footer(
       "What is up to date is kept. The same input gives the same bytes, for any --jobs.\n\n"
       "Examples:\n"
@@ -160,44 +175,68 @@ void add_render(CLI::App& app) {
   });
 }
 
-void add_still(CLI::App& app) {
-  struct Options : StillOptions {
-    std::string scene, method = "pinch";
-    std::vector<std::string> table;
-    bool both = false;
-    Size size;
-  };
-  auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("still", "One frame as PNG, SVG or PDF; several make a contact sheet");
-  add_scene(*command, options->scene);
+struct StillCommand : StillOptions {
+  std::string scene, method = "pinch";
+  std::vector<std::string> table;
+  bool both = false;
+  Size size;
+};
+
+/// Which frames of what, as which file.
+void add_frames(CLI::App& command, StillCommand& options) {
+  add_scene(command, options.scene);
   command
-      ->add_option("--time", options->times,
-                   "Time to show, s; several, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
-                   "frames from one time to another")
+      .add_option("--time", options.times,
+                  "Time to show, s; several, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
+                  "frames from one time to another")
       ->type_name("S")
       ->required()
       ->delimiter(',');
   command
-      ->add_option("--out", options->out,
-                   "FILE.png, .svg or .pdf; a # in the name of a PNG stands for the frame's number "
-                   "and gives each frame its own file")
+      .add_option("--out", options.out,
+                  "FILE.png, .svg or .pdf; a # in the name of a PNG stands for the frame's number "
+                  "and gives each frame its own file")
       ->type_name("FILE")
       ->required();
-  add_method(*command, options->method,
+  add_method(command, options.method,
              "pinch, pinch_no_contact, cable, baseline (the scene's own) or thesis [pinch]");
   CLI::Option* both =
-      command->add_flag("--both", options->both, "A row of pinch over a row of the baseline");
+      command.add_flag("--both", options.both, "A row of pinch over a row of the baseline");
   both->excludes("--method");
   CLI::Option* neutral =
-      command->add_flag("--neutral", options->neutral, "Label the rows A and B, not by method");
+      command.add_flag("--neutral", options.neutral, "Label the rows A and B, not by method");
   command
-      ->add_option("--table", options->table,
-                   "SCENE has placeholders: a column of pictures for each row of this table, as "
-                   "`sweep` takes it")
+      .add_option("--table", options.table,
+                  "SCENE has placeholders: a column of pictures for each row of this table, as "
+                  "`sweep` takes it")
       ->type_name("TABLE")
       ->excludes(both)
       ->excludes(neutral);
+}
+
+void draw_still(StillCommand& options) {
+  const Size of_sheet = options.size.width > 0 ? options.size : Size{480, 480};
+  if (!options.table.empty()) {
+    options.width = of_sheet.width;
+    options.height = of_sheet.height;
+    return write_series(read_sweep(options.scene, options.table), options.method, options);
+  }
+  const SceneFile file = read_scene_file(options.scene);
+  options.methods = {method_of(file.scene, options.method)};
+  if (options.both) options.methods = {Method::pinch, file.scene.baseline};
+  const bool sheet = frames_at(file.scene, options.times).size() * options.methods.size() > 1 &&
+                     options.out.filename().string().find('#') == std::string::npos;
+  const Size single = options.size.width > 0 ? options.size : Size{960, 960};
+  options.width = sheet ? of_sheet.width : single.width;
+  options.height = sheet ? of_sheet.height : single.height;
+  write_still(file, options);
+}
+
+void add_still(CLI::App& app) {
+  auto options = std::make_shared<StillCommand>();
+  CLI::App* command =
+      app.add_subcommand("still", "One frame as PNG, SVG or PDF; several make a contact sheet");
+  add_frames(*command, *options);
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
   add_time_limit(*command, options->time_limit, "Give up");
@@ -210,23 +249,7 @@ void add_still(CLI::App& app) {
       "  pinchlab still demos/03-drop.json --time 0.4:0.8 --out frames/#.png\n"
       "  pinchlab still demos/sweep/drop.json --table squeeze=0:1:5 mass=1 height=0.9 --time 1 "
       "--out graded.svg");
-  command->callback([options] {
-    const Size of_sheet = options->size.width > 0 ? options->size : Size{480, 480};
-    if (!options->table.empty()) {
-      options->width = of_sheet.width;
-      options->height = of_sheet.height;
-      return write_series(read_sweep(options->scene, options->table), options->method, *options);
-    }
-    const SceneFile file = read_scene_file(options->scene);
-    options->methods = {method_of(file.scene, options->method)};
-    if (options->both) options->methods = {Method::pinch, file.scene.baseline};
-    const bool sheet = frames_at(file.scene, options->times).size() * options->methods.size() > 1 &&
-                       options->out.filename().string().find('#') == std::string::npos;
-    const Size single = options->size.width > 0 ? options->size : Size{960, 960};
-    options->width = sheet ? of_sheet.width : single.width;
-    options->height = sheet ? of_sheet.height : single.height;
-    write_still(file, *options);
-  });
+  command->callback([options] { draw_still(*options); });
 }
 
 void add_simulate(CLI::App& app) {
@@ -346,7 +369,12 @@ int run(int argc, char** argv) {
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();  // told already
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;  // --help and --version are 0
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (const std::string unknown = unknown_words(app); !unknown.empty()) {
+      throw std::invalid_argument(unknown);
+    }
+    app.exit(error);
+    return 2;
   }
   return 0;
 }

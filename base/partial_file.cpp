@@ -13,8 +13,28 @@ namespace pinchlab {
 
 namespace fs = std::filesystem;
 
+void make_folders(const fs::path& folder) {
+  if (folder.empty()) {
+    throw std::runtime_error("the name of a folder is empty; give it one, or . for this one");
+  }
+  std::error_code error;
+  const fs::file_type there = fs::status(folder, error).type();
+  if (there != fs::file_type::not_found && there != fs::file_type::none &&
+      there != fs::file_type::directory) {
+    throw std::runtime_error(folder.string() + ": is not a folder; name another one");
+  }
+  fs::create_directories(folder, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("{}: the folder cannot be made: {}; name another one",
+                                         folder.string(), error.message()));
+  }
+}
+
 PartialFile::PartialFile(std::string path)
     : path_(std::move(path)), name_(path_ + std::string(partial_ending)) {
+  if (path_.empty()) {
+    throw std::runtime_error("the name of a file to write is empty; give it one");
+  }
   const fs::path folder = fs::path(path_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
     throw std::runtime_error(
@@ -48,11 +68,8 @@ std::runtime_error PartialFile::error(std::string_view what) const {
 
 StagingFolder::StagingFolder(const fs::path& folder)
     : folder_(folder), staging_(folder / fmt::format(".unfinished-{}", ::getpid())) {
-  if (fs::exists(folder) && !fs::is_directory(folder)) {
-    throw std::runtime_error(
-        fmt::format("{}: is not a folder; name another one with --out", folder.string()));
-  }
-  fs::create_directories(staging_);
+  make_folders(folder);
+  make_folders(staging_);
 }
 
 StagingFolder::~StagingFolder() {

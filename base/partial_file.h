@@ -16,11 +16,15 @@ namespace pinchlab {
 /// Ending of what is not finished; a leftover of an interrupted write is never a result.
 inline constexpr std::string_view partial_ending = ".partial";
 
+/// Makes a folder for results, and those above it, where they are missing. Throws
+/// std::runtime_error with its name, the reason and the cure.
+void make_folders(const std::filesystem::path& folder);
+
 /// The file is written as name() in the folder of its final path; keep() renames it, the destructor
 /// removes it otherwise.
 class PartialFile {
  public:
-  /// Throws std::runtime_error if the folder does not exist or the path is a folder.
+  /// Throws std::runtime_error if the folder does not exist, or the path is a folder or empty.
   explicit PartialFile(std::string path);
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;

@@ -125,6 +125,10 @@ std::string pointer_token(const std::string& key) {
 }
 
 json parse_strict_json(std::string_view text, std::size_t max_depth) {
+  // To the library a byte of zero is the end of the text, whatever comes after it.
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    throw JsonError(line_and_column(text, zero + 1), "not JSON: a byte of zero");
+  }
   Builder builder(text, max_depth);
   json::sax_parse(text, &builder);
   return std::move(builder.root);

@@ -218,7 +218,7 @@ int render_batch(const BatchOptions& options) {
     }
   }
 
-  fs::create_directories(options.out);
+  make_folders(options.out);
   const FolderLock lock(
       options.out,
       fmt::format("{}: another process is rendering into it; wait for it or use another --out",

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "base/did_you_mean.h"
+#include "base/text_checks.h"
 #include "render/canvas.h"
 
 namespace pinchlab {
@@ -25,7 +27,31 @@ std::string read_size(const std::string& text, Size& size) {
                      smallest_frame, largest_frame);
 }
 
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return (parent == nullptr ? "" : full_name(*parent) + " ") + command.get_name();
+}
+
+// Groups of options are commands without a name.
+void add_option_names(const CLI::App& command, std::vector<std::string>& names) {
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* group : command.get_subcommands({})) {
+    if (group->get_name().empty()) add_option_names(*group, names);
+  }
+}
+
 }  // namespace
+
+CLI::Validator number_in(double low, double high) {
+  return {[low, high](const std::string& text) {
+            const std::optional<double> value = parse_number(text);
+            if (value && low <= *value && *value <= high) return std::string();
+            return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
+          },
+          fmt::format("{:g} to {:g}", low, high)};
+}
 
 void add_size(CLI::App& command, Size& size, const std::string& help) {
   command
@@ -41,7 +67,28 @@ void add_size(CLI::App& command, Size& size, const std::string& help) {
 void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& what) {
   command.add_option("--time-limit", seconds, what + " after so many seconds, and fail [none]")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(number_in(1e-6, 1e9));
+}
+
+std::string unknown_words(const CLI::App& app) {
+  const CLI::App* command = &app;  // the innermost that was named
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  for (const std::string& word : app.remaining(true)) {
+    const bool is_option = word.starts_with("-") && word != "--";
+    std::vector<std::string> known;
+    if (is_option) {
+      add_option_names(*command, known);
+    } else {
+      for (const CLI::App* one : command->get_subcommands({})) {
+        if (!one->get_name().empty()) known.push_back(one->get_name());
+      }
+    }
+    if (!is_option && known.empty()) continue;  // one argument too many
+    return fmt::format("{}: no {} is called {}{}; {} --help lists what there is",
+                       full_name(*command), is_option ? "option" : "command", word,
+                       did_you_mean(word, known), full_name(*command));
+  }
+  return "";
 }
 
 std::optional<std::filesystem::path> find_demos_folder() {

@@ -9,6 +9,9 @@
 
 namespace pinchlab {
 
+/// A finite number from low to high, ends included. CLI11's own Range lets NaN pass.
+CLI::Validator number_in(double low, double high);
+
 struct Size {
   int width = 0, height = 0;  // px
 };
@@ -18,6 +21,10 @@ void add_size(CLI::App& command, Size& size, const std::string& help);
 
 /// --time-limit S.
 void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& what);
+
+/// What the command line has that no command knows, with the cure, once app.parse() has thrown;
+/// empty if that was for another reason.
+std::string unknown_words(const CLI::App& app);
 
 /// What commands take when no scene is named: demos/ of the current folder, or else the one that
 /// was installed with the program. Nothing where there is neither; demos_folder then throws

@@ -154,7 +154,7 @@ ParameterTable read_parameter_table(const std::filesystem::path& path) {
 
 ParameterTable table_of_ranges(const std::vector<std::string>& ranges) {
   ParameterTable table;
-  table.name = "the ranges";
+  table.name = "the list of ranges";
   table.rows = {{}};
   for (const std::string& range : ranges) {
     const std::size_t equals = range.find('=');

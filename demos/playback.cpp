@@ -36,8 +36,7 @@ std::vector<Window> windows_of(const Scene& scene, const std::vector<Slow>& slow
         std::abs(steps - static_cast<double>(stride)) > 1e-9) {
       throw std::invalid_argument(
           fmt::format("{}: --slow {} of {} steps a frame is no whole number of them; use a "
-                      "multiple of {:g}, or "
-                      "more --steps-per-frame",
+                      "multiple of {:g} up to 1, or more steps_per_frame in the scene",
                       scene.name, s.factor, scene.steps_per_frame, 1.0 / scene.steps_per_frame));
     }
     windows.push_back({frame_near(scene, s.from, "--slow") * scene.steps_per_frame,

@@ -39,7 +39,7 @@ class Check {
   Check(const fs::path& folder, const json& document) : folder_(folder) {
     if (!document.is_object() || !document.contains("@context") || !document.contains("@graph") ||
         !document["@graph"].is_array()) {
-      tell("the document", "needs @context and @graph, a list");
+      tell("ro-crate-metadata.json", "needs @context and @graph, a list");
       return;
     }
     const std::vector<json> contexts = list_of(document, "@context");

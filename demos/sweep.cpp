@@ -13,6 +13,7 @@
 #include "base/csv.h"
 #include "base/folder_lock.h"
 #include "base/output_file.h"
+#include "base/partial_file.h"
 #include "base/progress.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
@@ -236,6 +237,11 @@ std::string in_words(const Stimulus& stimulus) {
 
 void merge(const Sweep& sweep, const Stimuli& stimuli, const SweepOptions& options) {
   const fs::path& out = options.render.out;
+  if (!fs::is_directory(out)) {
+    throw std::runtime_error(out.string() +
+                             ": there is no such folder; make the stimuli first, by the same "
+                             "command without --merge");
+  }
   RowFolder::remove_left_over(out);
   std::map<std::string, ordered_json> records;
   std::vector<const Stimulus*> missing;
@@ -303,7 +309,7 @@ int run_sweep(const SweepOptions& options) {
     fmt::print(stderr, "{}: {} stimuli merged\n", out.string(), stimuli.list.size());
     return 0;
   }
-  fs::create_directories(out);
+  make_folders(out);
   std::vector<const Stimulus*> to_make;
   for (const Stimulus& stimulus : stimuli.list) {
     if (record_of(stimulus, out).is_null()) to_make.push_back(&stimulus);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <memory>
 #include <regex>
 
@@ -40,8 +41,12 @@ void add_publication(CLI::App& command, Publication& publication) {
                   "Day of publication [that of SOURCE_DATE_EPOCH, or today]")
       ->type_name("YYYY-MM-DD")
       ->check([](const std::string& day) -> std::string {
-        static const std::regex form(R"(\d{4}-(0[1-9]|1[0-2])-(0[1-9]|[12]\d|3[01]))");
-        return std::regex_match(day, form) ? "" : day + " is not YYYY-MM-DD";
+        static const std::regex form(R"((\d{4})-(\d\d)-(\d\d))");
+        std::smatch part;
+        const bool has_form = std::regex_match(day, part, form);
+        const auto number = [&part](std::size_t i) { return std::stoi(part[i].str()); };
+        const bool is_day = has_form && (std::chrono::year(number(1)) / number(2) / number(3)).ok();
+        return is_day ? "" : day + " is no day as YYYY-MM-DD";
       });
 }
 
@@ -121,7 +126,7 @@ void add_sweep(CLI::App& app) {
       "the method thesis) need no placeholder. demos/sweep/ has a scene, and how to use a "
       "cluster.\n\n"
       "Examples:\n"
-      "  pinchlab sweep demos/sweep/drop.json squeeze=0:1:5 mass=1 --out graded\n"
+      "  pinchlab sweep demos/sweep/drop.json squeeze=0:1:5 mass=1 height=0.9 --out graded\n"
       "  pinchlab sweep demos/sweep/drop.json demos/sweep/grid.csv --out set --shard 3/7\n"
       "  pinchlab sweep demos/sweep/drop.json demos/sweep/grid.csv --out set --merge --author 'A "
       "Name'");

@@ -132,8 +132,8 @@ void measure_clip(const Scene& scene, const Scenery& scenery, const Configuratio
 
 }  // namespace
 
-RenderCost measure_render(const Scene& scene, const Configuration& method, int width, int height,
-                          int frames) {
+RenderCost measure_render(const Scene& scene, const SceneLook& look, const Configuration& method,
+                          int width, int height, int frames) {
   RenderCost cost;
   cost.width = width;
   cost.height = height;
@@ -144,7 +144,7 @@ RenderCost measure_render(const Scene& scene, const Configuration& method, int w
   yardstick.encoder_options = "preset=veryfast:crf=14";
   VideoWriter writer((scratch.path / "yardstick.mp4").string(), yardstick);
   Canvas canvas(width, height);
-  const Scenery scenery = set_scenery(scene);
+  const Scenery scenery = set_scenery(scene, look);
   time_stages(scene, scenery, method, canvas, writer, cost);
   measure_clip(scene, scenery, method, canvas, (scratch.path / "stimulus.mp4").string(), stimulus,
                cost);

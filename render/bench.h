@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/picture/look.h"
 #include "sim/configuration.h"
 
 namespace pinchlab {
@@ -24,11 +25,11 @@ struct RenderCost {
   double ratio() const { return (simulate_ms + draw_ms + convert_ms) / encode_ms; }
 };
 
-/// Simulates, draws, converts and encodes `frames` frames of the scene (0: all of them) in one run,
-/// into scratch files that are removed. Throws std::runtime_error where the simulation or a file
-/// fails.
-RenderCost measure_render(const Scene& scene, const Configuration& method, int width, int height,
-                          int frames = 0);
+/// Simulates, draws as `look` says, converts and encodes `frames` frames of the scene (0: all of
+/// them) in one run, into scratch files that are removed. Throws std::runtime_error where the
+/// simulation or a file fails.
+RenderCost measure_render(const Scene& scene, const SceneLook& look, const Configuration& method,
+                          int width, int height, int frames = 0);
 
 /// Several scenes together: each figure the mean over all their frames of the scenes' medians, the
 /// PSNR the least of all. `costs` is not empty.

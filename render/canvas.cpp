@@ -39,13 +39,17 @@ struct Canvas::State {
   Programs programs{gl};
   Font font;
   std::map<std::pair<std::string, int>, LabelImage> labels;  // by text and size in 1/64 px
+  GLuint frame = 0, paper = 0;  // framebuffers: the frame, and its background alone
   Mesh mesh, last_mesh;
+  std::vector<PixelRect> quads;        // where each of the mesh may be seen
+  std::vector<std::uint32_t> indices;  // of the vertices to draw
   std::vector<PixelRect> changed;
   std::vector<std::uint8_t> pixels;
 
   State(int width_, int height_) : width(width_), height(height_) {
     pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-    make_frame();
+    paper = make_framebuffer();
+    frame = make_framebuffer();
     make_vertex_array();
     gl.Enable(GL_BLEND);
     gl.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
@@ -62,18 +66,19 @@ struct Canvas::State {
     check("set-up");
   }
 
-  void make_frame() {
-    GLuint frame = 0, colour = 0;
+  GLuint make_framebuffer() const {
+    GLuint made = 0, colour = 0;
     gl.GenRenderbuffers(1, &colour);
     gl.BindRenderbuffer(GL_RENDERBUFFER, colour);
     gl.RenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
-    gl.GenFramebuffers(1, &frame);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, frame);
+    gl.GenFramebuffers(1, &made);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, made);
     gl.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
       throw std::runtime_error(
           fmt::format("OpenGL cannot draw into a frame of {} x {} px", width, height));
     }
+    return made;
   }
 
   void make_vertex_array() {
@@ -142,13 +147,6 @@ struct Canvas::State {
     mesh.end_sheet(left, columns, picture.background);
   }
 
-  void draw_batch(const Batch& batch) const {
-    gl.UseProgram(programs[batch.program]);
-    if (batch.texture != 0) gl.BindTexture(GL_TEXTURE_2D, batch.texture);
-    gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(batch.count), GL_UNSIGNED_INT,
-                    buffer_place(batch.first * sizeof(GLuint)));
-  }
-
   template <typename Element>
   void upload(GLenum buffer, const std::vector<Element>& data) const {
     gl.BufferData(buffer, static_cast<GLsizeiptr>(data.size() * sizeof(Element)), data.data(),
@@ -160,39 +158,81 @@ struct Canvas::State {
     labels.clear();
   }
 
-  /// What must be drawn again: the rectangle round all changes. A clear that is limited to a part
-  /// costs more a pixel than a full one, so a large part is the whole.
-  PixelRect part_to_draw() const {
-    int left = width, top = height, right = 0, bottom = 0;
-    for (const PixelRect& r : changed) {
-      left = std::min(left, r.left);
-      top = std::min(top, r.top);
-      right = std::max(right, r.left + r.width);
-      bottom = std::max(bottom, r.top + r.height);
+  void paint_paper() const {
+    gl.BindFramebuffer(GL_FRAMEBUFFER, paper);
+    for (const Sheet& sheet : mesh.sheets()) {
+      gl.Scissor(sheet.left, 0, sheet.width, height);
+      const Colour& colour = sheet.background;
+      const double alpha = colour.alpha / 255.0;
+      gl.ClearColor(narrow(alpha * colour.red / 255.0), narrow(alpha * colour.green / 255.0),
+                    narrow(alpha * colour.blue / 255.0), narrow(alpha));
+      gl.Clear(GL_COLOR_BUFFER_BIT);
     }
-    constexpr double large = 0.4;  // of the frame
-    const double share =
-        static_cast<double>(right - left) * (bottom - top) / (static_cast<double>(width) * height);
-    if (share > large) return {0, 0, width, height};
-    return {left, top, right - left, bottom - top};
+    gl.BindFramebuffer(GL_FRAMEBUFFER, frame);
   }
 
-  /// All vertices go up in one piece, then each picture is drawn into its share of the frame.
-  void draw_mesh() const {
+  /// Copying costs a fraction of what clearing a part does.
+  void clear_changes() const {
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, paper);
+    gl.Scissor(0, 0, width, height);
+    for (const PixelRect& r : changed) {
+      const int right = r.left + r.width, bottom = r.top + r.height;
+      gl.BlitFramebuffer(r.left, r.top, right, bottom, r.left, r.top, right, bottom,
+                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, frame);
+  }
+
+  /// What a changed part needs of a batch, from where on its indices are.
+  struct Piece {
+    const Batch* batch;
+    PixelRect part;
+    std::size_t first, count;
+  };
+
+  /// Cuts the drawing into the parts of the frame that have changed. What a quad gives a pixel does
+  /// not depend on them.
+  void cut(std::vector<Piece>& pieces) {
+    quads.clear();
+    for (std::size_t i = 0; i < mesh.vertices().size(); i += quad_corners) {
+      quads.push_back(quad_bounds(mesh.vertices().data() + i, width, height));
+    }
+    indices.clear();
+    for (const PixelRect& r : changed) {
+      std::size_t next = 0;
+      for (const Sheet& sheet : mesh.sheets()) {
+        const int left = std::max(r.left, sheet.left);
+        const int right = std::min(r.left + r.width, sheet.left + sheet.width);
+        const PixelRect part{left, r.top, std::max(0, right - left), r.height};
+        for (; next < sheet.end; ++next) {
+          const Batch& batch = mesh.batches()[next];
+          const std::size_t first = indices.size();
+          for (std::size_t q = batch.first; q < batch.first + batch.count; ++q) {
+            if (!overlap(quads[q], part)) continue;
+            for (const std::uint32_t corner : quad_triangles) {
+              indices.push_back(static_cast<std::uint32_t>(q * quad_corners) + corner);
+            }
+          }
+          if (indices.size() > first) {
+            pieces.push_back({&batch, part, first, indices.size() - first});
+          }
+        }
+      }
+    }
+  }
+
+  /// All vertices go up at once.
+  void draw_changes() {
+    std::vector<Piece> pieces;
+    cut(pieces);
     upload(GL_ARRAY_BUFFER, mesh.vertices());
-    upload(GL_ELEMENT_ARRAY_BUFFER, mesh.indices());
-    const PixelRect part = part_to_draw();
-    std::size_t next = 0;
-    for (const Sheet& sheet : mesh.sheets()) {
-      const int left = std::max(part.left, sheet.left);
-      const int right = std::min(part.left + part.width, sheet.left + sheet.width);
-      gl.Scissor(left, part.top, std::max(0, right - left), part.height);
-      const Colour& paper = sheet.background;
-      const double alpha = paper.alpha / 255.0;
-      gl.ClearColor(narrow(alpha * paper.red / 255.0), narrow(alpha * paper.green / 255.0),
-                    narrow(alpha * paper.blue / 255.0), narrow(alpha));
-      gl.Clear(GL_COLOR_BUFFER_BIT);
-      for (; next < sheet.end; ++next) draw_batch(mesh.batches()[next]);
+    upload(GL_ELEMENT_ARRAY_BUFFER, indices);
+    for (const Piece& piece : pieces) {
+      gl.Scissor(piece.part.left, piece.part.top, piece.part.width, piece.part.height);
+      gl.UseProgram(programs[piece.batch->program]);
+      if (piece.batch->texture != 0) gl.BindTexture(GL_TEXTURE_2D, piece.batch->texture);
+      gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.count), GL_UNSIGNED_INT,
+                      buffer_place(piece.first * sizeof(GLuint)));
     }
   }
 
@@ -220,7 +260,9 @@ struct Canvas::State {
     }
     changed = frame_changes(last_mesh, mesh, width, height);
     if (!changed.empty()) {
-      draw_mesh();
+      if (mesh.sheets() != last_mesh.sheets()) paint_paper();
+      clear_changes();
+      draw_changes();
       read_changes();
       check("drawing");
     }

@@ -14,4 +14,7 @@ namespace pinchlab {
 /// have not the same structure.
 std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int width, int height);
 
+/// The part of a frame of this size in which a quad (its first corner is given) may be seen, px.
+PixelRect quad_bounds(const Vertex* quad, int width, int height);
+
 }  // namespace pinchlab

@@ -129,6 +129,7 @@ Gl load_gl(const GlContext& context) {
   load(gl.BindTexture, "glBindTexture");
   load(gl.BindVertexArray, "glBindVertexArray");
   load(gl.BlendFunc, "glBlendFunc");
+  load(gl.BlitFramebuffer, "glBlitFramebuffer");
   load(gl.BufferData, "glBufferData");
   load(gl.CheckFramebufferStatus, "glCheckFramebufferStatus");
   load(gl.Clear, "glClear");

@@ -41,7 +41,6 @@ Fit::Fit(const View& view, int left, int width, int height) {
 
 void Mesh::clear() {
   vertices_.clear();
-  indices_.clear();
   batches_.clear();
   sheets_.clear();
   open_ = false;
@@ -54,22 +53,19 @@ void Mesh::end_sheet(int left, int width, Colour background) {
 
 void Mesh::begin(Program program, std::uint32_t texture) {
   if (!open_ || batches_.back().program != program || batches_.back().texture != texture) {
-    batches_.push_back({program, texture, indices_.size(), 0});
+    batches_.push_back({program, texture, vertices_.size() / quad_corners, 0});
     open_ = true;
   }
 }
 
-/// Corners in two pairs, the ends of opposite sides.
 void Mesh::quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
                 const Vertex& common) {
-  const auto first = static_cast<std::uint32_t>(vertices_.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Vertex& v = vertices_.emplace_back(common);
     v.position = {narrow(positions[i].x()), narrow(positions[i].y())};
     v.place = {narrow(places[i].x()), narrow(places[i].y())};
   }
-  for (const std::uint32_t i : {0u, 1u, 2u, 2u, 1u, 3u}) indices_.push_back(first + i);
-  batches_.back().count += 6;
+  ++batches_.back().count;
 }
 
 void Mesh::add(const Stroke& stroke, const Fit& fit) {

@@ -43,13 +43,17 @@ struct Sheet {
   bool operator==(const Sheet&) const = default;
 };
 
-/// Consecutive triangles of one program, and of one texture if they are text.
+/// Consecutive quads of one program, and of one texture if they are text.
 struct Batch {
   Program program;
   std::uint32_t texture;
-  std::size_t first, count;  // indices
+  std::size_t first, count;  // quads
   bool operator==(const Batch&) const = default;
 };
+
+constexpr std::size_t quad_corners = 4;
+/// The two triangles of a quad, by its corners.
+constexpr std::array<std::uint32_t, 6> quad_triangles = {0, 1, 2, 2, 1, 3};
 
 /// A piece of a strip between two points, px: the circular arc that joins them and turns by the
 /// angle between their tangents.
@@ -69,7 +73,8 @@ struct LabelImage {
   double centre_x = 0.0, centre_y = 0.0;  // px, see TextBitmap
 };
 
-/// Quads of four vertices and two triangles each, in painter's order. Storage is kept by clear().
+/// Quads of four vertices each, in painter's order. Their corners come in two pairs, the ends of
+/// opposite sides. Storage is kept by clear().
 class Mesh {
  public:
   void add(const Stroke& stroke, const Fit& fit);
@@ -80,7 +85,6 @@ class Mesh {
   void clear();
 
   const std::vector<Vertex>& vertices() const { return vertices_; }
-  const std::vector<std::uint32_t>& indices() const { return indices_; }
   const std::vector<Batch>& batches() const { return batches_; }
   const std::vector<Sheet>& sheets() const { return sheets_; }
 
@@ -95,7 +99,6 @@ class Mesh {
   };
 
   std::vector<Vertex> vertices_;
-  std::vector<std::uint32_t> indices_;
   std::vector<Batch> batches_;
   std::vector<Sheet> sheets_;
   std::vector<Piece> pieces_;  // of the strip being added

@@ -9,4 +9,9 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
+inline bool overlap(const PixelRect& a, const PixelRect& b) {
+  return a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height &&
+         b.top < a.top + a.height;
+}
+
 }  // namespace pinchlab

@@ -98,7 +98,7 @@ struct Diagnostics {
       0;  // parts of steps (Events::located: steps) whose active set did not settle
   std::int64_t events = 0;     // located since the start
   std::int64_t intervals = 0;  // into which steps have been divided, since the start
-  double local_errors = 0.0;   // m, sum of the intervals' estimates since the start
+  double local_error = 0.0;    // m, the largest estimate of an interval since the start
   std::int64_t clusters = 0;   // steps with so many events that what came last did not rebound
 };
 

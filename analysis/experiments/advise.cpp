@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "analysis/experiments/accuracy_scenes.h"
 #include "analysis/experiments/experiment.h"
+#include "demos/command_line.h"
 #include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
@@ -76,16 +76,6 @@ std::string how_to_use(const Question& question, const Rung& rung) {
   if (solver == std::string::npos && rung.setting != "thesis") return "";
   return fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {} --out -\n",
                      question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame);
-}
-
-/// A finite number in a range; CLI11's own check lets NaN pass.
-CLI::Validator between(double low, double high) {
-  return {[low, high](const std::string& text) -> std::string {
-            double value = std::nan("");
-            if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return "";
-            return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
-          },
-          fmt::format("{:g} to {:g}", low, high)};
 }
 
 }  // namespace
@@ -157,11 +147,11 @@ void add_advise_command(CLI::App& app) {
                    "Farthest that any body's centre or rim may be off in any frame, m")
       ->type_name("M")
       ->required()
-      ->check(between(1e-12, 1e3));
+      ->check(number_in(1e-12, 1e3));
   command
       ->add_option("--time", question->seconds, "How much of the scene counts, s [the whole clip]")
       ->type_name("S")
-      ->check(between(0.05, 600.0));
+      ->check(number_in(0.05, 600.0));
   command->add_flag("--all", question->all, "Show all that was tried, not one row a configuration");
   command->footer(
       "Tries every method with every solver, and the thesis' configuration, at 1 to 256 steps a "

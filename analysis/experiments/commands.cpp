@@ -8,6 +8,7 @@
 #include <string>
 
 #include "analysis/experiments/accuracy.h"
+#include "analysis/experiments/convergence.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/features.h"
 #include "analysis/experiments/instructions.h"
@@ -37,6 +38,8 @@ constexpr Experiment experiments[] = {
     {"features", "What features cost scenes that do not use them, and what sleep saves",
      run_features},
     {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
+    {"convergence", "How motion through events converges, with events at their time and without",
+     run_convergence},
     {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 
@@ -91,7 +94,7 @@ void add_render(CLI::App& bench) {
   add_size(*command, *size, "Pixels of a frame, even [960x960]");
   command->add_option("--frames", run->frames, "Frames to measure [all of the clip]")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option("--out", run->out, "Folder for a table and a page as well")->type_name("DIR");
   command->callback([run, scene, size] {
     run->scene = *scene;

@@ -76,9 +76,10 @@ void run_render(const RenderRun& run) {
   std::vector<Named> all;
   std::vector<RenderCost> costs;
   for (const std::filesystem::path& path : scenes) {
-    const Scene scene = read_scene_file(path).scene;
-    costs.push_back(
-        measure_render(scene, method_of(scene, run.method), run.width, run.height, run.frames));
+    const SceneFile file = read_scene_file(path);
+    const Scene& scene = file.scene;
+    costs.push_back(measure_render(scene, file.look, method_of(scene, run.method), run.width,
+                                   run.height, run.frames));
     all.push_back({scene.name, costs.back()});
     fmt::print("{}\n", table(scene.name, costs.back()));
     std::fflush(stdout);

@@ -131,7 +131,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       d.energy += kinetic_energy(world, work);
     }
     ++d.intervals;
-    d.local_errors += work.local_error;
+    d.local_error = std::max(d.local_error, work.local_error);
     d.total_solves += d.active_set_solves;
     left = length < left ? left - length : 0.0;
     world.lag = 0.5 * length;

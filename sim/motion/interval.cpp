@@ -22,7 +22,6 @@ namespace {
 
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
-constexpr double share_of_error = 4e-5;      // of Configuration::error that an interval may take
 constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
 constexpr double shortest_corrected = 1e-6;  // of a step
 constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss

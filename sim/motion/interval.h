@@ -10,6 +10,11 @@ namespace pinchlab {
 
 struct Workspace;
 
+/// The share of Configuration::error that one interval may err by. Intervals' errors add up, and an
+/// impact that comes a little late throws bodies apart: measured, so that demonstrations keep what they
+/// ask for (analysis/results/convergence.md).
+constexpr double share_of_error = 4e-5;
+
 /// Notes that an interval begins at `time` (s), with the world as it is: Workspace::start.
 void begin_interval(const World& world, Workspace& work, double time);
 

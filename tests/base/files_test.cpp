@@ -87,6 +87,21 @@ TEST(PartialFile, TellsWhereItCannotBe) {
             folder.path().string() + ": is a folder; give a file's name");
 }
 
+TEST(Folders, AreMadeWithThoseAboveOrSayWhyNot) {
+  const TemporaryFolder folder;
+  make_folders(folder.path() / "a" / "b");
+  make_folders(folder.path() / "a" / "b");
+  EXPECT_TRUE(std::filesystem::is_directory(folder.path() / "a" / "b"));
+  const std::string file = folder.write("file", "x").string();
+  const auto mistake = [](const std::string& path) {
+    return message_of<std::runtime_error>([&] { make_folders(path); });
+  };
+  EXPECT_EQ(mistake(file), file + ": is not a folder; name another one");
+  EXPECT_EQ(mistake(file + "/below"),
+            file + "/below: the folder cannot be made: Not a directory; name another one");
+  EXPECT_EQ(mistake(""), "the name of a folder is empty; give it one, or . for this one");
+}
+
 TEST(StagingFolder, FilesAppearTogetherOrNotAtAll) {
   const TemporaryFolder folder;
   const fs::path out = folder.path() / "made/on the way";

@@ -111,9 +111,10 @@ TEST(SceneTemplate, AndTableMustFit) {
     return std::string("no error");
   };
   EXPECT_EQ(error({{"a", {"${sqeeze}"}}}, {"squeeze=1"}),
-            "s.json: /a/0: the ranges has no column `sqeeze` (did you mean `squeeze`?)");
+            "s.json: /a/0: the list of ranges has no column `sqeeze` (did you mean `squeeze`?)");
   EXPECT_EQ(error({{"a", "${squeeze}"}}, {"squeeze=1", "mass=2"}),
-            "the ranges: column `mass` has no place: write ${mass} where it belongs in s.json, or "
+            "the list of ranges: column `mass` has no place: write ${mass} where it belongs in "
+            "s.json, or "
             "leave it out");
   EXPECT_EQ(error({{"a", "${squeeze}"}}, {"squeeze=1", "method=pinch"}), "no error");
 }

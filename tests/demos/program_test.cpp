@@ -92,6 +92,10 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "1e9"},
       {"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "0"},
       {"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "99999999999"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--error", "nan"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--time-limit", "nan"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--time-limit", "0"},
+      {"simulate", "01-small.json", "01-small.json", "--out", "a.csv"},
       {"bench"},
   };
   for (const auto& arguments : bad) {
@@ -103,6 +107,31 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
   EXPECT_FALSE(fs::exists(folder / "x.png"));
   EXPECT_FALSE(fs::exists(folder / "a.csv"));
   EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Program, UnknownWordsAreNamedWithTheirCure) {
+  const fs::path folder = folder_with_scene();
+  const std::vector<std::pair<std::vector<std::string>, std::string>> unknown = {
+      {{"rendr"},
+       "pinchlab: no command is called rendr (did you mean `render`?); pinchlab --help lists what "
+       "there is\n"},
+      {{"study", "exprot"},
+       "pinchlab study: no command is called exprot (did you mean `export`?); pinchlab study "
+       "--help "
+       "lists what there is\n"},
+      {{"simulate", "01-small.json", "--mehtod", "cable", "--out", "a.csv"},
+       "pinchlab simulate: no option is called --mehtod (did you mean `--method`?); pinchlab "
+       "simulate --help lists what there is\n"},
+      {{"study", "export", "--answers", "a", "--cvs", "-"},
+       "pinchlab study export: no option is called --cvs (did you mean `--csv`?); pinchlab study "
+       "export --help lists what there is\n"},
+  };
+  for (const auto& [arguments, message] : unknown) {
+    const RunResult run = run_program(folder, arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.err, message);
+  }
+  EXPECT_FALSE(fs::exists(folder / "a.csv"));
 }
 
 TEST(Program, SimulatesAsTheThesisDoes) {
@@ -131,6 +160,11 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
        "bad.json: line 1, column 1: not JSON: unexpected end of input; expected string literal\n"},
       {{"simulate", "01-small.json", "--out", "none/x.csv"},
        "none/x.csv: the folder none does not exist; create it first\n"},
+      {{"simulate", "01-small.json", "--out", ""},
+       "the name of a file to write is empty; give it one\n"},
+      {{"simulate", "", "--out", "x.csv"}, "the scene file's name: is empty\n"},
+      {{"render", "01-small.json", "--out", "bad.json"},
+       "bad.json: is not a folder; name another one\n"},
   };
   for (const auto& [arguments, message] : failures) {
     const RunResult run = run_program(folder, arguments);

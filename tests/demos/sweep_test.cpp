@@ -195,6 +195,20 @@ TEST(Sweep, TellsOfRowsThatCannotBe) {
   EXPECT_EQ(sweep(folder, "set", {"--shard", "0/3"}).exit_code, 2);
   EXPECT_EQ(sweep(folder, "set", {"--shard", "1/3", "--merge"}).exit_code, 2);
   EXPECT_EQ(sweep(folder, "set", {"--orcid", "x", "--author", "A"}).exit_code, 2);
+  for (const char* no_day : {"2026-02-30", "2026-13-01", "2026-1-1", "today"}) {
+    run = run_program(folder, {"sweep", "s.json", "t.csv", "--out", "set", "--date", no_day});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_TRUE(tells(run.err, fmt::format("--date: {} is no day as YYYY-MM-DD", no_day)))
+        << run.err;
+  }
+}
+
+TEST(Sweep, MergesNothingWhereNothingIs) {
+  const RunResult run = sweep(folder_with_sweep(), "set", {"--merge"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err,
+            "set: there is no such folder; make the stimuli first, by the same command without "
+            "--merge\n");
 }
 
 TEST(Sweep, ReportsHowEachRowsPairDiffers) {

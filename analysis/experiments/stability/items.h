@@ -43,6 +43,7 @@ Item chatter(bool quick);
 Item fast_bodies(bool quick);
 Item frames_and_steps(bool quick);
 Item long_swing(bool quick);
+Item impacts(bool quick);
 
 /// 10^from, 10^(from + 1/per_decade) .. 10^to.
 std::vector<double> decades(double from, double to, int per_decade);

@@ -179,10 +179,9 @@ Item jerks(bool quick) {
   item.title = "Jerks";
   item.x_name = "mass ratio";
   item.why =
-      "What a jerk sets off within a step is not foreseen: a light body's vibration is damped by "
-      "the tension of the step before, which is none, and a contact is looked for by the speeds of "
-      "the step before. A light body is thrown "
-      "aside; a heavier one overlaps, or stretches its cable, for a step.";
+      "Ours goes on from the jerk with the velocities after it, and corrects lengths within the "
+      "step. In a step that knows no jerk a light body is thrown aside; a heavier one overlaps, or "
+      "stretches its cable.";
   item.scene =
       "Through a light body: the hanging pair of the mass ratios, where M first falls 0.1 m on a "
       "slack cable. Into a pinch: M falls 5 m before its cable jerks a roller of 1 kg, which rests "

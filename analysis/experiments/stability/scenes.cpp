@@ -197,4 +197,51 @@ Scene roll_over() {
   return scene;
 }
 
+Scene two_on_span(double other, bool slack) {
+  Scene scene = trampoline(0.4);
+  const double height = scene.bodies[0].position.y();
+  if (slack) {
+    scene = {};
+    add_cable(scene, at(-1.5, 0.0), {}, at(1.5, 0.0), 0.02);
+    scene.cables[0].slack = 0.2;
+  } else {
+    scene.bodies.erase(scene.bodies.begin());
+    Cable& cable = scene.cables[0];
+    for (Wrap& wrap : cable.wraps) --wrap.body;
+    --cable.start.body;
+    --cable.end.body;
+  }
+  for (const double side : {-1.0, 1.0}) {
+    scene.bodies.push_back(body(side < 0.0 ? "left disc" : "right disc", BodyKind::free, 0.3 * side,
+                                height, 0.2, side < 0.0 ? 1.0 : other));
+  }
+  return scene;
+}
+
+Scene load_into_cables() {
+  Scene scene;
+  scene.bodies.push_back(body("load", BodyKind::free, 0.0, -1.0, 0.1, 2.0));
+  scene.bodies[0].velocity = {0.5, 0.0};
+  for (const double x : {-0.8, 0.1, 0.9}) {
+    add_cable(scene, at(x, 0.0), {}, on(0));
+    scene.cables.back().slack = 0.3 + 0.05 * x;
+  }
+  return scene;
+}
+
+Scene newtons_cradle() {
+  constexpr double length = 1.0, radius = 0.1, aside = 0.5;
+  Scene scene;
+  for (int i = 0; i < 5; ++i) {
+    const double x = 2.0 * radius * i, angle = i == 0 ? aside : 0.0;
+    Body ball = body(fmt::format("ball {}", i), BodyKind::free, x - length * std::sin(angle),
+                     -length * std::cos(angle), radius, 1.0);
+    ball.restitution = 1.0;
+    ball.contact_friction = 0.0;
+    scene.bodies.push_back(ball);
+    add_cable(scene, at(x, 0.0), {}, on(i), 0.01);
+  }
+  return scene;
+}
+
 }  // namespace pinchlab::experiments::stability

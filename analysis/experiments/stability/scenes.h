@@ -57,4 +57,14 @@ Scene roller_in_bight();
 /// A free roller that rolls down a cable, over the drum (which pinches it) and down the far side.
 Scene roll_over();
 
+/// Two discs side by side, of 1 and `other` kg, that fall 0.4 m on one span: slack between anchors,
+/// or taut between pulleys with weights of 3 kg.
+Scene two_on_span(double other, bool slack);
+
+/// A load of 2 kg that hangs on three cables of unequal slack and falls until they catch it.
+Scene load_into_cables();
+
+/// Five balls on cables of 1 m, side by side, with restitution 1; the first is 0.5 rad aside.
+Scene newtons_cradle();
+
 }  // namespace pinchlab::experiments::stability

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Scenes of impacts and catches whose motion is known in closed form.
+
+#include <vector>
+
+#include "analysis/experiments/work_precision.h"
+
+namespace pinchlab::experiments {
+
+Problem bouncing_ball();       ///< ten bounces of restitution 0.8
+Problem ball_between_walls();  ///< restitution 1, no gravity
+Problem caught_load();         ///< a load on slack cable, stopped dead by it
+Problem caught_over_a_peg();   ///< 1 and 3 kg on slack cable over a frictionless peg
+Problem two_on_slack_cable();  ///< bodies that fly apart until their cable is taut
+Problem galileos_peg();        ///< a pendulum whose cable meets a peg; from its own fine solution
+
+/// All of the above.
+std::vector<Problem> event_problems();
+
+}  // namespace pinchlab::experiments
