@@ -260,13 +260,12 @@ std::string design_words(const std::optional<DesignCheck>& check) {
   return words;
 }
 
-nlohmann::ordered_json design_json(const std::optional<DesignCheck>& check) {
-  if (!check) return nullptr;
-  return {{"sha256", check->sha256},
-          {"frozen_utc", check->frozen_utc},
-          {"followed", check->deviations.empty()},
-          {"kept", check->kept},
-          {"deviations", check->deviations}};
+nlohmann::ordered_json design_json(const DesignCheck& check) {
+  return {{"sha256", check.sha256},
+          {"frozen_utc", check.frozen_utc},
+          {"followed", check.deviations.empty()},
+          {"kept", check.kept},
+          {"deviations", check.deviations}};
 }
 
 }  // namespace pinchlab::analysis

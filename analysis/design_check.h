@@ -39,7 +39,7 @@ DesignCheck check_design(const Design& design, const std::vector<std::filesystem
 /// In one sentence or two; empty without a design. Begins with a space.
 std::string design_words(const std::optional<DesignCheck>& check);
 
-/// `null` without a design.
-nlohmann::ordered_json design_json(const std::optional<DesignCheck>& check);
+/// For report.json.
+nlohmann::ordered_json design_json(const DesignCheck& check);
 
 }  // namespace pinchlab::analysis

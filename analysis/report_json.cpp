@@ -187,7 +187,7 @@ std::string report_json(const Report& report, const AnswersTable& table) {
   document["version"] = 1;
   document["software_version"] = PINCHLAB_VERSION;
   document["answer"] = plain_words(report, table);
-  document["design"] = design_json(table.design);
+  if (table.design) document["design"] = design_json(*table.design);
   document["alpha"] = report.options.alpha;
   document["seed"] = report.options.seed;
   document["methods"] = {{"pinch", report.options.pinch_label},

@@ -154,7 +154,7 @@ std::string scale_json(const ScaleReport& report, const ComparisonsTable& table)
   document["version"] = 1;
   document["software_version"] = PINCHLAB_VERSION;
   document["answer"] = scale_words(report, table);
-  document["design"] = design_json(table.design);
+  if (table.design) document["design"] = design_json(*table.design);
   document["model"] =
       report.options.model == ScaleModel::bradley_terry ? "bradley-terry" : "thurstone";
   document["alpha"] = report.options.alpha;

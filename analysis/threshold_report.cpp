@@ -357,7 +357,7 @@ std::string threshold_json(const ThresholdReport& report, const LevelsTable& tab
   document["version"] = 1;
   document["software_version"] = PINCHLAB_VERSION;
   document["answer"] = threshold_words(report, table);
-  document["design"] = design_json(table.design);
+  if (table.design) document["design"] = design_json(*table.design);
   document["function"] = shape_name(report.model.shape);
   document["threshold_at"] = report.model.threshold_at;
   document["hits"] = hits_name(table);

@@ -54,8 +54,9 @@ TEST(AnswerFiles, SchemaAndReaderAgree) {
     }
     for (const auto& [key, unused] : described["properties"].items()) {
       // Of attention trials only, and of other kinds of studies (test_comparisons.cpp).
-      if (key == "expected" || key == "methods" || key == "graded_hit" || key == "level") continue;
-      if (key == "adaptive") continue;
+      if (key == "expected" || key == "methods" || key == "graded_hit" || key == "adaptive" ||
+          key == "level")
+        continue;
       EXPECT_TRUE(full.at(place).contains(key)) << key << " is not in the test document";
       json without = full;
       without.at(place).erase(key);
