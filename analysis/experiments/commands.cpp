@@ -176,6 +176,12 @@ void add_all(CLI::App& bench) {
                                      typed(*options, experiment.has_loads));
       experiment.run(*options);
     }
+    PopulationRun population;
+    population.options = *options;
+    if (options->quick) population.scenes = 100;
+    population.options.command = fmt::format("pinchlab bench population --scenes {} --out {}",
+                                             population.scenes, options->out.string());
+    run_population(population);
     count_if_possible(*options);
     RenderRun render;
     render.out = options->out;
