@@ -30,7 +30,7 @@ set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 0.006871421546349718 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.806487381530901e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -41,7 +41,7 @@ plot 0.006871421546349718 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 0.0008912274655285842 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.209117527183262e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -52,7 +52,7 @@ plot 0.0008912274655285842 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '03-drop' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 8.107813665568304e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -63,7 +63,7 @@ plot 8.107813665568304e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 9.294188160243145e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.761042776492348e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -74,7 +74,7 @@ plot 9.294188160243145e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 0.0035681522309928757 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.6410589471692032e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -85,7 +85,7 @@ plot 0.0035681522309928757 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 6.824824706305193e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.739540722126814e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -96,7 +96,7 @@ plot 6.824824706305193e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 5.706620361239707e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.917932975770974e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -107,7 +107,7 @@ plot 5.706620361239707e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 3.951676063285317e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 8.964077988665625e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -158,7 +158,7 @@ set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 0.006871421546349718 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.806487381530901e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -169,7 +169,7 @@ plot 0.006871421546349718 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 0.0008912274655285842 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.209117527183262e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -180,7 +180,7 @@ plot 0.0008912274655285842 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '03-drop' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 8.107813665568304e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -191,7 +191,7 @@ plot 8.107813665568304e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 9.294188160243145e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.761042776492348e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -202,7 +202,7 @@ plot 9.294188160243145e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 0.0035681522309928757 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.6410589471692032e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -213,7 +213,7 @@ plot 0.0035681522309928757 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 6.824824706305193e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.739540722126814e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -224,7 +224,7 @@ plot 6.824824706305193e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 5.706620361239707e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.917932975770974e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -235,7 +235,7 @@ plot 5.706620361239707e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 3.951676063285317e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 8.964077988665625e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
