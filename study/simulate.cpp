@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <chrono>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -41,6 +43,19 @@ double logistic(double x) {
   return 1 / (1 + std::exp(-x));
 }
 
+/// Asks again, as the page does, while the server says that too many ask from one address (429).
+template <class Ask>
+auto patiently(Ask ask) {
+  constexpr int most = 300;
+  constexpr std::chrono::milliseconds pause(200);
+  auto answer = ask();
+  for (int i = 0; i < most && answer && answer->status == 429; ++i) {
+    std::this_thread::sleep_for(pause);
+    answer = ask();
+  }
+  return answer;
+}
+
 // One who is not there.
 class Simulated {
  public:
@@ -57,7 +72,8 @@ class Simulated {
     become(number);
     for (std::size_t i = started.at("next"); i < count; ++i) {
       post(client, "/api/show", {{"index", i}});
-      const auto clip = client.get(started.at("trials").at(i).at("mp4"), {{"Range", "bytes=0-0"}});
+      const std::string mp4 = started.at("trials").at(i).at("mp4");
+      const auto clip = patiently([&] { return client.get(mp4, {{"Range", "bytes=0-0"}}); });
       if (!clip || clip->status != 206) throw std::runtime_error("a clip could not be fetched");
       post(client, "/api/answer", answer_to(desk_.plan_of(id).second[i], i));
     }
@@ -79,7 +95,7 @@ class Simulated {
   double normal(double sd) { return gsl_ran_gaussian(rng_.get(), sd); }
 
   json post(HttpClient& client, const std::string& path, const json& body) {
-    const auto answer = client.post(path, body, token_);
+    const auto answer = patiently([&] { return client.post(path, body, token_); });
     if (!answer || answer->status != 200) {
       throw std::runtime_error(fmt::format("{} was answered with {}", path,
                                            answer ? std::to_string(answer->status) : "nothing"));
