@@ -245,6 +245,46 @@ MethodPair pair_from(const std::string& text) {
   return pair;
 }
 
+namespace {
+
+ClipPlan plan_one(const SceneFile& source, const Scene& scene, const BatchOptions& options,
+                  const std::string& role, std::vector<Configuration> methods,
+                  const std::string& ending) {
+  ClipPlan clip;
+  clip.file = scene.name + "." + role + ending;
+  clip.role = role;
+  clip.source = &source;
+  clip.scene = scene;
+  clip.product = role == "poster"   ? Product::poster
+                 : role == "report" ? Product::report
+                                    : Product::clip;
+  clip.methods = std::move(methods);
+  const int panels = static_cast<int>(clip.methods.size());
+  clip.theme = options.theme;
+  clip.burn_time = options.burn_time;
+  if (clip.product == Product::clip) clip.playback = options.playback;
+  clip.steps = steps_shown(scene, clip.playback);
+  clip.video.codec = options.codec;
+  clip.video.width = options.width * (clip.product == Product::clip ? panels : 1);
+  clip.video.height = options.height;
+  clip.video.frames_per_second = scene.frames_per_second;
+  return clip;
+}
+
+/// Adds clips whose files must be of one size, where their kind can.
+void add_equal(std::vector<ClipPlan> group, std::vector<ClipPlan>& plans) {
+  for (ClipPlan& one : group) {
+    for (const ClipPlan& other : group) {
+      if (&one != &other && can_have_equal_sizes(one.video.codec)) {
+        one.equal_sizes_with.push_back(other.file);
+      }
+    }
+  }
+  std::ranges::move(group, std::back_inserter(plans));
+}
+
+}  // namespace
+
 std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& options) {
   check_size(options);
   if (options.theme.theme.background.alpha < 255) {
@@ -256,41 +296,13 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
   const Scene scene = with_timing(source.scene, options.timing);
   const auto plan = [&](const std::string& role, std::vector<Configuration> methods,
                         const std::string& ending) {
-    ClipPlan clip;
-    clip.file = scene.name + "." + role + ending;
-    clip.role = role;
-    clip.source = &source;
-    clip.scene = scene;
-    clip.product = role == "poster"   ? Product::poster
-                   : role == "report" ? Product::report
-                                      : Product::clip;
-    clip.methods = std::move(methods);
-    const int panels = static_cast<int>(clip.methods.size());
-    clip.theme = options.theme;
-    clip.burn_time = options.burn_time;
-    if (clip.product == Product::clip) clip.playback = options.playback;
-    clip.steps = steps_shown(scene, clip.playback);
-    clip.video.codec = options.codec;
-    clip.video.width = options.width * (clip.product == Product::clip ? panels : 1);
-    clip.video.height = options.height;
-    clip.video.frames_per_second = scene.frames_per_second;
-    return clip;
+    return plan_one(source, scene, options, role, std::move(methods), ending);
   };
   const std::string ending = file_ending(options.codec);
   if (options.method) {
     return {plan(*options.method, {method_of(scene, *options.method)}, ending)};
   }
   std::vector<ClipPlan> plans;
-  const auto add_equal = [&](std::vector<ClipPlan> group) {
-    for (ClipPlan& one : group) {
-      for (const ClipPlan& other : group) {
-        if (&one != &other && can_have_equal_sizes(options.codec)) {
-          one.equal_sizes_with.push_back(other.file);
-        }
-      }
-    }
-    std::ranges::move(group, std::back_inserter(plans));
-  };
   const bool usual = options.pairs.empty();
   const std::vector<MethodPair> pairs =
       usual ? std::vector<MethodPair>{{"pinch", "baseline"}} : options.pairs;
@@ -302,7 +314,7 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
         singles.push_back(plan(name, {method_of(scene, name)}, ending));
       }
     }
-    add_equal(std::move(singles));
+    add_equal(std::move(singles), plans);
   }
   std::set<MethodPair> known;
   for (const auto& [first, second] : pairs) {
@@ -317,7 +329,8 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
     }
     if (options.side_by_side) {
       add_equal({plan(usual ? "left-pinch" : both, {one, other}, ending),
-                 plan(usual ? "left-baseline" : second + "-" + first, {other, one}, ending)});
+                 plan(usual ? "left-baseline" : second + "-" + first, {other, one}, ending)},
+                plans);
     }
     if (options.report) plans.push_back(plan("report", {one, other}, ".png"));
   }
@@ -327,7 +340,7 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
                                     plan("check-right", {pinch, pinch}, ending)};
     checks[0].upside_down = 1;
     checks[1].upside_down = 0;
-    add_equal(std::move(checks));
+    add_equal(std::move(checks), plans);
   }
   return plans;
 }

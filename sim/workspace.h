@@ -74,7 +74,7 @@ struct Workspace {
   Start start;                  // of the last interval
   std::vector<int> first_link;  // of each cable, in `start`
   bool settled = true;          // every solve of the last trial; by move_part
-  double missed = 0.0;  // by lengths and gaps, over the part\'s extent, where not met; by move_part
+  double missed = 0.0;  // by lengths and gaps, over the part's extent, where not met; by move_part
   bool violated = false;  // what an interval began with, more than it makes up for; by move_part
   std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
   double local_error = 0.0;                      // m, of the last trial; by move_part

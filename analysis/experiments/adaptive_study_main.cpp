@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <utility>
 
 #include "analysis/psychometric.h"
 #include "analysis/result_main.h"
@@ -97,6 +99,13 @@ std::vector<Answers> simulated(const Condition& condition, const Settings& setti
     }
   }
   fs::remove_all(folder);
+  // Files have random names: in their order the figures would change from run to run.
+  const auto as_numbers = [](const study::GradedAnswer& answer) {
+    return std::pair(answer.level, answer.is_hit);
+  };
+  std::ranges::sort(people, [&as_numbers](const Answers& a, const Answers& b) {
+    return std::ranges::lexicographical_compare(a, b, {}, as_numbers, as_numbers);
+  });
   return people;
 }
 

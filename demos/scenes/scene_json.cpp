@@ -56,15 +56,6 @@ std::string scene_name(const std::filesystem::path& path) {
 SceneFileError::SceneFileError(const std::string& file, std::vector<SceneProblem> problems_)
     : std::runtime_error(report(file, problems_)), problems(std::move(problems_)) {}
 
-Method method_from_string(const std::string& name) {
-  for (const Method method : {Method::pinch, Method::pinch_no_contact, Method::cable}) {
-    if (name == to_string(method)) {
-      return method;
-    }
-  }
-  throw std::invalid_argument("no method is called " + name);
-}
-
 SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) {
   SceneFile file;
   file.path = path;

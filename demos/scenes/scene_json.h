@@ -44,8 +44,4 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path);
 World start_world(const Scene& scene, const std::filesystem::path& path,
                   const Configuration& configuration);
 
-/// The method called `name` in files and on the command line; std::invalid_argument if there is
-/// none.
-Method method_from_string(const std::string& name);
-
 }  // namespace pinchlab

@@ -149,7 +149,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     }
     detect_after_moving(scene, world, work, times);
     watch = Stopwatch(times);
-    empty_pinches(world);
+    empty_pinches(world, work.parts);
     const bool violated =
         !met || work.violated || changes_of_cables(world) != changes || is_squeezed(world);
     settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
-constexpr double shortest = 1e-4;            // of a step, that intervals are divided into for that
+constexpr double shortest = 1e-4;            // of a step, that an allowed error divides it into
 constexpr double shortest_corrected = 1e-6;  // of a step
 constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss
 constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
@@ -125,7 +125,6 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
                                     : solve_direct(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
     if (round == 0) {
-      work.linear_velocity = s.velocity;
       fastest = greatest_speed(world, bodies, s.velocity, nullptr);
     } else if (greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
       work.missed = infinity;
@@ -152,6 +151,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
       return false;
     before_last = last;
     last = missed;
+    if (round == 0) work.linear_velocity = s.velocity;
   }
 }
 

@@ -55,8 +55,10 @@ bool is_closed(const World& world, const CableState& cable, int segment) {
 
 }  // namespace
 
-void empty_pinches(World& world) {
-  for (CableState& cable : world.cables) {
+void empty_pinches(World& world, const Parts& parts) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(parts, c)) continue;
+    CableState& cable = world.cables[c];
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const double slack = at(cable.segments, i).rest_length;
       if (slack <= 0.0 || !is_closed(world, cable, i)) continue;
