@@ -61,9 +61,11 @@ void apply_no_forces(const Scene& scene, const World& world, double time, Worksp
   apply_forces(scene, world, instant, work);
 }
 
+/// Whether a contact is, that can give.
 bool is_squeezed(const World& world) {
   return std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
-    return c.gap < c.target - 10.0 * reach_at(world, c.a);
+    if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) return false;
+    return can_move(at(world.bodies, c.a)) || (c.b >= 0 && can_move(at(world.bodies, c.b)));
   });
 }
 

@@ -69,7 +69,8 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
-    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0);
+    const bool gives = row.diagonal > 0.0 || group >= 0;
+    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0 && gives);
     if (!row.on && row.kind == RowKind::pinch_middle) continue;
     if (group >= 0 && !row.on && !shares) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
@@ -120,9 +121,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;
   for (int round = 0;; ++round) {
-    if (round > 0) forget_flips(s);
     const bool settled = round == 0 ? solve_passively(world, work.parts, part, s, set)
-                                    : solve_direct(world, work.parts, part, s, set);
+                                    : solve_again(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
     if (round == 0) {
       fastest = greatest_speed(world, bodies, s.velocity, nullptr);

@@ -59,9 +59,10 @@ void empty_pinches(World& world, const Parts& parts) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(parts, c)) continue;
     CableState& cable = world.cables[c];
+    const double rounding = 1e-15 * cable.length;
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const double slack = at(cable.segments, i).rest_length;
-      if (slack <= 0.0 || !is_closed(world, cable, i)) continue;
+      if (slack <= rounding || !is_closed(world, cable, i)) continue;
       const int before = previous_link(cable, i), after = next_link(cable, i);
       if (after < 0) continue;
       const bool opens_before = !is_closed(world, cable, before);

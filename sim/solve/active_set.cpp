@@ -145,7 +145,7 @@ bool is_unilateral(const Row& row) {
 /// row still holds to within the tolerance. (Of a cable that hardly bears tension the impulses are
 /// uncertain by the tolerance times the matrix' condition, which grows with the square of its
 /// segments.) Leaves zeros in their place if so.
-bool clear_rounding(PartSystem& s, const SolveScratch& set) {
+bool clear_rounding(PartSystem& s, SolveScratch& set) {
   if (!set.symmetric) return false;
   for (const Flip& flip : set.flips) {
     if (flip.is_run || flip.on) return false;
@@ -161,6 +161,7 @@ bool clear_rounding(PartSystem& s, const SolveScratch& set) {
     if (row.diagonal == 0.0 || row.idle || (!row.on && !is_unilateral(row))) continue;
     if (row.speed < -tolerance || (row.on && row.speed > tolerance)) return false;
   }
+  set.direct = false;
   return true;
 }
 
@@ -223,6 +224,16 @@ void drop_friction(PartSystem& s) {
   }
 }
 
+/// Nothing slides, until it is contradicted: another guess to start from.
+void stick_friction(PartSystem& s, CapstanScratch& capstan) {
+  for (Row& row : s.rows) {
+    if (is_friction(row)) row.slip = Slip::stick;
+  }
+  for (Run& run : capstan.runs) {
+    if (!run.frictionless) run.slip = Slip::stick;
+  }
+}
+
 /// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
 /// makes energy nor moves material; only the bound on its force is exceeded, for one step.
 void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
@@ -242,12 +253,19 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time.
-  constexpr int patience = 3, before_freezing = 40, before_dropping = 70, most_solves = 150;
-  std::size_t fewest = s.rows.size() + set.capstan.runs.size() + 1;
+  constexpr int patience = 3, before_sticking = 20, before_freezing = 50, before_dropping = 80,
+                most_solves = 150;
+  const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
+  std::size_t fewest = all;
   int left = patience;
   int growing = 0, reached = 0;  // solves in succession that ask for more force only, and before
   bool spread = false;
   for (int solves = 1; solves <= most_solves; ++solves) {
+    if (solves == before_sticking) {
+      stick_friction(s, set.capstan);
+      fewest = all;
+      left = patience;
+    }
     if (solves == before_freezing) {
       freeze_friction(s, set.capstan);
       set.froze = true;
@@ -278,12 +296,17 @@ bool settle(PartSystem& s, SolveScratch& set) {
   return false;
 }
 
-}  // namespace
-
-void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
+/// Impulses below zero are within round-off of it.
+void clear_negative(PartSystem& s) {
   for (Row& row : s.rows) {
     if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
   }
+}
+
+}  // namespace
+
+void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
+  clear_negative(s);
   for (Run& run : capstan.runs) run.speed = 0.0;
   apply_impulses(s);
   constexpr int sweeps = 200;
@@ -314,17 +337,32 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {
   set.solves = 0;
-  set.froze = false;
+  set.froze = set.direct = false;
   s.velocity = s.free_velocity;
   set.capstan.runs.clear();
   if (s.rows.empty()) return true;
   order_rows(s, set.ordering);
   find_runs(world, parts, part, s, set);
-  if (!settle(s, set)) sweep_rows(s, set.capstan);
-  for (Row& row : s.rows) {
-    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);  // within round-off of zero
+  if (!settle(s, set)) {
+    sweep_rows(s, set.capstan);
+    set.direct = false;
   }
+  clear_negative(s);
   return !set.froze;
+}
+
+bool solve_again(const World& world, const Parts& parts, const Part& part, PartSystem& s,
+                 SolveScratch& set) {
+  if (set.direct && !set.froze) {
+    correct_solution(s, set);
+    check(s, set);
+    if (set.flips.empty()) {
+      clear_negative(s);
+      return true;
+    }
+  }
+  forget_flips(s);
+  return solve_direct(world, parts, part, s, set);
 }
 
 }  // namespace pinchlab

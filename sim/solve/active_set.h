@@ -21,10 +21,16 @@ struct SolveScratch;
 /// flipped all at once while their number falls (block pivoting, Judice & Pires 1994), then one by
 /// one in a fixed, irregular order. Where a slack cable is pulled tight, segments near those that
 /// get taut are made taut ahead of their turn. What negative impulses round-off has made is no
-/// contradiction. If friction makes the states cycle, what has flipped sticks for the rest of the
-/// step; projected sweeps are the last resort.
+/// contradiction. If friction makes the states cycle, they are sought once more from where nothing
+/// slides, and if they cycle again what has flipped sticks for the rest of the step; projected
+/// sweeps are the last resort.
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                   SolveScratch& scratch);
+
+/// As solve_direct, where since the last solve of these rows nothing but their biases has changed.
+/// Where that contradicts no state, the last solution is corrected.
+bool solve_again(const World& world, const Parts& parts, const Part& part, PartSystem& system,
+                 SolveScratch& scratch);
 
 /// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
 /// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy

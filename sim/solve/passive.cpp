@@ -11,7 +11,22 @@
 
 namespace pinchlab {
 
+namespace {
+
+/// Whether that follows without a sum: with A = J M^-1 J^T, where each impulse is an unknown of its
+/// own, J v- = -bias - A p, and sum p (J v- + J v+) = -p A p - 2 p bias.
+bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
+  if (!set.direct) return false;
+  const double round_off = s.reach / set.step_length;  // m/s
+  return std::all_of(s.rows.begin(), s.rows.end(), [round_off](const Row& row) {
+    return !row.on || std::abs(row.bias) <= round_off;
+  });
+}
+
+}  // namespace
+
 bool makes_energy(const PartSystem& s, const SolveScratch& set) {
+  if (cannot_make_energy(s, set)) return false;
   double made = 0.0, impulse = 0.0, made_up = 0.0, fastest = 0.0;  // J, J s/m, J, m/s; twice
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];

@@ -41,11 +41,12 @@ struct OrderScratch {
 };
 
 struct SolveScratch {
-  int solves = 0;                          // of this part in this step so far
-  bool froze = false;                      // the states did not settle by themselves
-  double step_length = 0.0;                // s, by which round-off of positions becomes speed
-  double reach = infinity;                 // m, TimeSpan::reach
-  CapstanScratch capstan;                  // empty without finite friction on a cable
+  int solves = 0;            // of this part in this step so far
+  bool froze = false;        // the states did not settle by themselves
+  bool direct = false;       // the last solution is that of a regular symmetric system
+  double step_length = 0.0;  // s, by which round-off of positions becomes speed
+  double reach = infinity;   // m, TimeSpan::reach
+  CapstanScratch capstan;    // empty without finite friction on a cable
   std::vector<int> middle_row_of_contact;  // the first of its middle rows; -1: none
   std::vector<int> normal_row_of_contact;  // of the part's contacts; -1: none
   std::vector<int> unknown_of_row;         // of rows that have one of their own, or -1

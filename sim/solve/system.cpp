@@ -431,22 +431,20 @@ double find_missing(const PartSystem& s, SolveScratch& set) {
   return largest;
 }
 
-/// The solution of a regular symmetric system, refined as long as that helps: an error that has
-/// fallen by some factor will do so again, so that the last one need not be measured.
-void solve_symmetric(PartSystem& s, SolveScratch& set) {
+/// Makes up for what a solution of a regular symmetric system misses, as long as that helps: an
+/// error that has fallen by some factor will do so again, so that the last one need not be measured.
+void refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
   const std::size_t count = set.row_of_unknown.size();
-  set.solution.assign(count, 0.0);
-  set.residual.resize(count);
-  s.velocity = s.free_velocity;
   double missing = find_missing(s, set);
   const double first = missing;
   double rounding = 0.0;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < most_times; ++k) {
     s.ldl.solve(set.residual);
     for (std::size_t u = 0; u < count; ++u) {
       set.solution[u] -= set.residual[u];
       push(s, index(set.row_of_unknown[u]), -set.residual[u]);
     }
+    if (k + 1 == most_times) break;
     if (k == 0) rounding = 1e-13 * first + 4e-16 * fastest(s);
     if (k > 0 && missing * missing <= rounding * first) break;
     missing = find_missing(s, set);
@@ -462,7 +460,12 @@ void solve_symmetric(PartSystem& s, SolveScratch& set) {
 
 }  // namespace
 
+void correct_solution(PartSystem& s, SolveScratch& set) {
+  refine_symmetric(s, set, 1);
+}
+
 void solve_for_states(PartSystem& s, SolveScratch& set) {
+  set.direct = false;
   if (!set.capstan.runs.empty()) make_groups(s, set);
   number_unknowns(s, set);
   if (!set.symmetric) {
@@ -470,7 +473,14 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
     gather_body_terms(s, set);
   }
   const int repeated = factor(s, set, 0.0);
-  if (set.symmetric && repeated == 0) return solve_symmetric(s, set);
+  if (set.symmetric && repeated == 0) {
+    set.solution.assign(set.row_of_unknown.size(), 0.0);
+    set.residual.resize(set.row_of_unknown.size());
+    s.velocity = s.free_velocity;
+    refine_symmetric(s, set, 3);
+    set.direct = true;
+    return;
+  }
   const double before = start(s, set);
   double residual = refine(s, set);
   const double rounding = 1e-13 * before + 4e-16 * fastest(s);

@@ -18,6 +18,10 @@ struct SolveScratch;
 /// cables.
 void solve_for_states(PartSystem& system, SolveScratch& scratch);
 
+/// The same where only biases have changed since it found a solution that is SolveScratch::direct,
+/// but for round-off of that change.
+void correct_solution(PartSystem& system, SolveScratch& scratch);
+
 /// Velocities of the part's bodies = free velocities + what the rows' impulses do.
 void apply_impulses(PartSystem& system);
 

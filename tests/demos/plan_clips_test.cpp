@@ -66,7 +66,7 @@ TEST(PlanClips, OptionsThatCannotBe) {
   wide.side_by_side = true;
   EXPECT_EQ(error(wide), "frames of 10000 x 960 pixels cannot be drawn: each must be 16 to 8192");
   BatchOptions rate;
-  json scene = small_scene();
+  nlohmann::json scene = small_scene();
   scene["duration_s"] = 2.1;
   const SceneFile uneven = parse_scene(scene.dump(), "01-small.json");
   rate.timing.frames_per_second = 24;
