@@ -22,6 +22,19 @@ constexpr double least_surety = 2.0;
 /// Where refining stops.
 constexpr double enough_surety = 8.0;
 
+/// What the name of the configuration ends with that divides steps by their error.
+constexpr const char* by_error = ", steps by error";
+
+/// All configurations of the experiments, and ours with the error as what steps are divided by.
+std::vector<Contender> tried(const Question& question) {
+  std::vector<Contender> all = contenders();
+  Contender adaptive = all.front();
+  adaptive.name += by_error;
+  adaptive.configuration.error = question.error_m;
+  all.insert(all.begin() + 1, adaptive);
+  return all;
+}
+
 bool vouched_for(const Question& question, const Problem& problem) {
   return problem.doubt_m * least_surety <= question.error_m;
 }
@@ -51,13 +64,13 @@ std::vector<std::size_t> shown(const Question& question, const Advice& advice) {
 }
 
 std::string table(const Question& question, const Advice& advice) {
-  std::string text = fmt::format("   {:<27}{:>14}{:>12}{:>24}{:>8}\n", "configuration",
+  std::string text = fmt::format("   {:<31}{:>14}{:>12}{:>24}{:>8}\n", "configuration",
                                  "steps a frame", "error, m", "us a simulated second", "enough");
   for (const std::size_t i : shown(question, advice)) {
     const Rung& rung = advice.rungs[i];
     const Trial& t = rung.trial;
     text +=
-        fmt::format("{:<3}{:<27}{:>14}{:>12}{:>24}{:>8}\n",
+        fmt::format("{:<3}{:<31}{:>14}{:>12}{:>24}{:>8}\n",
                     static_cast<int>(i) == advice.best ? "->" : "", rung.setting,
                     rung.steps_per_frame, t.finite ? fmt::format("{:.1e}", t.error) : "not finite",
                     t.finite ? fmt::format("{:.0f}", 1e6 * t.cpu_s_per_s) : "-",
@@ -74,8 +87,10 @@ std::string cost(const Trial& trial) {
 std::string how_to_use(const Question& question, const Rung& rung) {
   const std::size_t solver = rung.setting.find(" direct");
   if (solver == std::string::npos && rung.setting != "thesis") return "";
-  return fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {} --out -\n",
-                     question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame);
+  const bool adapts = rung.setting.ends_with(by_error);
+  return fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {}{} --out -\n",
+                     question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame,
+                     adapts ? fmt::format(" --error {:g}", question.error_m) : "");
 }
 
 }  // namespace
@@ -96,7 +111,7 @@ Advice advise(const Question& question) {
   advice.problem.length_m = 1.0;
   advice.problem.length = "a metre";
   if (!vouched_for(question, advice.problem)) return advice;
-  const std::vector<Contender> all = contenders();
+  const std::vector<Contender> all = tried(question);
   Progress progress("advise", static_cast<double>(all.size()));
   for (const Contender& contender : all) {
     const auto run = [&](int steps) {
@@ -154,9 +169,10 @@ void add_advise_command(CLI::App& app) {
       ->check(number_in(0.05, 600.0));
   command->add_flag("--all", question->all, "Show all that was tried, not one row a configuration");
   command->footer(
-      "Tries every method with every solver, and the thesis' configuration, at 1 to 256 steps a "
-      "frame, against\nthe scene's own solution at many more, and names the cheapest that stays "
-      "within the error, at those steps\nand all finer ones. Exit code 1: there is none, or the "
+      "Tries every method with every solver, the thesis' configuration, and steps that are divided "
+      "by their error\n(simulate --error), at 1 to 256 steps a frame, against the scene's own "
+      "solution at many more, and names the\ncheapest that stays within the error, at those steps "
+      "and all finer ones. Exit code 1: there is none, or the "
       "solution is not sure enough to tell.\n\n"
       "Examples:\n"
       "  pinchlab advise demos/04-two-blocking.json --error 0.01\n"
