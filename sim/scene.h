@@ -37,9 +37,10 @@ struct BodyProperties {
   std::optional<double> inertia;                  ///< kg m^2, > 0; default: disc, m r^2 / 2
   Vec2 rail_axis = Vec2(0.0, 1.0);                ///< unit vector; rail bodies only
   std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
-  double torque = 0.0;                            ///< N m, constant
-  double linear_drag = 0.0;                       ///< 1/s: dv/dt = -drag v
-  double angular_drag = 0.0;                      ///< 1/s
+  double torque_limit = infinity;    ///< N m, > 0: the most that holds the driven velocity
+  double torque = 0.0;               ///< N m, constant
+  double linear_drag = 0.0;          ///< 1/s: dv/dt = -drag v
+  double angular_drag = 0.0;         ///< 1/s
   double cable_friction = infinity;  ///< capstan coefficient mu >= 0; infinity: no slip
   double contact_friction = 0.5;     ///< Coulomb coefficient >= 0 between bare surfaces
   double restitution = 0.0;          ///< 0..1, of bodies that hit each other or a wall
@@ -53,11 +54,12 @@ struct MotorPoint {
 
 /// A circular body and its state at time 0.
 struct Body : BodyProperties {
-  std::string name;               ///< unique in the scene
-  Vec2 position = Vec2::Zero();   ///< m
-  double angle = 0.0;             ///< rad, counter-clockwise
-  Vec2 velocity = Vec2::Zero();   ///< m/s
-  double angular_velocity = 0.0;  ///< rad/s; a driven body has its driven one instead
+  std::string name;              ///< unique in the scene
+  Vec2 position = Vec2::Zero();  ///< m
+  double angle = 0.0;            ///< rad, counter-clockwise
+  Vec2 velocity = Vec2::Zero();  ///< m/s
+  double angular_velocity =
+      0.0;  ///< rad/s; without a torque limit a driven body has its driven one
   /// What stands in place of `driven_angular_velocity`, where that is given, or of `torque`:
   /// straight lines between these points, of ascending times, and constant before the first and
   /// after the last.

@@ -13,6 +13,7 @@
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
 #include "sim/thesis/all_pairs.h"
@@ -62,12 +63,13 @@ bool solve_part(const Scene& scene, const World& world, Workspace& work, const P
   PartSystem& s = at(work.systems, part.system);
   const TimeSpan interval = whole_step(world);
   steady_light_bodies(world, work.parts, part, interval.kick, s);
-  make_rows(scene, world, work.parts, part, interval, s, work.solve, watch);
-  if (world.configuration.solver == Solver::direct) {
-    return solve_direct(world, work.parts, part, s, work.solve);
-  }
-  solve_iterative(world, work.parts, part, s, work.solve, work.sweeps);
-  return true;
+  return solve_with_motors(scene, world, work, part, interval, watch, [&] {
+    if (world.configuration.solver == Solver::direct) {
+      return solve_direct(world, work.parts, part, s, work.solve);
+    }
+    solve_iterative(world, work.parts, part, s, work.solve, work.sweeps);
+    return true;
+  });
 }
 
 void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {

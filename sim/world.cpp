@@ -281,6 +281,7 @@ void refuse_impossible_figures(const Scene& scene) {
     refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
     refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
            "position and velocity must be finite");
+    refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
     for (std::size_t i = 0; i < body.motor.size(); ++i) {
       const MotorPoint& point = body.motor[i];
       const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
@@ -338,7 +339,7 @@ World bodies_of_scene(const Scene& scene) {
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
     world.velocity.push_back(v);
     const double turning = body.kind == BodyKind::fixed ? 0.0 : body.angular_velocity;
-    const bool is_driven = body.driven_angular_velocity.has_value();
+    const bool is_driven = body.driven_angular_velocity && body.torque_limit == infinity;
     world.angular_velocity.push_back(!is_driven           ? turning
                                      : body.motor.empty() ? *body.driven_angular_velocity
                                                           : drive_at(body.motor, 0.0));

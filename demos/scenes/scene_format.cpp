@@ -38,6 +38,7 @@ const ObjectFormat body_format = {
      {"driven_angular_velocity_rad_s", number, optional, -1e5, 1e5},
      {"torque_n_m", number, optional, -1e12, 1e12},
      {"motor", list, optional, 1, 1'000, {}, &motor_point_format},
+     {"torque_limit_n_m", number, optional, 1e-12, 1e12},
      {"linear_drag_per_s", number, optional, 0, 1e4},
      {"angular_drag_per_s", number, optional, 0, 1e4},
      {"cable_friction", friction, optional, 0, 100},

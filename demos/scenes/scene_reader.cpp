@@ -116,8 +116,8 @@ void Reader::check_kind(const json& from, const std::string& place) {
   if (kind == "fixed") {
     refuse_keys(from, place,
                 {"mass_kg", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s",
-                 "driven_angular_velocity_rad_s", "torque_n_m", "motor", "linear_drag_per_s",
-                 "angular_drag_per_s"},
+                 "driven_angular_velocity_rad_s", "torque_n_m", "motor", "torque_limit_n_m",
+                 "linear_drag_per_s", "angular_drag_per_s"},
                 "a fixed body");
   } else if (!from.contains("mass_kg")) {
     problem(place, fmt::format("mass_kg is missing (a {} body needs one)", kind));
@@ -129,10 +129,8 @@ void Reader::check_kind(const json& from, const std::string& place) {
     refuse_keys(from, place, {"rail_axis"}, "a body that is not on a rail");
   }
   if (kind != "fixed" && from.contains("driven_angular_velocity_rad_s")) {
-    refuse_keys(
-        from, place,
-        {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "motor", "angular_drag_per_s"},
-        "a body whose angular velocity is driven");
+    refuse_keys(from, place, {"torque_n_m", "motor", "angular_drag_per_s"},
+                "a body whose angular velocity is driven");
   }
 }
 
@@ -176,8 +174,7 @@ void Reader::read_motor(const json& from, Body& body, const std::string& place) 
     }
   }
   if (is_speed) {
-    refuse_keys(from, place,
-                {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"},
+    refuse_keys(from, place, {"torque_n_m", "angular_drag_per_s"},
                 "a body whose angular velocity is driven");
     body.driven_angular_velocity = body.motor.front().value;
   } else {
@@ -205,6 +202,7 @@ Body Reader::read_body(const json& from, const std::string& place) {
   take(from, "velocity_m_s", body.velocity);
   take(from, "angular_velocity_rad_s", body.angular_velocity);
   take(from, "driven_angular_velocity_rad_s", body.driven_angular_velocity);
+  take(from, "torque_limit_n_m", body.torque_limit);
   take(from, "torque_n_m", body.torque);
   take(from, "linear_drag_per_s", body.linear_drag);
   take(from, "angular_drag_per_s", body.angular_drag);
@@ -219,6 +217,13 @@ Body Reader::read_body(const json& from, const std::string& place) {
   }
   if (from.contains("motor") && body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
     read_motor(from, body, place);
+  }
+  if (body.driven_angular_velocity && !from.contains("torque_limit_n_m")) {
+    refuse_keys(from, place, {"inertia_kg_m2", "angular_velocity_rad_s"},
+                "a motor without torque_limit_n_m");
+  } else if (!body.driven_angular_velocity && body.kind != BodyKind::fixed) {
+    refuse_keys(from, place, {"torque_limit_n_m"},
+                "a body without driven_angular_velocity_rad_s or a motor of angular velocities");
   }
   return body;
 }

@@ -14,6 +14,7 @@
 #include "sim/motion/repair.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/workspace.h"
@@ -35,8 +36,8 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
   t.held_only = t.clamps = true;
   steady_light_bodies(world, work.parts, part, t.kick, s);
   Stopwatch untimed(nullptr);
-  make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
-  solve_passively(world, work.parts, part, s, work.solve);
+  solve_with_motors(scene, world, work, part, t, untimed,
+                    [&] { return solve_passively(world, work.parts, part, s, work.solve); });
 }
 
 /// Brings the velocities to the positions' time.

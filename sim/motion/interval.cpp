@@ -11,6 +11,7 @@
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
@@ -116,13 +117,14 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   steady_light_bodies(world, work.parts, part, t.kick, s);
-  make_rows(scene, world, work.parts, part, t, s, set, watch);
+  bool settled = solve_with_motors(scene, world, work, part, t, watch, [&] {
+    return solve_passively(world, work.parts, part, s, set);
+  });
   double last = infinity, before_last = infinity, fastest = 0.0;
   const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;
   for (int round = 0;; ++round) {
-    const bool settled = round == 0 ? solve_passively(world, work.parts, part, s, set)
-                                    : solve_again(world, work.parts, part, s, set);
+    if (round > 0) settled = solve_again(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
     if (round == 0) {
       fastest = greatest_speed(world, bodies, s.velocity, nullptr);

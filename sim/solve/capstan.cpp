@@ -212,8 +212,10 @@ void make_groups(const PartSystem& system, SolveScratch& scratch) {
       const bool sticks = k == 0 || s.runs[index(run)].slip == Slip::stick;
       // A second slack segment ends the group: what lies between two slack ones bears no tension.
       if (sticks || (slack && s.groups.back().slack >= 0)) {
+        if (k > 0) s.groups.back().run_after = run;
         s.groups.push_back({});
         s.groups.back().begin = static_cast<int>(s.members.size());
+        s.groups.back().run_before = run;
       }
       Group& group = s.groups.back();
       const int member = static_cast<int>(s.members.size());
@@ -298,6 +300,24 @@ void add_group_equations(PartSystem& system, SolveScratch& set) {
   }
 }
 
+Shortage shortage_of(const Group& group, const PartSystem& system, const CapstanScratch& s) {
+  Shortage shortage;
+  const auto add = [&](int number, double coefficient) {
+    const Row& row = at(system.rows, number);
+    shortage.speed -= coefficient * row.speed;
+    shortage.clearance += coefficient * row.clearance;
+    shortage.gives = shortage.gives || row.diagonal > 0.0;
+  };
+  if (group.slack >= 0) {
+    for (int k = group.slack_begin; k < group.slack_end; ++k) {
+      add(at(s.slack_terms, k).index, at(s.slack_terms, k).coefficient);
+    }
+  } else {
+    for (int m = group.begin; m < group.end; ++m) add(at(s.members, m), 1.0);
+  }
+  return shortage;
+}
+
 void slip_speeds(const PartSystem& system, CapstanScratch& s) {
   const std::vector<Row>& rows = system.rows;
   for (Run& run : s.runs) run.speed = 0.0;
@@ -329,6 +349,21 @@ void slip_speeds(const PartSystem& system, CapstanScratch& s) {
   }
 }
 
+/// Where no body of a group can give, its neighbours on the cable may: runs at its ends begin to
+/// slide, if they can, so that material comes to it. Returns whether any of them can.
+bool slides_to(const Group& group, SolveScratch& set) {
+  bool any = false;
+  for (const auto& [number, slip] :
+       {std::pair(group.run_before, Slip::forward), std::pair(group.run_after, Slip::backward)}) {
+    if (number < 0) continue;
+    const Run& run = at(set.capstan.runs, number);
+    if (run.frozen || run.passages_begin == run.passages_end) continue;
+    if (run.slip == Slip::stick) set.flips.push_back({number, true, true, slip});
+    any = true;
+  }
+  return any;
+}
+
 void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolerance,
                 double impulse_tolerance) {
   const std::vector<Row>& rows = system.rows;
@@ -338,16 +373,10 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     if (group.slack >= 0) {
       // A member between bodies that cannot move gets taut like any other: the rest of the group
       // gives way.
-      double w = 0.0, clearance = 0.0;
-      bool gives = false;
-      for (int k = group.slack_begin; k < group.slack_end; ++k) {
-        const Row& term = rows[index(s.slack_terms[index(k)].index)];
-        w += s.slack_terms[index(k)].coefficient * term.speed;
-        clearance += s.slack_terms[index(k)].coefficient * term.clearance;
-        gives = gives || term.diagonal > 0.0;
-      }
+      const Shortage shortage = shortage_of(group, system, s);
       const int row = s.members[index(group.slack)];
-      if (w < -speed_tolerance && gives && clearance <= set.reach) {
+      if (shortage.speed > speed_tolerance && shortage.clearance <= set.reach &&
+          (shortage.gives || slides_to(group, set))) {
         set.flips.push_back({row, false, true, Slip::stick});
       }
     }

@@ -33,9 +33,17 @@ struct Run {
 
 /// Segments joined by sliding runs, in the cable's order: their tensions depend on one unknown.
 struct Group {
-  int begin = 0, end = 0;              // of members
-  int slack = -1;                      // the slack member, or -1
-  int slack_begin = 0, slack_end = 0;  // of slack_terms: what of the group must not be taut
+  int begin = 0, end = 0;               // of members
+  int slack = -1;                       // the slack member, or -1
+  int slack_begin = 0, slack_end = 0;   // of slack_terms: what of the group must not be taut
+  int run_before = -1, run_after = -1;  // that end it on the cable, or -1: nothing slides there
+};
+
+/// What a group, or the slack rest of one, has to spare.
+struct Shortage {
+  double speed = 0.0;      // m/s, at which it gets less
+  double clearance = 0.0;  // m
+  bool gives = false;      // impulses on it move something
 };
 
 struct CapstanScratch {
@@ -77,6 +85,9 @@ void express_impulses(SolveScratch& scratch);
 /// Equations of the groups' unknowns, and of middle bodies that stick on their way: sums of rows in
 /// which the sliding speeds cancel.
 void add_group_equations(PartSystem& system, SolveScratch& scratch);
+
+/// After add_group_equations.
+Shortage shortage_of(const Group& group, const PartSystem& system, const CapstanScratch& capstan);
 
 /// Sliding speeds of all runs for the rows' present speeds.
 void slip_speeds(const PartSystem& system, CapstanScratch& capstan);

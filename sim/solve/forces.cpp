@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/at.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/workspace.h"
 
@@ -72,6 +73,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
     s.mobility_changed = false;
     if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
     s.extent = 0.0;
+    s.motors.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto b = index(bodies[i]);
       const Body& given = scene.bodies[b];
@@ -82,7 +84,11 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
               ? free_velocity(scene, world.bodies[b], v, omega, k)
               : free_velocity(scene, driven_now(given, t, world.bodies[b]), v, omega, k);
       s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
+      if (world.bodies[b].driven_angular_velocity) {
+        add_motor(world.bodies[b], static_cast<int>(i), s.free_velocity[i].z(), omega, k, s);
+      }
     }
+    drive(s);
     for (const int c : cables_of(work.parts, part)) {
       const CableState& cable = at(world.cables, c);
       const auto segments = static_cast<double>(cable.segments.size());

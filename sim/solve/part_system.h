@@ -102,6 +102,25 @@ struct SpanMass {
   bool steadied = false;                           // the body's mobility is not its own
 };
 
+enum class MotorState : std::int8_t {
+  holds,     // its angular velocity, by whatever torque within its limit
+  forward,   // turns that way with all its torque
+  backward,  // likewise
+  stalls,    // turns its body only as far as cables let it
+  insists,   // holds for all that: its stalling has not helped
+};
+
+/// What turns a driven body: motors.h.
+struct Motor {
+  int place = 0;         // of the body in the part
+  double speed = 0.0;    // rad/s, that it is to turn at
+  double before = 0.0;   // rad/s, before the kick
+  double inertia = 0.0;  // kg m^2
+  double most = 0.0;     // N m s: its limit over the kick, or infinity
+  bool moves = false;    // the body can do more than turn
+  MotorState state = MotorState::holds;
+};
+
 /// What rows were made for: while it is the same, so are their bodies.
 struct RowsMade {
   int changes = -1;   // of the part's cables
@@ -115,11 +134,13 @@ constexpr double within_reach = 1e-11;
 
 struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).
-  std::vector<Mobility> mobility;              // changed by steady_light_bodies
+  std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
   std::vector<char> mobile;                    // impulses can move or turn it
   std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
   std::vector<SpanMass> span_masses;           // empty until one body is too light
+  std::vector<Motor> motors;                   // of its driven bodies
+  std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
   double extent = 0.0;                         // m, coordinates and cable lengths at most

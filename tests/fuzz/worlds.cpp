@@ -68,6 +68,7 @@ json body(Choices& choices, unsigned index) {
   b["mass_kg"] = choices.one_in(4) ? choices.magnitude(-9.0, 12.0) : choices.magnitude(-1.0, 1.0);
   if (choices.one_in(6)) {
     b["driven_angular_velocity_rad_s"] = choices.between(-20.0, 20.0);
+    if (choices.one_in(2)) b["torque_limit_n_m"] = choices.magnitude(-6.0, 6.0);
   } else {
     if (choices.one_in(6)) b["torque_n_m"] = choices.between(-100.0, 100.0);
     if (choices.one_in(6)) b["angular_velocity_rad_s"] = choices.between(-50.0, 50.0);

@@ -44,8 +44,8 @@ const BadScene bad_scenes[] = {
      "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, mass_kg, "
      "inertia_kg_m2, "
      "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, "
-     "driven_angular_velocity_rad_s, torque_n_m, motor, linear_drag_per_s, angular_drag_per_s, "
-     "cable_friction, "
+     "driven_angular_velocity_rad_s, torque_n_m, motor, torque_limit_n_m, linear_drag_per_s, "
+     "angular_drag_per_s, cable_friction, "
      "contact_friction, restitution, look)"},
     {"/cables/0/wraps/0/orientation", "1",
      "s.json: /cables/0/wraps/0/orientation: unknown key (known here: body, turn, extra_turns)"},
@@ -306,17 +306,24 @@ TEST(SceneErrors, KeysWithoutEffectAreRefused) {
   const auto message = [](const char* key, const char* why) {
     return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, why);
   };
-  for (const char* key :
-       {"mass_kg", "inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m",
-        "driven_angular_velocity_rad_s", "linear_drag_per_s", "angular_drag_per_s"}) {
+  for (const char* key : {"mass_kg", "inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m",
+                          "driven_angular_velocity_rad_s", "torque_limit_n_m", "linear_drag_per_s",
+                          "angular_drag_per_s"}) {
     EXPECT_EQ(refused("fixed", key, "1", false), message(key, "a fixed body"));
   }
   EXPECT_EQ(refused("fixed", "velocity_m_s", "[0, 0]", false),
             message("velocity_m_s", "a fixed body"));
   EXPECT_EQ(refused("fixed_axle", "linear_drag_per_s", "1", false),
             message("linear_drag_per_s", "a fixed_axle body"));
-  for (const char* key :
-       {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"}) {
+  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
+    EXPECT_EQ(refused("fixed_axle", key, "1", true),
+              message(key, "a motor without torque_limit_n_m"));
+  }
+  EXPECT_EQ(
+      refused("fixed_axle", "torque_limit_n_m", "1", false),
+      message("torque_limit_n_m",
+              "a body without driven_angular_velocity_rad_s or a motor of angular velocities"));
+  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
     EXPECT_EQ(refused("fixed_axle", key, "1", true),
               message(key, "a body whose angular velocity is driven"));
   }
@@ -345,13 +352,18 @@ TEST(SceneErrors, MotorsAreTablesOfOneThingInOrder) {
             "points a little apart");
   EXPECT_EQ(error("motor", R"([{"time_s": -1, "torque_n_m": 1}])"),
             "s.json: /bodies/0/motor/0/time_s: must be 0 to 3600, not -1");
-  for (const char* key :
-       {"inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m", "angular_drag_per_s"}) {
-    EXPECT_EQ(error(key, "1"),
-              fmt::format("s.json: /bodies/0/{}: has no effect on a body whose angular velocity is "
-                          "driven; leave it out",
-                          key));
+  const auto no_effect = [](const char* key, const char* on) {
+    return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, on);
+  };
+  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
+    EXPECT_EQ(error(key, "1"), no_effect(key, "a body whose angular velocity is driven"));
   }
+  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
+    EXPECT_EQ(error(key, "1"), no_effect(key, "a motor without torque_limit_n_m"));
+  }
+  EXPECT_EQ(error("torque_limit_n_m", "1"), "no error");
+  EXPECT_EQ(error("torque_limit_n_m", "0"),
+            "s.json: /bodies/0/torque_limit_n_m: must be 1e-12 to 1e+12, not 0");
   EXPECT_EQ(error("driven_angular_velocity_rad_s", "1"),
             "s.json: /bodies/0/motor: has no effect on a body whose angular velocity is driven; "
             "leave it out");

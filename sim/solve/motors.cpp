@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/solve/motors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double rounding = 1e-9;       // of a torque, or an angular velocity
+constexpr double contradicting = 1e-6;  // of a rim's speed
+constexpr double thrown = 10.0;         // times that
+
+/// Angular impulse of the rows on a body (N m s).
+double impulse_of_rows(const PartSystem& s, int place) {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const RowBodies& bodies = s.bodies[r];
+    if (bodies.a == place) sum += s.rows[r].impulse * bodies.ja.z();
+    if (bodies.b == place) sum += s.rows[r].impulse * bodies.jb.z();
+  }
+  return sum;
+}
+
+/// How fast inextensible cables of the part are being stretched at most (m/s).
+double stretching(const PartSystem& s, const SolveScratch& set) {
+  const CapstanScratch& capstan = set.capstan;
+  double most = 0.0;
+  for (int r = 0; r < s.first_contact_row; ++r) {
+    const Row& row = at(s.rows, r);
+    if (row.kind != RowKind::segment || row.idle || row.compliance > 0.0) continue;
+    const bool grouped = !capstan.runs.empty() && capstan.group_of_row[index(r)] >= 0;
+    if (!grouped) most = std::max(most, -row.speed);
+  }
+  if (capstan.runs.empty()) return most;
+  for (const Group& group : capstan.groups) {
+    const Shortage shortage = shortage_of(group, s, capstan);
+    if (shortage.clearance <= set.reach) most = std::max(most, shortage.speed);
+  }
+  return most;
+}
+
+/// The most that rows have changed a body's velocity by (m/s).
+double greatest_change(const PartSystem& s) {
+  double most = 0.0;
+  for (std::size_t b = 0; b < s.velocity.size(); ++b) {
+    const Eigen::Vector3d change = s.velocity[b] - s.unconstrained[b];
+    most = std::max({most, std::abs(change.x()), std::abs(change.y())});
+  }
+  return most;
+}
+
+/// Lets motors without a limit stall where all else that could give is a cable's stretch, or a body
+/// that it would throw; whether any has changed.
+bool stall(const World& world, const Parts& parts, const Part& part, PartSystem& s,
+           const SolveScratch& set) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  bool changed = false;
+  for (Motor& motor : s.motors) {
+    const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
+    if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
+    const bool yields =
+        stretching(s, set) > contradicting * rim || greatest_change(s) > thrown * rim;
+    if (!yields) continue;
+    motor.state = motor.state == MotorState::stalls ? MotorState::insists : MotorState::stalls;
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
+               PartSystem& s) {
+  Motor& motor = s.motors.emplace_back();
+  motor.place = place;
+  motor.speed = kick > 0.0 || body.torque_limit < infinity ? speed : before;
+  motor.before = before;
+  motor.inertia = disc_inertia(body);
+  motor.moves = can_move(body);
+  motor.most = body.torque_limit < infinity ? kick * body.torque_limit : infinity;
+  const double needed = motor.inertia * (speed - before);
+  if (std::abs(needed) > motor.most || motor.most == 0.0) {
+    motor.state = needed > 0.0 ? MotorState::forward : MotorState::backward;
+  }
+}
+
+void drive(PartSystem& s) {
+  for (const Motor& motor : s.motors) {
+    const bool holds = motor.state == MotorState::holds || motor.state == MotorState::insists;
+    double& mobility = at(s.mobility, motor.place).angular;
+    double& free = at(s.free_velocity, motor.place).z();
+    const double before = mobility;
+    mobility = holds ? 0.0 : 1.0 / motor.inertia;
+    at(s.mobile, motor.place) = motor.moves || !holds;
+    s.mobility_changed = s.mobility_changed || mobility != before;
+    free = motor.speed;
+    if (motor.state == MotorState::forward) free = motor.before + motor.most / motor.inertia;
+    if (motor.state == MotorState::backward) free = motor.before - motor.most / motor.inertia;
+  }
+}
+
+bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& s,
+                   const SolveScratch& set) {
+  bool changed = false;
+  for (Motor& motor : s.motors) {
+    if (motor.most == 0.0 || motor.most == infinity) continue;
+    const double turning = at(s.velocity, motor.place).z();
+    const double least = rounding * std::max(std::abs(motor.speed), std::abs(motor.before));
+    MotorState next = motor.state;
+    if (motor.state != MotorState::holds) {
+      const double faster =
+          motor.state == MotorState::forward ? turning - motor.speed : motor.speed - turning;
+      if (faster > least) next = MotorState::holds;
+    } else if (motor.most < infinity) {
+      const double given =
+          motor.inertia * (motor.speed - motor.before) - impulse_of_rows(s, motor.place);
+      if (std::abs(given) > motor.most * (1.0 + rounding)) {
+        next = given > 0.0 ? MotorState::forward : MotorState::backward;
+      }
+    }
+    changed = changed || next != motor.state;
+    motor.state = next;
+  }
+  return stall(world, parts, part, s, set) || changed;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Motors that hold an angular velocity, as far as they can.
+
+#include "base/at.h"
+#include "sim/solve/part_system.h"
+#include "sim/solve/rows.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+/// Adds the motor of a driven body at its place in the part. It holds `speed` (rad/s) if the torque
+/// for that is within its limit over the kick, and gives otherwise; `before` is the body's angular
+/// velocity before the kick (rad/s). In an instant a limited torque is as good as none,
+/// and a motor without a limit holds what there is.
+void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
+               PartSystem& system);
+
+/// What the motors do to the free velocities and mobilities of the part's bodies.
+void drive(PartSystem& system);
+
+/// Whether motors have to do something else than what was just solved for. What a motor gives is
+/// what its body's angular momentum has changed by otherwise than by rows,
+/// M = I (omega+ - omega-) - sum p j. One that holds its speed gives where M is beyond its limit,
+/// one that gives all it can holds its speed where it would turn faster. Where cables of the part
+/// that cannot give contradict a motor without a limit, or could only give by throwing a body at
+/// ten times its rim's speed, it stalls: it leaves its body to the cables for this kick, unless
+/// that does not help.
+bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
+                   const SolveScratch& scratch);
+
+/// Makes the rows of a part and solves them by `solve`, again where its motors change what they do;
+/// returns what the last solve did.
+template <typename Solve>
+bool solve_with_motors(const Scene& scene, const World& world, Workspace& work, const Part& part,
+                       const TimeSpan& interval, Stopwatch& watch, Solve solve) {
+  constexpr int most_changes = 8;
+  PartSystem& s = at(work.systems, part.system);
+  if (!s.motors.empty()) s.unconstrained = s.free_velocity;
+  for (int changes = 0;; ++changes) {
+    make_rows(scene, world, work.parts, part, interval, s, work.solve, watch);
+    const bool settled = solve();
+    if (s.motors.empty() || changes == most_changes) return settled;
+    if (!change_motors(world, work.parts, part, s, work.solve)) return settled;
+    s.free_velocity = s.unconstrained;  // which rows of elastic segments may have changed
+    drive(s);
+  }
+}
+
+}  // namespace pinchlab

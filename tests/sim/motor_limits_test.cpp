@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Motors against what a drum of known inertia must do, and against cables that cannot give.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/scene_error.h"
+#include "sim/step.h"
+#include "sim/workspace.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+constexpr double g = 9.81, radius = 0.3, half_width = 0.02, arm = radius + half_width;
+constexpr double drum_mass = 4.0, inertia = 0.5 * drum_mass * radius * radius;
+
+/// A drum whose rope hangs down on its right with a weight on it; positive turning hauls it up.
+Scene winch(double weight, double speed, double limit) {
+  Scene scene;
+  Body drum;
+  drum.name = "drum";
+  drum.kind = BodyKind::fixed_axle;
+  drum.radius = radius;
+  drum.mass = drum_mass;
+  drum.driven_angular_velocity = speed;
+  drum.torque_limit = limit;
+  Body load;
+  load.name = "load";
+  load.radius = 0.1;
+  load.mass = weight;
+  load.position = Vec2(arm, -5.0);
+  scene.bodies = {drum, load};
+  Cable rope;
+  rope.name = "rope";
+  rope.half_width = half_width;
+  rope.start = {1, Vec2::Zero()};
+  rope.wraps = {{0, 1, 3}};
+  rope.end = {0, Vec2(-arm, 0.0)};
+  scene.cables = {rope};
+  return scene;
+}
+
+World run_for(const Scene& scene, double seconds, int steps_per_frame) {
+  Scene divided = scene;
+  divided.steps_per_frame = steps_per_frame;
+  World world = make_world(divided, Method::pinch);
+  Workspace work;
+  const int steps = static_cast<int>(std::lround(seconds / world.step_length));
+  for (int i = 0; i < steps; ++i) {
+    if (step(divided, world, work) != StepStatus::ok) ADD_FAILURE() << world.failure;
+  }
+  return world;
+}
+
+double most_stretched(const World& world) {
+  double most = 0.0;
+  for (const CableState& cable : world.cables) {
+    for (const Segment& s : cable.segments) most = std::max(most, s.length - s.rest_length);
+  }
+  return most;
+}
+
+/// Angular acceleration with all of a torque, and the weight on the drum.
+double acceleration(double weight, double torque) {
+  return (torque - weight * g * arm) / (inertia + weight * arm * arm);
+}
+
+// What a torque limit is for: the drum and its load get to speed as its inertia says.
+TEST(MotorLimits, GetToSpeedByTheirTorque) {
+  const double weight = 2.0, speed = 3.0, limit = 7.2;
+  const double alpha = acceleration(weight, limit), until = speed / alpha;
+  ASSERT_GT(alpha, 0.0);
+  double before = 0.0;
+  for (const int steps : {1, 4, 16}) {
+    const World early = run_for(winch(weight, speed, limit), 0.5, steps);
+    ASSERT_GT(until, 0.5);
+    EXPECT_NEAR(early.angle[0], 0.5 * alpha * 0.25, 1e-9) << steps;
+    const World late = run_for(winch(weight, speed, limit), 2.0, steps);
+    const double angle = speed * (2.0 - 0.5 * until);
+    EXPECT_NEAR(late.position[1].y(), -5.0 + arm * late.angle[0], 1e-9) << steps;
+    const double error = std::abs(late.angle[0] - angle);
+    EXPECT_LT(error, speed / (60.0 * steps) / (60.0 * steps)) << steps;
+    EXPECT_NEAR(late.angular_velocity[0], speed, 1e-12) << steps;
+    before = error;
+  }
+  EXPECT_LT(before, 1e-5);
+}
+
+TEST(MotorLimits, AreTurnedBackByWhatIsTooHeavy) {
+  const double weight = 5.0, limit = 10.0;
+  const double alpha = acceleration(weight, limit);
+  ASSERT_LT(alpha, 0.0);
+  // The motor is asked for 3 rad/s, and the load pulls it the other way.
+  for (const int steps : {1, 8}) {
+    const World world = run_for(winch(weight, 3.0, limit), 1.0, steps);
+    EXPECT_NEAR(world.angle[0], 0.5 * alpha, 1e-9) << steps;
+    EXPECT_LT(most_stretched(world), 1e-12) << steps;
+  }
+}
+
+// A brake is a motor that is to stand still: it does, as long as it can.
+TEST(MotorLimits, HoldWhatTheyCan) {
+  const World held = run_for(winch(3.0, 0.0, 3.0 * g * arm * 1.001), 1.0, 2);
+  EXPECT_NEAR(held.angle[0], 0.0, 1e-12);
+  EXPECT_NEAR(held.position[1].y(), -5.0, 1e-12);
+  const World slips = run_for(winch(3.0, 0.0, 3.0 * g * arm * 0.999), 1.0, 2);
+  EXPECT_NEAR(slips.angle[0], 0.5 * acceleration(3.0, 3.0 * g * arm * 0.999), 1e-9);
+}
+
+// No torque that is limited changes anything in the instant of a catch: the drum is jerked round.
+TEST(MotorLimits, AreJerkedByACatch) {
+  const double weight = 2.0, slack = 0.8, limit = 20.0;
+  Scene scene = winch(weight, 0.0, limit);
+  scene.cables[0].slack = slack;
+  const double falls = std::sqrt(2.0 * slack / g), speed = g * falls;
+  const double jerked = -weight * speed * arm / (inertia + weight * arm * arm);  // rad/s
+  const double alpha = acceleration(weight, limit);
+  ASSERT_GT(alpha, 0.0);
+  const double seconds = falls - 0.5 * jerked / alpha;  // half of the way to standing still
+  const double angle = 0.75 * 0.5 * jerked * (-jerked / alpha);
+  for (const int steps : {1, 4}) {
+    Scene divided = scene;
+    divided.steps_per_frame = steps;
+    const double whole = std::round(seconds * 60.0) / 60.0;
+    const World world = run_for(divided, whole, steps);
+    const double t = whole - falls;
+    EXPECT_NEAR(world.angle[0], jerked * t + 0.5 * alpha * t * t, 1e-9) << steps;
+    EXPECT_NEAR(angle, jerked * (seconds - falls) + 0.5 * alpha * std::pow(seconds - falls, 2),
+                1e-12);
+  }
+}
+
+// A rope that cannot give stops a motor that knows no limit; nothing gets longer than it is, and
+// when the motor is reversed the rope comes off as if nothing had been.
+TEST(MotorLimits, StallWhereTheCableCannotGive) {
+  for (const double limit : {infinity, 30.0}) {
+    for (const int steps : {1, 4, 16}) {
+      Scene scene = winch(1.0, 4.0, limit);
+      scene.bodies.pop_back();
+      scene.cables[0].start = {-1, Vec2(arm, -5.0)};
+      scene.cables[0].slack = 0.5;
+      scene.bodies[0].motor = {{0.0, 4.0}, {1.0, 4.0}, {1.1, -4.0}};
+      const double turned = 0.5 / arm;
+      const World jammed = run_for(scene, 0.9, steps);
+      EXPECT_NEAR(jammed.angle[0], turned, 1e-9) << limit << ' ' << steps;
+      EXPECT_NEAR(jammed.angular_velocity[0], 0.0, 1e-12) << limit << ' ' << steps;
+      EXPECT_LT(most_stretched(jammed), 1e-12) << limit << ' ' << steps;
+      const World reversed = run_for(scene, 1.5, steps);
+      EXPECT_LT(most_stretched(reversed), 1e-12) << limit << ' ' << steps;
+      if (limit == infinity) {
+        EXPECT_NEAR(reversed.angle[0], turned - 4.0 * (0.4 + 0.025), 1e-9) << steps;
+      } else {
+        EXPECT_LT(reversed.angle[0], turned - 1.0) << steps;
+      }
+    }
+  }
+}
+
+// The same over a pulley that turns, through a cable that slides, and by the other methods.
+TEST(MotorLimits, StallOverAPulley) {
+  for (const Method method : {Method::pinch, Method::cable}) {
+    for (const double friction : {infinity, 0.2, 0.0}) {
+      Scene scene = winch(1.0, 4.0, infinity);
+      Body pulley = scene.bodies[0];
+      pulley.name = "pulley";
+      pulley.driven_angular_velocity.reset();
+      pulley.position = Vec2(2.0 * arm, -3.0);
+      pulley.cable_friction = friction;
+      scene.bodies[1] = pulley;
+      scene.cables[0].start = {-1, Vec2(3.0 * arm, 0.0)};
+      scene.cables[0].wraps = {{1, 1, 0}, {0, 1, 3}};
+      World world = make_world(scene, method);
+      Workspace work;
+      for (int i = 0; i < 240; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+      EXPECT_NEAR(world.angle[0], 0.0, 1e-3) << friction;
+      EXPECT_LT(most_stretched(world), 1e-6) << friction;
+    }
+  }
+}
+
+TEST(MotorLimits, MustBePositive) {
+  for (const double limit : {0.0, -1.0, std::nan("")}) {
+    EXPECT_THROW(make_world(winch(1.0, 1.0, limit), Method::pinch), SceneError) << limit;
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
