@@ -88,9 +88,9 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 
 const Golden goldens[] = {
     {"01-roll-over", 0xa235b5117e94accd, 0x32dce44412dcfb35},
-    {"02-stack", 0x037969bb46fe69ac, 0x33f6b8d7c83a19e3},
+    {"02-stack", 0xf8feeadc69e97f5b, 0x99bc292537cdf6b7},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
-    {"04-two-blocking", 0xe0dd367497362411, 0x2e67c128eb48bad7},
+    {"04-two-blocking", 0xf768d3970f7f99d9, 0x1bbf2106bc0d404f},
     {"05-notch", 0x21e1bdd1f284f664, 0xcb73a0473485c56a},
     {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
