@@ -72,6 +72,12 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     row.bias = e * row_speed(s, index(struck));
     forget_flips(s);
     solve_passively(world, work.parts, part, s, set);
+    // Where others must not come nearer, a rebound may cost more than there is.
+    if (makes_energy(s, set)) {
+      row.bias = 0.0;
+      forget_flips(s);
+      solve_passively(world, work.parts, part, s, set);
+    }
     at(s.rows, struck).bias = 0.0;
     s.free_velocity = s.velocity;
     at(world.contacts, at(s.rows, struck).index).rebounds = rebounded = true;

@@ -94,10 +94,10 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     before = violation(scene, world, s);
     if (before <= s.reach) break;
     any = true;
-    for (Friction& friction : s.frictions) {
-      if (at(s.rows, friction.row).kind == RowKind::tangent) friction.dropped = true;
-    }
+    for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
+    work.solve.smooth = true;
     solve_direct(world, work.parts, part, s, work.solve);
+    work.solve.smooth = false;
     share = 1.0;
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -89,6 +89,19 @@ Run make_run(const World& world, int cable, int first, int last) {
   return run;
 }
 
+/// Takes friction off all runs that may slide.
+void smooth(CapstanScratch& s) {
+  for (Passage& passage : s.passages) {
+    passage.factor = 1.0;
+    passage.friction = 0.0;
+  }
+  for (Run& run : s.runs) {
+    if (run.passages_begin == run.passages_end) continue;
+    run.frictionless = true;
+    run.slip = Slip::forward;
+  }
+}
+
 }  // namespace
 
 bool slides_somewhere(const World& world, const CableState& cable) {
@@ -154,6 +167,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
     if (cable.closed) s.run_before[first_of_cable] = run_before;
     s.cable_begin.push_back(static_cast<int>(s.segments.size()));
   }
+  if (scratch.smooth) smooth(s);
 }
 
 namespace {

@@ -29,16 +29,22 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, in
   if (masses.empty()) masses.resize(system.mobility.size());
   SpanMass& span = at(masses, at(parts.local, body));
   const Vec2 n = left(segment.direction);
-  span.mass += mass * n * n.transpose();
-  if (other >= 0) span.momentum += mass * n * n.dot(at(world.velocity, other));
+  const Eigen::Matrix2d across = mass * n * n.transpose();
+  span.mass += across;
+  if (other < 0) return true;
+  span.momentum_x += at(world.velocity, other).x() * across;
+  span.momentum_y += at(world.velocity, other).y() * across;
   return true;
 }
 
 /// Along unit vector v: the share of the body's mass in max(m, h^2 k), and with it the free speed.
+/// The line's speed is the mean of its other ends' along v, each weighted by what its span does there:
+/// nearly parallel spans would else ask for any speed across v that fits their small angle.
 double steady(const BodyProperties& body, const SpanMass& span, const Vec2& v, Vec2& velocity) {
   const double mass = v.dot(span.mass * v);
   if (mass <= body.mass) return 1.0;
-  const double share = body.mass / mass, line = v.dot(span.momentum) / mass;
+  const double x = v.dot(span.momentum_x * v), y = v.dot(span.momentum_y * v);
+  const double share = body.mass / mass, line = (x * v.x() + y * v.y()) / mass;
   velocity += (1.0 - share) * (line - v.dot(velocity)) * v;
   return share;
 }

@@ -94,12 +94,12 @@ struct Friction {
   Slip slid = Slip::stick;         // the way it last slid in this step
 };
 
-/// What taut spans do to a body across themselves: h^2 times their stiffness, and that times their
-/// other ends' velocities. By steady_light_bodies.
+/// What taut spans do to a body across themselves: h^2 times their stiffness, and that times either
+/// component of their other ends' velocities. By steady_light_bodies.
 struct SpanMass {
-  Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();  // kg
-  Vec2 momentum = Vec2::Zero();                    // kg m/s
-  bool steadied = false;                           // the body's mobility is not its own
+  Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();                                 // kg
+  Eigen::Matrix2d momentum_x = Eigen::Matrix2d::Zero(), momentum_y = momentum_x;  // kg m/s
+  bool steadied = false;  // the body's mobility is not its own
 };
 
 enum class MotorState : std::int8_t {

@@ -169,8 +169,8 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
     row.idle = true;
     row.on = false;
   }
-  if (interval.reach < infinity || interval.length == 0.0)
-    return;  // rebounds are impacts: impact.h
+  // Rebounds are impacts (impact.h), and positions that are repaired do not rebound.
+  if (locates_events(world.configuration) || interval.length == 0.0) return;
   const double restitution = restitution_of(scene, world, contact);
   if (restitution == 0.0) return;
   Vec2 v = -at(world.velocity, contact.a);

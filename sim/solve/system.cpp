@@ -433,7 +433,9 @@ double find_missing(const PartSystem& s, SolveScratch& set) {
 
 /// Makes up for what a solution of a regular symmetric system misses, as long as that helps: an
 /// error that has fallen by some factor will do so again, so that the last one need not be measured.
-void refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
+/// Returns whether it has come down to round-off: next to singular matrices keep some.
+bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
+  constexpr double little = 1e-10;
   const std::size_t count = set.row_of_unknown.size();
   double missing = find_missing(s, set);
   const double first = missing;
@@ -446,7 +448,10 @@ void refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     }
     if (k + 1 == most_times) break;
     if (k == 0) rounding = 1e-13 * first + 4e-16 * fastest(s);
-    if (k > 0 && missing * missing <= rounding * first) break;
+    if (k > 0 && missing * missing <= rounding * first) {
+      missing = rounding;
+      break;
+    }
     missing = find_missing(s, set);
     if (missing <= rounding) break;
   }
@@ -456,6 +461,7 @@ void refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     row.impulse = unknown >= 0 ? at(set.solution, unknown) : 0.0;
     row.speed = unknown >= 0 ? 0.0 : row_speed(s, r);
   }
+  return missing <= std::max(rounding, little * first);
 }
 
 }  // namespace
@@ -477,8 +483,7 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
     set.solution.assign(set.row_of_unknown.size(), 0.0);
     set.residual.resize(set.row_of_unknown.size());
     s.velocity = s.free_velocity;
-    refine_symmetric(s, set, 3);
-    set.direct = true;
+    set.direct = refine_symmetric(s, set, 3);
     return;
   }
   const double before = start(s, set);
