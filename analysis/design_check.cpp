@@ -112,9 +112,10 @@ void check_shown(const AnswerFile& file, const Design& design, Deviations& devia
   }
   for (const auto& [clip, hash] : file.clips_sha256) {
     const auto planned = design.clips_sha256.find(clip.first);
-    const bool is_known =
-        planned != design.clips_sha256.end() &&
-        std::ranges::any_of(planned->second, [&](const auto& one) { return one.second == hash; });
+    const bool is_known = planned != design.clips_sha256.end() &&
+                          std::ranges::any_of(planned->second, [&seen = hash](const auto& one) {
+                            return one.second == seen;
+                          });
     if (!is_known)
       deviations.add(fmt::format("another clip of `{}`", clip.first), file.participant);
   }
