@@ -97,25 +97,32 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
   }
 }
 
-// E = m v- . v+ / 2 + potential, at the step's start: v- and v+ are half a step before and after
-// it. A leapfrog keeps this exactly where forces are linear, and an impact can only lower it.
+// Energy at the step's start: velocities were `lag_` before it and are half an interval after it, and
+// between the two they change evenly. Where the step was divided that half is not known, and the
+// step after it tells.
 void Promises::note_energy(const Scene& scene, const World& world) {
+  const double after = lag_ / (lag_ + 0.5 * world.step_length);
   double kinetic = 0.0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
-    kinetic += 0.5 * disc_inertia(body) * angular_[b] * world.angular_velocity[b];
-    if (can_move(body)) kinetic += 0.5 * body.mass * velocity_[b].dot(world.velocity[b]);
+    const double omega = (1.0 - after) * angular_[b] + after * world.angular_velocity[b];
+    kinetic += 0.5 * disc_inertia(body) * omega * omega;
+    if (!can_move(body)) continue;
+    const Vec2 v = (1.0 - after) * velocity_[b] + after * world.velocity[b];
+    kinetic += 0.5 * body.mass * v.squaredNorm();
   }
   at_play_ = std::max(at_play_, kinetic);
-  const bool has_passed_start = world.step > 1;  // the first step has but half a kick before it
-  if (at_play_ > 0.0 && has_passed_start) {
+  const bool whole = world.diagnostics.intervals - intervals_ <= 1;
+  if (at_play_ > 0.0 && whole) {
     note_value(Promise::energy, (kinetic + potential_ - start_energy_) / at_play_, limits_.energy,
                world.step, -1, -1);
   }
   potential_ = potential_energy(scene, world);
   velocity_ = world.velocity;
   angular_ = world.angular_velocity;
+  lag_ = world.lag;
+  intervals_ = world.diagnostics.intervals;
 }
 
 void Promises::note(const Scene& scene, const World& world) {

@@ -61,8 +61,10 @@ class Promises {
   double at_play_ = 0.0;         // J: the largest kinetic energy so far, or what lifts each body
                                  // by its radius, whichever is more
   double potential_ = 0.0;       // J, at the last step's end
-  std::vector<Vec2> velocity_;   // m/s, half a step before that
+  double lag_ = 0.0;             // s, that velocities were before that
+  std::vector<Vec2> velocity_;   // m/s
   std::vector<double> angular_;  // rad/s
+  std::int64_t intervals_ = 0;   // Diagnostics::intervals
 };
 
 }  // namespace pinchlab

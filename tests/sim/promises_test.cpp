@@ -52,6 +52,25 @@ TEST(Promises, AreSilentWhereAllIsWell) {
   EXPECT_EQ(pinched.broken(), std::vector<std::string>());
 }
 
+// Steps that events divide end with velocities of another time than the rest: a body that falls
+// past one that bounces has gained nothing.
+TEST(Promises, AreSilentBesideEvents) {
+  for (const int steps : {1, 2, 4}) {
+    Scene scene;
+    scene.bodies = {body("bounces", BodyKind::free, 0.0, 0.2, 0.1, 1e-3),
+                    body("falls", BodyKind::free, 1.0, 5.0, 0.1)};
+    scene.bodies[0].restitution = 1.0;
+    scene.walls.resize(1);
+    scene.walls[0].a = Vec2(-0.5, 0.0);
+    scene.walls[0].b = Vec2(0.5, 0.0);
+    scene.frames_per_second = 30;
+    scene.steps_per_frame = steps;
+    Watched watched(scene, {}, 60 * steps);
+    EXPECT_EQ(watched.broken(), std::vector<std::string>()) << steps;
+    EXPECT_GT(watched.world.diagnostics.events, 4);
+  }
+}
+
 TEST(Promises, DoNotChangeTheWorld) {
   const Scene scene = random_scene(6);
   World alone = make_world(scene, Method::pinch);
