@@ -68,15 +68,38 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
 }
 
 // "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
+constexpr double most_guessed = 0.9, most_lapsed = 0.5;  // of fixed rates
+
 Rate rate_of(const char* flag, const std::string& text, double most_fixed, double most_free) {
   if (text == "free") return {true, 0.0, most_free};
   const auto value = parse_number(text);
-  if (!value || *value < 0.0 || *value > most_fixed) {
+  if (!value || !(*value >= 0.0 && *value <= most_fixed)) {
     throw CLI::ValidationError(
         flag, fmt::format("`{}` is neither `free` nor a number from 0 to {}", text, most_fixed));
   }
   return {false, *value, most_free};
 }
+
+/// As CLI::Range, which lets NaN through.
+CLI::Validator number_in(double low, double high) {
+  return {[low, high](const std::string& text) {
+            const auto value = parse_number(text);
+            if (value && low <= *value && *value <= high) return std::string();
+            return fmt::format("{} is not a number from {} to {}", text, low, high);
+          },
+          fmt::format("{} to {}", low, high)};
+}
+
+/// What rate_of takes.
+CLI::Validator rate_up_to(double most) {
+  return {[most](const std::string& text) {
+            if (text == "free") return std::string();
+            return number_in(0.0, most)(text);
+          },
+          ""};
+}
+
+constexpr std::uint64_t largest_seed = (1ULL << 53U) - 1;  // that JSON keeps exactly
 
 constexpr const char* footer =
     "Answers come as files or folders of the study page (.json), as tidy CSV with the columns\n"
@@ -149,12 +172,13 @@ void add_column_options(CLI::App& command, Arguments& args) {
 void add_statistics_options(CLI::App& command, Arguments& args) {
   command.add_option("--alpha", args.analyse.alpha, "Significance level")
       ->capture_default_str()
-      ->check(CLI::Range(1e-6, 0.5));
+      ->check(number_in(1e-6, 0.5));
   command.add_option("--bootstrap", args.analyse.bootstrap, "Resamples of the cluster bootstrap")
       ->capture_default_str()
       ->check(CLI::Range(99, 1000000));
   command.add_option("--seed", args.analyse.seed, "Seed of all random numbers")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
   command
       .add_option("--function", args.function,
                   "Psychometric function of graded stimuli: logistic, normal or weibull")
@@ -164,16 +188,18 @@ void add_statistics_options(CLI::App& command, Arguments& args) {
   command
       .add_option("--guess", args.guess,
                   "Rate of hits by guessing, 0 to 0.9, or `free`: estimated up to 0.5")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(rate_up_to(most_guessed));
   command
       .add_option("--lapse", args.lapse,
                   "Rate of misses by inattention, 0 to 0.5, or `free`: estimated up to 0.1")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(rate_up_to(most_lapsed));
   command
       .add_option("--threshold-at", args.threshold_at,
                   "Share of the function's height at the threshold")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 0.99));
+      ->check(number_in(0.01, 0.99));
   command
       .add_option("--scale", args.scale,
                   "Scale of three methods and more: bradley-terry or thurstone")
@@ -253,8 +279,12 @@ void analyse_levels(Arguments& args) {
   PsychometricModel model;
   model.shape = shapes.at(args.function);
   model.threshold_at = args.threshold_at;
-  model.guess = rate_of("--guess", has_guess ? args.guess : levels.correct ? "0.5" : "0", 0.9, 0.5);
-  model.lapse = rate_of("--lapse", args.lapse, 0.5, 0.1);
+  model.guess = rate_of("--guess",
+                        has_guess        ? args.guess
+                        : levels.correct ? "0.5"
+                                         : "0",
+                        most_guessed, 0.5);
+  model.lapse = rate_of("--lapse", args.lapse, most_lapsed, 0.1);
   if (!args.is_given("--bootstrap") && !args.design) args.analyse.bootstrap = threshold_resamples;
   const ThresholdReport report = analyse_thresholds(
       levels, model, {args.analyse.alpha, args.analyse.bootstrap, args.analyse.seed});

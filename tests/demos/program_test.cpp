@@ -96,6 +96,11 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"simulate", "01-small.json", "--out", "a.csv", "--time-limit", "nan"},
       {"simulate", "01-small.json", "--out", "a.csv", "--time-limit", "0"},
       {"simulate", "01-small.json", "01-small.json", "--out", "a.csv"},
+      {"analyse", "answers.csv", "--out", "report", "--alpha", "nan"},
+      {"analyse", "answers.csv", "--out", "report", "--guess", "nan"},
+      {"analyse", "answers.csv", "--out", "report", "--lapse", "0.6"},
+      {"analyse", "answers.csv", "--out", "report", "--threshold-at", "nan"},
+      {"analyse", "answers.csv", "--out", "report", "--seed", "-1"},
       {"bench"},
   };
   for (const auto& arguments : bad) {
@@ -107,6 +112,7 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
   EXPECT_FALSE(fs::exists(folder / "x.png"));
   EXPECT_FALSE(fs::exists(folder / "a.csv"));
   EXPECT_FALSE(fs::exists(folder / "clips"));
+  EXPECT_FALSE(fs::exists(folder / "report"));
 }
 
 TEST(Program, UnknownWordsAreNamedWithTheirCure) {
