@@ -10,9 +10,14 @@ namespace pinchlab::fuzz {
 
 namespace fs = std::filesystem;
 
-fs::path file_with(std::string_view bytes, const std::string& name) {
+const fs::path& scratch_folder() {
   static const test::TemporaryFolder folder;  // removed at the end of the process
-  fs::path path = folder.path() / name;
+  static const fs::path path = folder.path();
+  return path;
+}
+
+fs::path file_with(std::string_view bytes, const std::string& name) {
+  fs::path path = scratch_folder() / name;
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!file.flush()) throw std::system_error(errno, std::generic_category(), path.string());

@@ -69,7 +69,7 @@ bool read_levels(const fs::path& path) {
 
 /// Imports into a folder that is empty before.
 bool import(const fs::path& results, const fs::path& key) {
-  const fs::path answers = results.parent_path() / "answers";
+  const fs::path answers = scratch_folder() / "answers";
   fs::remove_all(answers);
   try {
     const study::Imported imported = study::import_jatos({results}, key, answers);

@@ -39,6 +39,9 @@ inline constexpr Target targets[] = {
 /// The scene file that fuzz_world makes of the bytes.
 std::string scene_of(std::string_view bytes);
 
+/// A folder of this process' own, which goes with it.
+const std::filesystem::path& scratch_folder();
+
 /// A file of this process' own with these bytes; the next one of the same name replaces it.
 std::filesystem::path file_with(std::string_view bytes, const std::string& name);
 
