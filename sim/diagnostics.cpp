@@ -34,6 +34,26 @@ bool check_finite(const Scene& scene, World& world) {
   return true;
 }
 
+bool check_positions(const Scene& scene, World& world) {
+  const auto fail = [&world](const std::string& what) {
+    world.failure = fmt::format("step {} (t = {} s): {} not finite; method {}", world.step,
+                                world.time(), what, to_string(world.configuration.method));
+    return false;
+  };
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    if (world.position[b].allFinite() && std::isfinite(world.angle[b])) continue;
+    return fail(fmt::format("position of body '{}' is", scene.bodies[b].name));
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    double sum = 0.0;  // zeros, but for what is not finite
+    for (const Segment& s : world.cables[c].segments) {
+      sum += 0.0 * (s.length + s.rest_length) + 0.0 * s.tension;
+    }
+    if (sum != 0.0) return fail(fmt::format("spans of cable '{}' are", scene.cables[c].name));
+  }
+  return true;
+}
+
 double potential_energy(const Scene& scene, const World& world) {
   double energy = 0.0;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {

@@ -10,6 +10,9 @@ struct Workspace;
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
 
+/// The same of positions, angles, and spans' lengths and tensions.
+bool check_positions(const Scene& scene, World& world);
+
 /// Energy of gravity and of stretched cables at the present positions (J).
 double potential_energy(const Scene& scene, const World& world);
 

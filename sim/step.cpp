@@ -135,6 +135,7 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
                                 ? advance(scene, world, work, times)
                                 : advance_at_once(scene, world, work, times);
   if (status != StepStatus::ok) return status;
+  if (!check_positions(scene, world)) return StepStatus::not_finite;
   ++world.step;
   Stopwatch watch(times);
   if (world.configuration.diagnostics) measure_cables(scene, world);
