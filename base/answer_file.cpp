@@ -144,6 +144,15 @@ void read_study(JsonObject study, AnswerFile& file) {
   study.finish();
 }
 
+// Ids of a site that sent the participant.
+void check_recruited(JsonObject recruited) {
+  recruited.name("participant");
+  for (const char* key : {"study", "session"}) {
+    if (recruited.has(key)) recruited.name(key);
+  }
+  recruited.finish(format_cure);
+}
+
 void read_trials(const nlohmann::json& trials, const std::string& file_name, AnswerFile& file) {
   std::map<int, size_t> positions;
   for (size_t i = 0; i < trials.size(); ++i) {
@@ -206,6 +215,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   }
   object.text("software_version", 256);
   if (object.has("study")) read_study(object.object("study"), file);
+  if (object.has("recruited")) check_recruited(object.object("recruited"));
   if (object.has("language")) object.text("language", 64);
   if (object.has("user_agent")) object.text("user_agent", 4096);
   if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");

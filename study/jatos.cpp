@@ -291,6 +291,11 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
     throw std::runtime_error(
         "studies of several methods and of thresholds run on our own server only; use study serve");
   }
+  if (config.recruiting) {
+    throw std::runtime_error(
+        "recruiting is for study serve; on a JATOS server, leave it out of the configuration: "
+        "JATOS' own study links and End Redirect URL do this");
+  }
   const std::string uuid = random_uuid();
   MediaNames names;
   ZipWriter zip(archive);

@@ -143,6 +143,12 @@ std::map<std::string, std::string> parse_free_text(const json& body) {
   });
 }
 
+Recruited parse_recruited(const json& body) {
+  if (!body.contains("recruited")) return {};
+  return refusing(
+      [&] { return read_recruited(JsonObject(body["recruited"], "request", "/recruited")); });
+}
+
 ordered_json to_json(const TrialAnswer& answer) {
   ordered_json object = {
       {"choice", to_string(answer.choice)},    {"reaction_time_s", answer.reaction_time_s},
@@ -187,19 +193,21 @@ json to_json(const Session& session) {
     answers.push_back(json(to_json(trial.answer)));
     answers.back()["shown_utc"] = trial.shown_utc;
   }
-  return {{"format", "pinchlab-session 1"},
-          {"id", session.id},
-          {"secret_sha256", session.secret_sha256},
-          {"number", session.number},
-          {"seed", session.seed},
-          {"language", session.language},
-          {"user_agent", session.user_agent},
-          {"started_utc", session.started_utc},
-          {"last_seen_utc", session.last_seen_utc},
-          {"resumed_count", session.resumed_count},
-          {"shown_utc", session.shown_utc},
-          {"plan", plan},
-          {"answers", answers}};
+  json file = {{"format", "pinchlab-session 1"},
+               {"id", session.id},
+               {"secret_sha256", session.secret_sha256},
+               {"number", session.number},
+               {"seed", session.seed},
+               {"language", session.language},
+               {"user_agent", session.user_agent},
+               {"started_utc", session.started_utc},
+               {"last_seen_utc", session.last_seen_utc},
+               {"resumed_count", session.resumed_count},
+               {"shown_utc", session.shown_utc},
+               {"plan", plan},
+               {"answers", answers}};
+  if (!session.recruited.participant.empty()) file["recruited"] = to_json(session.recruited);
+  return file;
 }
 
 Session session_from_json(const json& document) {
@@ -212,6 +220,7 @@ Session session_from_json(const json& document) {
   session.number = static_cast<std::uint64_t>(object.whole("number", 0, 1000000000));
   session.seed =
       static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
+  if (object.has("recruited")) session.recruited = read_recruited(object.object("recruited"));
   session.language = object.text("language", 64);
   session.user_agent = object.text("user_agent", 4096);
   session.started_utc = object.utc("started_utc");

@@ -16,6 +16,7 @@
 
 #include "study/clips.h"
 #include "study/plan.h"
+#include "study/recruiting.h"
 
 namespace pinchlab::study {
 
@@ -57,6 +58,7 @@ struct Session {
   std::string secret_sha256;  ///< of what proves who asks
   std::uint64_t number = 0;   ///< that the plan was counterbalanced by
   std::uint64_t seed = 0;
+  Recruited recruited;  ///< what the site that sent the participant says, if one did
   std::string language, user_agent, started_utc, last_seen_utc;
   int resumed_count = 0;
   std::vector<PlannedTrial> plan;
@@ -84,6 +86,10 @@ SentAnswer parse_answer(const nlohmann::json& body);
 
 /// The optional texts at the end. Throws Refused(422).
 std::map<std::string, std::string> parse_free_text(const nlohmann::json& body);
+
+/// What the site that sent somebody says, under the key `recruited`; nothing without it. Throws
+/// Refused(422).
+Recruited parse_recruited(const nlohmann::json& body);
 
 /// An answer with the keys that parse_answer reads, but for the trial's index.
 nlohmann::ordered_json to_json(const TrialAnswer& answer);

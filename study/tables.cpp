@@ -4,17 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "base/answer_file.h"
 #include "base/csv.h"
-#include "base/design_file.h"
 #include "base/durable_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
+#include "study/participants_table.h"
 
 namespace pinchlab::study {
 namespace {
@@ -239,75 +238,10 @@ std::string csv_of(const Answers& answers) {
   return csv;
 }
 
-// What an exclusion rule is about, of one participant; empty where the file does not hold it.
-std::string measured(const json& file, const char* key) {
-  const auto rule = std::ranges::find(exclusion_rules(), key, &ExclusionRule::key);
-  const double value = measure(*rule, file);
-  return std::isnan(value) ? "" : fmt::format("{}", value);
-}
-
-std::string of_first_trial(const json& file, const char* key) {
-  return value_of(file["trials"].front(), key);
-}
-
-std::string free_text(const json& file, const char* key) {
-  return file.contains("free_text") ? value_of(file["free_text"], key) : "";
-}
-
-struct ParticipantColumn {
-  const char* name;
-  const char* description;
-  std::string (*value)(const json& file) = nullptr;  // without: the file's key of that name
-};
-
-const std::vector<ParticipantColumn> participant_columns = {
-    {"participant", "Random name of the participant"},
-    {"participant_number", "Number that the plan was counterbalanced by, from 0"},
-    {"language", "Of the page"},
-    {"started_utc", "When the participant began"},
-    {"saved_utc", "When the answers were saved"},
-    {"resumed_count", "Times that the page was loaded again"},
-    {"answers", "Main trials",
-     [](const json& file) {
-       return std::to_string(std::ranges::count(file["trials"], json("main"),
-                                                [](const json& trial) { return trial["kind"]; }));
-     }},
-    {"one_side_share", "Share of main trials in which the side that was chosen more often was",
-     [](const json& file) { return measured(file, "one_side_over"); }},
-    {"median_reaction_time_s", "Seconds from the moment the buttons appeared, of main trials",
-     [](const json& file) { return measured(file, "median_reaction_time_s_under"); }},
-    {"failed_checks", "Attention checks without the right answer",
-     [](const json& file) { return measured(file, "failed_checks_over"); }},
-    {"focus_lost_count", "Times the window lost the focus or was hidden in main trials",
-     [](const json& file) { return measured(file, "focus_lost_over"); }},
-    {"dropped_frames_share", "Share of the frames of main trials that the browser dropped",
-     [](const json& file) { return measured(file, "dropped_frames_over"); }},
-    {"smallest_clip_width_px", "Least width at which a main trial was shown, CSS pixels",
-     [](const json& file) { return measured(file, "clip_width_px_under"); }},
-    {"screen_width_px", "Width of the screen in the first trial, CSS pixels",
-     [](const json& file) { return of_first_trial(file, "screen_width_px"); }},
-    {"screen_height_px", "Height of the screen in the first trial, CSS pixels",
-     [](const json& file) { return of_first_trial(file, "screen_height_px"); }},
-    {"device_pixel_ratio", "Device pixels a CSS pixel in the first trial",
-     [](const json& file) { return of_first_trial(file, "device_pixel_ratio"); }},
-    {"user_agent", "What the browser says it is"},
-    {"common_details", "Optional text: details that choices were based on",
-     [](const json& file) { return free_text(file, "common_details"); }},
-    {"thoughts", "Optional text: thoughts about the test",
-     [](const json& file) { return free_text(file, "thoughts"); }}};
-
-Cells cells_of(const json& file) {
-  Cells cells;
-  for (const ParticipantColumn& column : participant_columns) {
-    cells.push_back(column.value != nullptr ? column.value(file) : value_of(file, column.name));
-  }
-  return cells;
-}
-
-Cells participant_names() {
-  Cells names;
-  for (const ParticipantColumn& column : participant_columns) names.emplace_back(column.name);
-  return names;
+std::vector<json> files_of(const Answers& answers) {
+  std::vector<json> files;
+  for (const auto& [file, rows] : answers.participants) files.push_back(file);
+  return files;
 }
 
 // BIDS writes what is not there as n/a, and has no quotes for tabs and ends of lines.
@@ -340,30 +274,31 @@ std::string answers_csv(const fs::path& folder) {
 }
 
 std::string participants_csv(const fs::path& folder) {
-  std::string csv = row(participant_names());
-  for (const auto& [file, rows] : read_folder(folder).participants) csv += row(cells_of(file));
+  const ParticipantsTable table = participants_table(files_of(read_folder(folder)), true);
+  std::string csv = row(table.names);
+  for (const Cells& cells : table.rows) csv += row(cells);
   return csv;
 }
 
 std::map<std::string, std::string> bids_files(const fs::path& folder) {
   const Answers answers = read_folder(folder);
   std::map<std::string, std::string> files;
-  Cells names = participant_names();
-  names.front() = "participant_id";
-  std::string participants = tsv_row(names);
-  for (const auto& [file, rows] : answers.participants) {
-    const std::string id = "sub-" + value_of(file, "participant");
-    Cells cells = cells_of(file);
+  ParticipantsTable table = participants_table(files_of(answers), false);
+  table.names.front() = "participant_id";
+  std::string participants = tsv_row(table.names);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    Cells& cells = table.rows[i];
+    const std::string id = "sub-" + cells.front();
     cells.front() = id;
     participants += tsv_row(cells);
-    std::string& table = files[fmt::format("{}/beh/{}_task-cables_beh.tsv", id, id)];
-    table = tsv_row(answers.names);
-    for (const Cells& values : rows) table += tsv_row(values);
+    std::string& trials = files[fmt::format("{}/beh/{}_task-cables_beh.tsv", id, id)];
+    trials = tsv_row(answers.names);
+    for (const Cells& values : answers.participants[i].second) trials += tsv_row(values);
   }
   files["participants.tsv"] = participants;
   ordered_json of_participants, of_trials = {{"TaskName", "cables"}};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    of_participants[names[i]] = {{"Description", participant_columns[i].description}};
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    of_participants[table.names[i]] = {{"Description", table.descriptions[i]}};
   }
   for (const Column& column : columns) {
     if ((column.kinds & answers.kind) != 0)

@@ -115,7 +115,7 @@ export function connect(onTrouble) {
       } catch (error) {
         console.warn(error);
       }
-      return session.withdrawal_code;
+      return { code: session.withdrawal_code };
     },
 
     download: result,

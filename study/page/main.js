@@ -4,6 +4,7 @@
 import { NotKept } from './errors.js';
 import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, thanks } from './pages.js';
 import { PairTrial } from './pair_trial.js';
+import { Site } from './recruiting.js';
 
 const stage = document.getElementById('stage');
 const notice = document.getElementById('notice');
@@ -17,15 +18,17 @@ const tell = (trouble) => {
 };
 const backend = connect(tell);
 let isShared = false;  // one computer for many participants
-({ texts, shared_computer: isShared = false } = await backend.study());
+let recruiting = null;
+({ texts, recruiting = null, shared_computer: isShared = false } = await backend.study());
+const site = new Site(recruiting, texts);
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
-  const running = await backend.running();
-  if (!running) return information(stage, texts, backend);
+  const running = await backend.running(site.ids);
+  if (!running) return information(stage, texts, backend, site);
   if (await askResume(stage, texts)) return backend.resume();
   await backend.startAnew();
-  return information(stage, texts, backend);
+  return information(stage, texts, backend, site);
 }
 
 function page(show) {
@@ -36,16 +39,16 @@ function page(show) {
 
 try {
   const session = await begin();
-  const clips = await preload(stage, texts, session, (isLost) => tell(isLost ? new Error('lost') : null));
+  const clips = await preload(stage, texts, session, site, (isLost) => tell(isLost ? new Error('lost') : null));
   stage.replaceChildren();
   const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
 
   const leave = async () => {
-    const { code } = await backend.leave() ?? {};
+    const saved = await backend.leave() ?? {};
     jsPsych.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
-    if (code) thanks(stage, texts, code, isShared);  // saved already, in another window
-    else goodbye(stage, texts, isShared);
+    if (saved.code) thanks(stage, texts, saved, site, isShared);  // saved already, in another window
+    else goodbye(stage, texts, site, isShared);
   };
 
   const countedFrom = (index) => session.trials.slice(index).filter(({ practice }) => !practice).length;
@@ -67,13 +70,13 @@ try {
   });
 
   let freeText = {};
-  let code = '';
+  let saved = {};
   const timeline = session.trials.map((_, index) => index).filter((index) => index >= session.next).map(trial);
   timeline.push(page(async (display) => { freeText = await questions(display, texts, leave); }));
-  timeline.push(page(async (display) => { code = await save(display, texts, backend, freeText, leave); }));
+  timeline.push(page(async (display) => { saved = await save(display, texts, backend, freeText, leave); }));
   timeline.push(page(async (display) => {
     if (document.fullscreenElement) document.exitFullscreen();
-    thanks(display, texts, code, isShared);
+    thanks(display, texts, saved, site, isShared);
     return new Promise(() => {});  // the end: stays
   }));
   await jsPsych.run(timeline);
