@@ -141,6 +141,7 @@ void read_study(JsonObject study, AnswerFile& file) {
   for (const char* key : {"consent_sha256", "texts_sha256", "clips_sha256"}) {
     file.study[key] = study.sha256(key);
   }
+  if (study.has("options_sha256")) file.study["options_sha256"] = study.sha256("options_sha256");
   study.finish();
 }
 
@@ -151,6 +152,27 @@ void check_recruited(JsonObject recruited) {
     if (recruited.has(key)) recruited.name(key);
   }
   recruited.finish(format_cure);
+}
+
+// Answers to the researcher's own questions, by part and name.
+void check_questionnaires(JsonObject questionnaires) {
+  for (const char* part : {"before", "after"}) {
+    if (!questionnaires.has(part)) continue;
+    JsonObject answers = questionnaires.object(part);
+    for (const std::string& name : answers.all_keys()) {
+      const std::string why = why_not_a_name(name);
+      if (!why.empty()) answers.fail(name, fmt::format("bad key: {}", why));
+      JsonObject entry = answers.object(name);
+      entry.text("question", 10000);
+      if (entry.need("answer").is_string()) {
+        entry.text("answer", 100000);
+      } else {
+        entry.number("answer", -1e9, 1e9);
+      }
+      entry.finish(format_cure);
+    }
+  }
+  questionnaires.finish(format_cure);
 }
 
 void read_trials(const nlohmann::json& trials, const std::string& file_name, AnswerFile& file) {
@@ -216,6 +238,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   object.text("software_version", 256);
   if (object.has("study")) read_study(object.object("study"), file);
   if (object.has("recruited")) check_recruited(object.object("recruited"));
+  if (object.has("questionnaires")) check_questionnaires(object.object("questionnaires"));
   if (object.has("language")) object.text("language", 64);
   if (object.has("user_agent")) object.text("user_agent", 4096);
   if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");
@@ -325,11 +348,10 @@ void SameStudy::check(const AnswerFile& file, const std::string& name) {
                                        study_of_));
   }
   if (file.study != study_) {
-    const std::map<std::string, std::string> words = {{"language", "the language"},
-                                                      {"question", "the question"},
-                                                      {"consent_sha256", "the consent text"},
-                                                      {"texts_sha256", "the texts of the page"},
-                                                      {"clips_sha256", "the clips"}};
+    const std::map<std::string, std::string> words = {
+        {"language", "the language"},           {"question", "the question"},
+        {"consent_sha256", "the consent text"}, {"texts_sha256", "the texts of the page"},
+        {"clips_sha256", "the clips"},          {"options_sha256", "what is asked besides"}};
     std::string what;
     const auto value = [](const std::map<std::string, std::string>& study, const std::string& key) {
       const auto found = study.find(key);

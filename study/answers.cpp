@@ -110,6 +110,7 @@ ordered_json answer_file(const Session& session, const AnsweredStudy& study,
                        {"trials", trials},
                        {"free_text", free_text}};
   if (study.is_pilot) file["pilot"] = true;
+  if (!session.questionnaires.empty()) file["questionnaires"] = session.questionnaires;
   if (!session.recruited.participant.empty()) file["recruited"] = to_json(session.recruited);
   return file;
 }

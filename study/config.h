@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "study/plan.h"
+#include "study/questionnaire.h"
 #include "study/recruiting.h"
 
 namespace pinchlab::study {
@@ -43,6 +44,7 @@ struct Config {
   int participant_limit = 0;     ///< 0: none
   bool one_time_links = false;
   std::optional<Recruiting> recruiting;      ///< participants who are sent by a site
+  Questionnaires questionnaires;             ///< around the trials
   bool is_pilot = false;                     ///< a trial run; of the command line, not of the file
   std::string language = "en";               ///< of the texts, a BCP 47 tag
   std::map<std::string, std::string> texts;  ///< every text of the page that is used, by its key

@@ -173,6 +173,7 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.answers = std::move(next.answers);
   entry->session.plan = std::move(next.plan);
   entry->session.shown_utc = std::move(next.shown_utc);
+  entry->session.questionnaires = std::move(next.questionnaires);
   entry->session.last_seen_utc = std::move(next.last_seen_utc);
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
@@ -190,6 +191,7 @@ Progress Desk::progress_of(const Session& session) const {
   });
   progress.is_adaptive = options_.config.adaptive_trials > 0;
   progress.next = session.answers.size();
+  progress.questionnaires = open_questionnaires(session, options_.config.questionnaires);
   return progress;
 }
 
@@ -223,7 +225,19 @@ void Desk::use_up_link(const std::string& token) {
 
 void Desk::show(const std::string& token, std::size_t index) {
   use_up_link(token);
-  change(token, [&](Session& session) { study::show(session, index, options_.utc_now()); });
+  change(token, [&](Session& session) {
+    const auto open = open_questionnaires(session, options_.config.questionnaires);
+    if (!open.empty() && open.front() == "before") {
+      throw Refused(409, "the questions before the trials are not answered");
+    }
+    study::show(session, index, options_.utc_now());
+  });
+}
+
+void Desk::questionnaire(const std::string& token, const json& body) {
+  change(token, [&](Session& session) {
+    answer_questionnaire(session, options_.config.questionnaires, body);
+  });
 }
 
 void Desk::answer(const std::string& token, const SentAnswer& sent) {
@@ -304,6 +318,10 @@ std::string Desk::save(const std::string& token,
   std::string code = withdrawal_code(secret);
   if (entry->is_gone) {
     return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
+  }
+  if (is_finished(entry->session) &&
+      !open_questionnaires(entry->session, options_.config.questionnaires).empty()) {
+    throw Refused(409, "there are questions left to answer");
   }
   const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
     const Clip& clip = options_.clips.at(clip_key(trial)).in(encoding).at(trial.pinch);

@@ -51,6 +51,7 @@ struct Progress {
   bool has_webm = false;     ///< all of them do: one without would stand out
   bool is_adaptive = false;  ///< the clip of a trial can be had once those before are answered
   std::size_t next = 0;      ///< trial to show; trials.size(): all are answered
+  std::vector<std::string> questionnaires;  ///< parts that are still to be answered
 };
 
 struct Overview {
@@ -95,6 +96,8 @@ class Desk {
   Progress resume(const std::string& token);  ///< after a reload
   void show(const std::string& token, std::size_t index);
   void answer(const std::string& token, const SentAnswer& sent);
+
+  void questionnaire(const std::string& token, const nlohmann::json& body);
 
   /// Keeps nothing. Refused (409) if the answers have been saved: they stay.
   void leave(const std::string& token);

@@ -95,6 +95,27 @@ bool is_recruited(const json& file) {
 
 }  // namespace
 
+QuestionColumns question_columns(const std::vector<json>& files) {
+  QuestionColumns columns;
+  for (const json& file : files) {
+    if (!file.contains("questionnaires")) continue;
+    for (const auto& [part, answers] : file["questionnaires"].items()) {
+      for (const auto& [name, entry] : answers.items()) {
+        columns[part + "_" + name] = entry["question"];
+      }
+    }
+  }
+  return columns;
+}
+
+std::string own_answer(const json& file, const std::string& column) {
+  const std::size_t line = column.find('_');
+  const json part =
+      file.value("questionnaires", json::object()).value(column.substr(0, line), json::object());
+  const auto found = part.find(column.substr(line + 1));
+  return found == part.end() ? "" : value_of(*found, "answer");
+}
+
 ParticipantsTable participants_table(const std::vector<json>& files, bool with_ids) {
   std::vector<ParticipantColumn> columns = participant_columns;
   if (with_ids && std::ranges::any_of(files, is_recruited)) {
@@ -105,11 +126,17 @@ ParticipantsTable participants_table(const std::vector<json>& files, bool with_i
     table.names.emplace_back(column.name);
     table.descriptions.emplace_back(column.description);
   }
+  const QuestionColumns own = question_columns(files);
+  for (const auto& [name, question] : own) {
+    table.names.push_back(name);
+    table.descriptions.push_back(question);
+  }
   for (const json& file : files) {
     std::vector<std::string>& cells = table.rows.emplace_back();
     for (const ParticipantColumn& column : columns) {
       cells.push_back(column.value != nullptr ? column.value(file) : value_of(file, column.name));
     }
+    for (const auto& [name, question] : own) cells.push_back(own_answer(file, name));
   }
   return table;
 }

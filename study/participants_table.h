@@ -2,6 +2,7 @@
 #pragma once
 // One row a participant.
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -16,5 +17,12 @@ struct ParticipantsTable {
 /// Of answer files that were checked. `with_ids`: with the ids of the site that sent the
 /// participants, if there are any.
 ParticipantsTable participants_table(const std::vector<nlohmann::json>& files, bool with_ids);
+
+/// Columns of the study's own questions: `before_age`, `after_comments` -> the question.
+using QuestionColumns = std::map<std::string, std::string>;
+QuestionColumns question_columns(const std::vector<nlohmann::json>& files);
+
+/// What a participant answered there; empty if nothing.
+std::string own_answer(const nlohmann::json& file, const std::string& column);
 
 }  // namespace pinchlab::study

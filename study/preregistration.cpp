@@ -77,6 +77,20 @@ std::string what_varies(const json& design, const Config& config) {
       shown, each == 1 ? std::string("once") : fmt::format("{} times", each));
 }
 
+std::string asked_besides(const Config& config) {
+  std::string text;
+  for (const char* part : questionnaire_parts) {
+    const Questionnaire* questionnaire = config.questionnaires.find(part);
+    if (questionnaire == nullptr) continue;
+    text += fmt::format("Questions {} the trials:\n\n", part);
+    for (const Question& question : *questionnaire) {
+      text += fmt::format("* {}{}\n", question.text, question.is_required ? "" : " (optional)");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string procedure(const json& design, const Config& config) {
   const json& plan = design.at("plan");
   std::string text = fmt::format(
@@ -95,6 +109,7 @@ std::string procedure(const json& design, const Config& config) {
       "(once more on one for odd numbers), none more than three times running. Participants cannot "
       "know which method a clip shows; nothing that a browser receives names one.\n\n",
       design.at("seed").get<std::uint64_t>());
+  text += asked_besides(config);
   text += fmt::format(
       "The page is in the language `{}`. SHA-256 of the consent text: `{}`; of all texts: `{}`.\n",
       config.language, design.at("study").at("consent_sha256").get<std::string>(),

@@ -99,6 +99,7 @@ json progress_json(const Progress& progress) {
   }
   json object = {{"trials", trials}, {"next", progress.next}};
   if (progress.is_adaptive) object["ahead"] = 1;
+  if (!progress.questionnaires.empty()) object["questionnaires"] = progress.questionnaires;
   return object;
 }
 
@@ -222,6 +223,9 @@ struct Server::Implementation {
                     {"texts", config.texts},
                     {"needs_link", config.one_time_links},
                     {"shared_computer", config.shared_computer}};
+      if (!config.questionnaires.empty()) {
+        study["questionnaires"] = to_json(config.questionnaires);
+      }
       if (config.recruiting) study["recruiting"] = for_page(*config.recruiting);
       return reply(study);
     };
@@ -241,6 +245,10 @@ struct Server::Implementation {
         throw Refused(422, "index must be a whole number");
       }
       desk.show(token_of(request), index.get<std::size_t>());
+      return reply({{"done", true}});
+    };
+    routes[{"POST", "/api/questionnaire"}] = [this](const HttpRequest& request) {
+      desk.questionnaire(token_of(request), parse_body(request));
       return reply({{"done", true}});
     };
     routes[{"POST", "/api/answer"}] = [this](const HttpRequest& request) {

@@ -116,6 +116,36 @@ void answer(Session& session, std::size_t index, const TrialAnswer& given) {
   session.shown_utc.clear();
 }
 
+std::vector<std::string> open_questionnaires(const Session& session, const Questionnaires& asked) {
+  std::vector<std::string> open;
+  for (const char* part : questionnaire_parts) {
+    if (asked.find(part) != nullptr && !session.questionnaires.contains(part)) {
+      open.emplace_back(part);
+    }
+  }
+  return open;
+}
+
+void answer_questionnaire(Session& session, const Questionnaires& asked, const json& body) {
+  const auto [part, answers] = refusing([&] {
+    JsonObject object(body, "request", "");
+    std::string name = object.choice("part", {"before", "after"});
+    const Questionnaire* questionnaire = asked.find(name);
+    if (questionnaire == nullptr) object.fail("part", "this study has no such questionnaire");
+    json checked = check_answers(*questionnaire, object.object("answers"));
+    object.finish();
+    return std::pair(std::move(name), std::move(checked));
+  });
+  const auto before = session.questionnaires.find(part);
+  if (before != session.questionnaires.end() && before->second == answers) return;  // sent again
+  const bool is_due = part == "before" ? session.answers.empty() && session.shown_utc.empty()
+                                       : is_finished(session);
+  if (!is_due || before != session.questionnaires.end()) {
+    throw Refused(409, "these questions are not being asked");
+  }
+  session.questionnaires[part] = answers;
+}
+
 SentAnswer parse_answer(const json& body) {
   return refusing([&] {
     JsonObject object(body, "request", "");
@@ -206,6 +236,7 @@ json to_json(const Session& session) {
                {"shown_utc", session.shown_utc},
                {"plan", plan},
                {"answers", answers}};
+  if (!session.questionnaires.empty()) file["questionnaires"] = session.questionnaires;
   if (!session.recruited.participant.empty()) file["recruited"] = to_json(session.recruited);
   return file;
 }
@@ -233,6 +264,13 @@ Session session_from_json(const json& document) {
     JsonObject trial(answers[i], file, fmt::format("/answers/{}", i));
     session.answers.push_back({trial.utc("shown_utc"), read_answer(trial)});
     trial.finish();
+  }
+  if (object.has("questionnaires")) {
+    JsonObject questionnaires = object.object("questionnaires");
+    for (const char* part : questionnaire_parts) {
+      if (questionnaires.has(part)) session.questionnaires[part] = questionnaires.need(part);
+    }
+    questionnaires.finish();
   }
   object.finish();
   return session;

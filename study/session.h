@@ -8,6 +8,7 @@
 // A reload shows the same trial again; an answer that is sent twice counts once.
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -16,6 +17,7 @@
 
 #include "study/clips.h"
 #include "study/plan.h"
+#include "study/questionnaire.h"
 #include "study/recruiting.h"
 
 namespace pinchlab::study {
@@ -65,6 +67,8 @@ struct Session {
   std::vector<std::string> media;  ///< opaque names of the clips, one a trial
   std::vector<AnsweredTrial> answers;
   std::string shown_utc;  ///< when the current trial's clip began; empty before
+  /// part ("before", "after") -> what check_answers() returned
+  std::map<std::string, nlohmann::json> questionnaires;
 };
 
 bool is_finished(const Session& session);
@@ -75,6 +79,14 @@ void show(Session& session, std::size_t index, const std::string& utc);
 /// Takes the answer of trial `index`. Refused unless the trial is the current one and was shown;
 /// the last answer sent again, unchanged, is accepted and counts once.
 void answer(Session& session, std::size_t index, const TrialAnswer& given);
+
+/// The parts of the questionnaires that are still to be answered.
+std::vector<std::string> open_questionnaires(const Session& session, const Questionnaires& asked);
+
+/// Takes the answers of a questionnaire: `body` is {"part", "answers"}. Refused (422) if they are
+/// not what was asked, (409) before its turn or with other answers than before.
+void answer_questionnaire(Session& session, const Questionnaires& asked,
+                          const nlohmann::json& body);
 
 /// Reads what a page sent. Throws Refused(422) for unknown or missing keys, wrong types and values
 /// outside their ranges. Returns the index of the trial too.

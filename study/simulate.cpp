@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <chrono>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -70,6 +70,7 @@ class Simulated {
     const auto [number, first_plan] = desk_.plan_of(id);
     const std::size_t count = first_plan.size();
     become(number);
+    answer_questionnaire(client, "before");
     for (std::size_t i = started.at("next"); i < count; ++i) {
       post(client, "/api/show", {{"index", i}});
       const std::string mp4 = started.at("trials").at(i).at("mp4");
@@ -77,6 +78,7 @@ class Simulated {
       if (!clip || clip->status != 206) throw std::runtime_error("a clip could not be fetched");
       post(client, "/api/answer", answer_to(desk_.plan_of(id).second[i], i));
     }
+    answer_questionnaire(client, "after");
     post(client, "/api/save", {{"free_text", json::object()}});
   }
 
@@ -101,6 +103,36 @@ class Simulated {
                                            answer ? std::to_string(answer->status) : "nothing"));
     }
     return json::parse(answer->body);
+  }
+
+  // Every question, each answer as likely as another.
+  void answer_questionnaire(HttpClient& client, const char* part) {
+    const Questionnaire* questionnaire = desk_.config().questionnaires.find(part);
+    if (questionnaire == nullptr) return;
+    json answers = json::object();
+    for (const Question& question : *questionnaire) answers[question.name] = answer_to(question);
+    post(client, "/api/questionnaire", {{"part", part}, {"answers", answers}});
+  }
+
+  json answer_to(const Question& question) {
+    const auto one_of = [&](std::size_t count) {
+      return gsl_rng_uniform_int(rng_.get(), static_cast<unsigned long>(count));
+    };
+    switch (question.kind) {
+      case QuestionKind::choice:
+        return question.choices[one_of(question.choices.size())];
+      case QuestionKind::scale:
+        return 1 + one_of(static_cast<std::size_t>(question.points));
+      case QuestionKind::number: {
+        const double number = question.least + uniform() * (question.most - question.least);
+        return question.is_whole ? std::clamp(std::round(number), std::ceil(question.least),
+                                              std::floor(question.most))
+                                 : number;
+      }
+      case QuestionKind::text:
+        break;
+    }
+    return std::string("simulated").substr(0, question.longest);
   }
 
   // P(the first is chosen), sides and lapses left out.

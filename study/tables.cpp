@@ -127,12 +127,15 @@ std::string row(const std::vector<std::string>& values) {
   return text + "\n";
 }
 
-ordered_json description(unsigned kind) {
+ordered_json description(unsigned kind, const QuestionColumns& questions) {
   ordered_json variables = ordered_json::array();
   for (const Column& column : columns) {
     if ((column.kinds & kind) == 0) continue;
     variables.push_back(
         {{"@type", "PropertyValue"}, {"name", column.name}, {"description", column.description}});
+  }
+  for (const auto& [name, question] : questions) {
+    variables.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", question}});
   }
   return {{"@context", "https://schema.org/"},
           {"@type", "Dataset"},
@@ -203,8 +206,15 @@ using Cells = std::vector<std::string>;
 struct Answers {
   unsigned kind = two_methods;  // of an empty folder
   Cells names;
+  QuestionColumns questions;
   std::vector<std::pair<json, std::vector<Cells>>> participants;  // answer file, rows
 };
+
+std::vector<json> files_of(const Answers& answers) {
+  std::vector<json> files;
+  for (const auto& [file, rows] : answers.participants) files.push_back(file);
+  return files;
+}
 
 Answers read_folder(const fs::path& folder) {
   Answers answers;
@@ -227,6 +237,15 @@ Answers read_folder(const fs::path& folder) {
   for (const Column& column : columns) {
     if ((column.kinds & answers.kind) != 0) answers.names.emplace_back(column.name);
   }
+  // What a participant answered besides stands in each of the rows.
+  answers.questions = question_columns(files_of(answers));
+  for (const auto& [name, question] : answers.questions) {
+    answers.names.push_back(name);
+    for (auto& [file, rows] : answers.participants) {
+      const std::string answer = own_answer(file, name);
+      for (Cells& values : rows) values.push_back(answer);
+    }
+  }
   return answers;
 }
 
@@ -236,12 +255,6 @@ std::string csv_of(const Answers& answers) {
     for (const Cells& values : rows) csv += row(values);
   }
   return csv;
-}
-
-std::vector<json> files_of(const Answers& answers) {
-  std::vector<json> files;
-  for (const auto& [file, rows] : answers.participants) files.push_back(file);
-  return files;
 }
 
 // BIDS writes what is not there as n/a, and has no quotes for tabs and ends of lines.
@@ -304,6 +317,9 @@ std::map<std::string, std::string> bids_files(const fs::path& folder) {
     if ((column.kinds & answers.kind) != 0)
       of_trials[column.name] = {{"Description", column.description}};
   }
+  for (const auto& [name, question] : answers.questions) {
+    of_trials[name] = {{"Description", question}};
+  }
   files["participants.json"] = of_participants.dump(2) + "\n";
   files["task-cables_beh.json"] = of_trials.dump(2) + "\n";
   const ordered_json dataset = {
@@ -324,9 +340,10 @@ void write_bids(const fs::path& folder, const fs::path& out) {
 
 std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
   const Answers answers = read_folder(folder);
-  return {{"data/study-cables_data.csv", csv_of(answers)},
-          {"README.md", dataset_readme},
-          {"dataset_description.json", description(answers.kind).dump(2) + "\n"}};
+  return {
+      {"data/study-cables_data.csv", csv_of(answers)},
+      {"README.md", dataset_readme},
+      {"dataset_description.json", description(answers.kind, answers.questions).dump(2) + "\n"}};
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {

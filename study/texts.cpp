@@ -20,13 +20,15 @@ constexpr const char* key_cure = "; study/README.md has the keys";
 
 // Does the study ask for more than choices and two optional texts?
 bool collects_more(const Config& config) {
-  return config.recruiting.has_value();
+  return config.recruiting.has_value() || !config.questionnaires.empty();
 }
 
 // Texts that only studies with an option have, by how their keys begin.
 bool is_used(const std::string& key, const Config& config) {
-  const std::pair<const char*, bool> options[] = {{"recruiting_", config.recruiting.has_value()},
-                                                  {"collected_", collects_more(config)}};
+  const std::pair<const char*, bool> options[] = {
+      {"recruiting_", config.recruiting.has_value()},
+      {"questionnaire_", !config.questionnaires.empty()},
+      {"collected_", collects_more(config)}};
   for (const auto& [beginning, is_on] : options) {
     if (key.starts_with(beginning)) return is_on;
   }

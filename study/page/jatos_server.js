@@ -58,7 +58,8 @@ export function connect(onTrouble) {
       if (!response.ok) throw new Error(`status ${response.status}`);
       return response.json();
     }, onTrouble);
-    return { trials: plan, next: session.answers.length };
+    const open = Object.keys(input().questionnaires ?? {}).filter((part) => !session.questionnaires?.[part]);
+    return { trials: plan, next: session.answers.length, questionnaires: open };
   }
 
   const result = (freeText) => {
@@ -71,7 +72,7 @@ export function connect(onTrouble) {
       await loaded;
       jatos.httpTimeout = 15000;  // ms
       jatos.httpRetry = 1;  // then the page says so, and tries again by itself
-      return { texts: input().texts };
+      return { texts: input().texts, questionnaires: input().questionnaires };
     },
 
     async running() {
@@ -97,6 +98,11 @@ export function connect(onTrouble) {
 
     async show() {
       session.shown_utc = now();
+      await keep();
+    },
+
+    async questionnaire(part, answers) {
+      session.questionnaires = { ...session.questionnaires, [part]: answers };
       await keep();
     },
 

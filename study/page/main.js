@@ -2,8 +2,9 @@
 // The study from beginning to end, as a jsPsych timeline.
 
 import { NotKept } from './errors.js';
-import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, thanks } from './pages.js';
+import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, sheet, thanks } from './pages.js';
 import { PairTrial } from './pair_trial.js';
+import { questionnaire } from './questionnaire.js';
 import { Site } from './recruiting.js';
 
 const stage = document.getElementById('stage');
@@ -18,8 +19,8 @@ const tell = (trouble) => {
 };
 const backend = connect(tell);
 let isShared = false;  // one computer for many participants
-let recruiting = null;
-({ texts, recruiting = null, shared_computer: isShared = false } = await backend.study());
+let recruiting = null, questionnaires = {};
+({ texts, recruiting = null, questionnaires = {}, shared_computer: isShared = false } = await backend.study());
 const site = new Site(recruiting, texts);
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
@@ -37,19 +38,28 @@ function page(show) {
   return { type: PagePlugin, page: shown };
 }
 
+// The researcher's own questions, once: a part that was answered is not in `session.questionnaires` any more.
+async function ask(display, session, part, leave) {
+  if (!session.questionnaires?.includes(part)) return;
+  const show = (...content) => sheet(display, ...content);
+  await backend.questionnaire(part, await questionnaire(show, texts, part, questionnaires[part], exitButton(texts, leave)));
+}
+
 try {
   const session = await begin();
-  const clips = await preload(stage, texts, session, site, (isLost) => tell(isLost ? new Error('lost') : null));
-  stage.replaceChildren();
-  const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
-
+  let jsPsych = null;
   const leave = async () => {
     const saved = await backend.leave() ?? {};
-    jsPsych.abortExperiment();
+    jsPsych?.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
     if (saved.code) thanks(stage, texts, saved, site, isShared);  // saved already, in another window
     else goodbye(stage, texts, site, isShared);
   };
+
+  await ask(stage, session, 'before', leave);
+  const clips = await preload(stage, texts, session, site, (isLost) => tell(isLost ? new Error('lost') : null));
+  stage.replaceChildren();
+  jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
 
   const countedFrom = (index) => session.trials.slice(index).filter(({ practice }) => !practice).length;
 
@@ -72,7 +82,10 @@ try {
   let freeText = {};
   let saved = {};
   const timeline = session.trials.map((_, index) => index).filter((index) => index >= session.next).map(trial);
-  timeline.push(page(async (display) => { freeText = await questions(display, texts, leave); }));
+  timeline.push(page(async (display) => {
+    if (questionnaires.after) await ask(display, session, 'after', leave);
+    else freeText = await questions(display, texts, leave);
+  }));
   timeline.push(page(async (display) => { saved = await save(display, texts, backend, freeText, leave); }));
   timeline.push(page(async (display) => {
     if (document.fullscreenElement) document.exitFullscreen();

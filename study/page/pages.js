@@ -11,7 +11,7 @@ const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars b
 const paragraphs = (text) => text.split('\n\n').map((part) => make('p', {}, part));
 
 // A sheet of paper in the middle; its heading takes the focus, so that a screen reader begins there.
-function sheet(stage, heading, ...children) {
+export function sheet(stage, heading, ...children) {
   const title = make('h1', { tabindex: -1 }, heading);
   stage.replaceChildren(make('div', { class: 'sheet' }, title, ...children));
   window.scrollTo(0, 0);

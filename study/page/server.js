@@ -72,9 +72,16 @@ export function connect(onTrouble) {
     show: (index) => confirmed('POST', 'api/show', { index }),
 
     async answer(sent) {
-      const { token, answers } = stored.read();
-      stored.write({ token, answers: [...answers.filter(({ index }) => index !== sent.index), sent], ...withIds() });
+      const { answers, ...kept } = stored.read();
+      stored.write({ ...kept, answers: [...answers.filter(({ index }) => index !== sent.index), sent] });
       await confirmed('POST', 'api/answer', sent);
+    },
+
+    /** The answers of one part of the questionnaires. */
+    async questionnaire(part, answers) {
+      const kept = stored.read();
+      stored.write({ ...kept, questionnaires: { ...kept.questionnaires, [part]: answers } });
+      await confirmed('POST', 'api/questionnaire', { part, answers });
     },
 
     /** One attempt; what can be tried again is for the page to say. */
