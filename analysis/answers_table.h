@@ -53,6 +53,12 @@ struct Exclusion {
   std::string reason;
 };
 
+/// A preference that was given in grades (comparison scale of ITU-R BT.500).
+struct GradedAnswer {
+  std::string participant, demonstration;
+  int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
+};
+
 /// What holding answers against the frozen design of their study showed (design_check.h).
 struct DesignCheck {
   std::string sha256, frozen_utc;
@@ -69,7 +75,8 @@ struct AnswersTable {
   std::vector<std::string> demonstrations;
   std::vector<Group> groups;                  ///< the last one is "all"
   std::string groups_from;                    ///< in words: where the groups come from
-  std::vector<Answer> answers;                ///< empty if only counts are known
+  std::vector<Answer> answers;                ///< without ties; empty if only counts are known
+  std::vector<GradedAnswer> graded;           ///< all, ties among them, where they were graded
   std::vector<Counts> counts;                 ///< one a demonstration
   std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
   bool is_pilot = false;                      ///< answers of a trial run

@@ -47,6 +47,7 @@ class Writer {
     pooled();
     differences();
     effects();
+    for (Block& block : graded_blocks(report_)) add(std::move(block));
     input();
     free_texts();
     methods();

@@ -55,7 +55,11 @@ class AnswerFiles {
       answer.chose_pinch = trial.choice == answer.pinch_side;
       answer.position = trial.position;
       answer.reaction_time_s = trial.reaction_time_s;
-      builder_.add_answer(answer, index + 1);
+      if (trial.preference) {
+        const int sign = answer.pinch_side == Side::left ? -1 : 1;
+        builder_.add_graded({file.participant, trial.demonstration, sign * *trial.preference});
+      }
+      if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
     }
     if (trial.focus_lost_count + trial.dropped_frames + trial.playback_errors > 0) {
       Session& session = builder_.session(file.participant);

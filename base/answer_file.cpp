@@ -57,6 +57,32 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
 }
 
+// The choice, which follows from the grade where there is one.
+void read_choice(JsonObject& object, const AnswerFile& file, Trial& trial) {
+  const std::string choice = object.choice("choice", {"left", "right", "tie"});
+  trial.choice = choice == "tie" ? Side::unknown : side_of(choice);
+  if (object.has("preference")) {
+    trial.preference = static_cast<int>(object.whole("preference", -3, 3));
+    if (!file.graded_hit.empty()) object.fail("preference", "has no place in a study of levels");
+  }
+  const int sign = trial.preference.value_or(choice == "left" ? -1 : 1);
+  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
+    object.fail("choice",
+                "must be left, right or tie as `preference` is less than, more than, or 0");
+  }
+}
+
+// What a study can ask in each trial besides.
+void check_besides(JsonObject& object) {
+  if (object.has("confidence")) object.whole("confidence", 1, 9);
+  if (object.has("reason")) object.text("reason", 8000);
+  if (!object.has("where_side")) return;  // then the rest of a place is unknown too
+  object.choice("where_side", {"left", "right"});
+  object.number("where_x", 0, 1);
+  object.number("where_y", 0, 1);
+  object.number("where_time_s", 0, 86400);
+}
+
 // What the sides can show.
 std::vector<std::string> sides_of(const AnswerFile& file) {
   if (!file.graded_hit.empty()) return {"reference", "graded"};
@@ -80,7 +106,8 @@ Trial read_trial(JsonObject object, const AnswerFile& file) {
     object.fail("right",
                 fmt::format("`{}` on both sides; a pair shows each method once", trial.right));
   }
-  trial.choice = side_of(object.choice("choice", {"left", "right"}));
+  read_choice(object, file, trial);
+  check_besides(object);
   if (trial.kind == TrialKind::attention) {
     trial.expected = side_of(object.choice("expected", {"left", "right"}));
   }

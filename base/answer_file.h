@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct Trial {
   /// "pinch" and "baseline", or methods of the plan, or "reference" and "graded"; attention checks
   /// may show "check"
   std::string left, right;
-  double level = 0.0;  ///< of the graded clip, in studies of thresholds
-  Side choice = Side::left;
+  double level = 0.0;             ///< of the graded clip, in studies of thresholds
+  Side choice = Side::left;       ///< unknown: a tie, where preferences are graded
+  std::optional<int> preference;  ///< from -3, left by far, to 3, right by far, where it is graded
   Side expected = Side::unknown;  ///< attention checks only: the side that a watchful eye picks
   double reaction_time_s = 0.0;   ///< s, from the moment the buttons appear to the choice
   long focus_lost_count = 0;

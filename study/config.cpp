@@ -208,12 +208,30 @@ Config default_config() {
 
 Config parse_config(const json& document, const std::string& file) {
   JsonObject object(document, file, "");
-  object.expect_only(
-      {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
-       "both_orders", "participant_limit", "one_time_links", "texts", "methods",
-       "pairs_per_demonstration", "series", "graded_hit", "adaptive_trials", "shared_computer",
-       "recruiting", "questionnaire_before", "questionnaire_after"},
-      key_cure);
+  object.expect_only({"format",
+                      "language",
+                      "demonstrations",
+                      "training",
+                      "attention_checks",
+                      "repetitions",
+                      "both_orders",
+                      "participant_limit",
+                      "one_time_links",
+                      "texts",
+                      "methods",
+                      "pairs_per_demonstration",
+                      "series",
+                      "graded_hit",
+                      "adaptive_trials",
+                      "shared_computer",
+                      "recruiting",
+                      "questionnaire_before",
+                      "questionnaire_after",
+                      "confidence",
+                      "preference",
+                      "reason",
+                      "click_where"},
+                     key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
   if (object.has("language")) config.language = read_language(object);
@@ -250,6 +268,7 @@ Config parse_config(const json& document, const std::string& file) {
                   "each participant start once");
     }
   }
+  config.trial = read_trial_options(object);
   config.questionnaires = read_questionnaires(object, file);
   config.texts = read_texts(document, file, config);
   check_number_of_trials(config, file);

@@ -12,6 +12,7 @@
 #include "study/plan.h"
 #include "study/questionnaire.h"
 #include "study/recruiting.h"
+#include "study/trial_options.h"
 
 namespace pinchlab::study {
 
@@ -43,7 +44,8 @@ struct Config {
   bool shared_computer = false;  ///< the last page leads to the next participant
   int participant_limit = 0;     ///< 0: none
   bool one_time_links = false;
-  std::optional<Recruiting> recruiting;      ///< participants who are sent by a site
+  std::optional<Recruiting> recruiting;  ///< participants who are sent by a site
+  TrialOptions trial;
   Questionnaires questionnaires;             ///< around the trials
   bool is_pilot = false;                     ///< a trial run; of the command line, not of the file
   std::string language = "en";               ///< of the texts, a BCP 47 tag

@@ -249,6 +249,7 @@ void Desk::answer(const std::string& token, const SentAnswer& sent) {
     if (files != nullptr && sent.answer.encoding == Encoding::webm && !files->webm) {
       throw Refused(422, "request: /encoding: was not offered");
     }
+    check_asked(sent.answer, options_.config.trial);
     study::answer(session, sent.index, sent.answer);
     choose_level(session, options_.config);
   });

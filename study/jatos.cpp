@@ -160,6 +160,7 @@ struct Key {  // NOLINT(bugprone-exception-escape)
   PlanOptions options;
   json shown;  // what_is_shown()
   Questionnaires questionnaires;
+  TrialOptions trial;
   json files, plans;
 };
 
@@ -189,6 +190,11 @@ Key read_key(const fs::path& path) {
   key.options.both_orders = options.flag("both_orders");
   options.finish();
   key.shown = object.need("shown");
+  if (object.has("trial_options")) {
+    JsonObject trial = object.object("trial_options");
+    key.trial = read_trial_options(trial);
+    trial.finish();
+  }
   if (object.has("questionnaires")) {
     key.questionnaires = questionnaires_from_json(object.object("questionnaires"), path.string());
   }
@@ -256,6 +262,7 @@ Result read_result(const std::string& line, const std::string& place, const Key&
   try {
     Session session = session_from_json(session_document);
     session.questionnaires = questionnaires;
+    for (const AnsweredTrial& trial : session.answers) check_asked(trial.answer, key.trial);
     if (session.id.size() != 16 ||
         session.id.find_first_not_of("0123456789abcdef") != std::string::npos) {
       throw std::runtime_error("participant: must be 16 hexadecimal digits");
@@ -334,6 +341,7 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                 {"participants", participants},
                 {"language", config.language},
                 {"texts", config.texts}};
+  if (config.trial != TrialOptions()) input["trial_options"] = to_json(config.trial);
   if (!config.questionnaires.empty()) input["questionnaires"] = to_json(config.questionnaires);
   zip.add(std::string(folder_name) + ".jas", study_properties(config, uuid, input).dump());
 
@@ -356,6 +364,7 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                       {"shown", what_is_shown(config, clips)},
                       {"files", files},
                       {"plans", plans}};
+  if (config.trial != TrialOptions()) key["trial_options"] = to_json(config.trial);
   if (!config.questionnaires.empty()) key["questionnaires"] = to_json(config.questionnaires);
   // The key first: an archive without one would be worthless.
   write_durably(key_path(archive), key.dump(1) + "\n");

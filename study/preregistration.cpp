@@ -79,6 +79,22 @@ std::string what_varies(const json& design, const Config& config) {
 
 std::string asked_besides(const Config& config) {
   std::string text;
+  const TrialOptions& trial = config.trial;
+  if (trial.is_graded) {
+    text +=
+        "Preferences are given in seven grades, from the left by far to the right by far; the "
+        "middle one is a tie, which counts as no choice.\n\n";
+  }
+  std::vector<std::string> besides;
+  if (trial.confidence > 0) {
+    besides.push_back(fmt::format("how sure they are (1 to {})", trial.confidence));
+  }
+  if (trial.click_where) besides.emplace_back("to click on where it looks wrong");
+  if (trial.reason > 0) besides.emplace_back("for a reason in words");
+  if (!besides.empty()) {
+    text += fmt::format("In each trial participants are asked besides: {}.\n\n",
+                        fmt::join(besides, "; "));
+  }
   for (const char* part : questionnaire_parts) {
     const Questionnaire* questionnaire = config.questionnaires.find(part);
     if (questionnaire == nullptr) continue;

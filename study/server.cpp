@@ -223,6 +223,7 @@ struct Server::Implementation {
                     {"texts", config.texts},
                     {"needs_link", config.one_time_links},
                     {"shared_computer", config.shared_computer}};
+      if (config.trial != TrialOptions()) study["trial_options"] = to_json(config.trial);
       if (!config.questionnaires.empty()) {
         study["questionnaires"] = to_json(config.questionnaires);
       }

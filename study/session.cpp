@@ -37,10 +37,43 @@ std::optional<double> optional_seconds(JsonObject& object, const char* key) {
   return object.has(key) ? std::optional(object.number(key, -1, 86400)) : std::nullopt;
 }
 
+std::string word_of(std::optional<Side> choice) {
+  return choice ? to_string(*choice) : "tie";
+}
+
+// The choice, which follows from the grade where there is one.
+void read_choice(JsonObject& object, TrialAnswer& answer) {
+  const std::string choice = object.choice("choice", {"left", "right", "tie"});
+  if (choice != "tie") answer.choice = side_from(choice);
+  if (object.has("preference")) {
+    answer.preference = static_cast<int>(object.whole("preference", -3, 3));
+  }
+  const int sign = answer.preference.value_or(choice == "left" ? -1 : 1);
+  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
+    object.fail("choice",
+                "must be left, right or tie as `preference` is less than, more than, or 0");
+  }
+}
+
+void read_besides(JsonObject& object, TrialAnswer& answer) {
+  if (object.has("confidence")) {
+    answer.confidence = static_cast<int>(object.whole("confidence", 1, 9));
+  }
+  if (object.has("reason")) {
+    answer.reason = object.text("reason", std::size_t{4} * longest_reason);
+    if (answer.reason.empty()) object.fail("reason", "is empty; leave it out");
+  }
+  if (!object.has("where_side")) return;  // then the rest of a place is unknown too
+  answer.where = Where{side_from(object.choice("where_side", {"left", "right"})),
+                       object.number("where_x", 0, 1), object.number("where_y", 0, 1),
+                       object.number("where_time_s", 0, 86400)};
+}
+
 // The answer proper, without what goes around it; used for requests and for session files.
 TrialAnswer read_answer(JsonObject& object) {
   TrialAnswer answer;
-  answer.choice = side_from(object.choice("choice", {"left", "right"}));
+  read_choice(object, answer);
+  read_besides(object, answer);
   answer.reaction_time_s = object.number("reaction_time_s", 0, 86400);
   answer.loops_watched = whole(object, "loops_watched", most_counted);
   answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
@@ -181,7 +214,7 @@ Recruited parse_recruited(const json& body) {
 
 ordered_json to_json(const TrialAnswer& answer) {
   ordered_json object = {
-      {"choice", to_string(answer.choice)},    {"reaction_time_s", answer.reaction_time_s},
+      {"choice", word_of(answer.choice)},      {"reaction_time_s", answer.reaction_time_s},
       {"loops_watched", answer.loops_watched}, {"focus_lost_count", answer.focus_lost_count},
       {"frame_count", answer.frame_count},     {"dropped_frames", answer.dropped_frames}};
   if (answer.loop_gap_median_s) object["loop_gap_median_s"] = *answer.loop_gap_median_s;
@@ -196,6 +229,15 @@ ordered_json to_json(const TrialAnswer& answer) {
                  {"screen_width_px", answer.screen_width_px},
                  {"screen_height_px", answer.screen_height_px},
                  {"device_pixel_ratio", answer.device_pixel_ratio}});
+  if (answer.preference) object["preference"] = *answer.preference;
+  if (answer.confidence) object["confidence"] = *answer.confidence;
+  if (!answer.reason.empty()) object["reason"] = answer.reason;
+  if (answer.where) {
+    object.update({{"where_side", to_string(answer.where->side)},
+                   {"where_x", answer.where->x},
+                   {"where_y", answer.where->y},
+                   {"where_time_s", answer.where->time_s}});
+  }
   return object;
 }
 

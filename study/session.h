@@ -29,9 +29,20 @@ struct Refused : std::runtime_error {
   int status;
 };
 
+/// A place in one of the clips that are shown side by side.
+struct Where {
+  Side side = Side::left;
+  double x = 0, y = 0;  ///< shares of the clip's width and height, from its upper left corner
+  double time_s = 0;    ///< s of the clip
+
+  friend bool operator==(const Where&, const Where&) = default;
+};
+
+inline constexpr int longest_reason = 2000;  ///< characters
+
 /// What the page tells of one trial.
 struct TrialAnswer {
-  Side choice = Side::left;
+  std::optional<Side> choice;  ///< none: a tie
   double reaction_time_s = 0;  ///< s, since the buttons appeared
   int loops_watched = 0, focus_lost_count = 0;
   int frame_count = 0;     ///< decoded, dropped ones among them
@@ -46,6 +57,11 @@ struct TrialAnswer {
   int clip_width_px = 0, clip_height_px = 0;
   int screen_width_px = 0, screen_height_px = 0;
   double device_pixel_ratio = 1;
+  // What a study can ask besides (trial_options.h).
+  std::optional<int> preference;  ///< from -3, left by far, to 3, right by far; 0: a tie
+  std::optional<int> confidence;  ///< from 1
+  std::string reason;             ///< empty: none
+  std::optional<Where> where;     ///< where it looks wrong
 
   friend bool operator==(const TrialAnswer&, const TrialAnswer&) = default;
 };

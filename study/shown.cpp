@@ -13,6 +13,7 @@ namespace {
 json options_of(const Config& config) {
   json options = json::object();
   if (!config.questionnaires.empty()) options["questionnaires"] = to_json(config.questionnaires);
+  if (config.trial != TrialOptions()) options["trials"] = to_json(config.trial);
   return options;
 }
 

@@ -161,23 +161,51 @@ class Simulated {
     const bool is_lapse = uniform() < truth_.lapses;
     const bool is_first = uniform() < (is_lapse ? 0.5 : share);
     const Side choice = is_first ? trial.pinch : opposite(trial.pinch);
-    return {{"index", index},
-            {"choice", to_string(choice)},
-            {"reaction_time_s", std::round(1000 * gsl_ran_lognormal(rng_.get(), 0, 0.5)) / 1000},
-            {"loops_watched", 1},
-            {"focus_lost_count", 0},
-            {"frame_count", 240},
-            {"dropped_frames", 0},
-            {"playback_errors", json::array()},
-            {"input", "mouse"},
-            {"encoding", "mp4"},
-            {"window_width_px", 1920},
-            {"window_height_px", 1080},
-            {"clip_width_px", 1920},
-            {"clip_height_px", 960},
-            {"screen_width_px", 1920},
-            {"screen_height_px", 1080},
-            {"device_pixel_ratio", 1}};
+    json body = {
+        {"index", index},
+        {"choice", to_string(choice)},
+        {"reaction_time_s", std::round(1000 * gsl_ran_lognormal(rng_.get(), 0, 0.5)) / 1000},
+        {"loops_watched", 1},
+        {"focus_lost_count", 0},
+        {"frame_count", 240},
+        {"dropped_frames", 0},
+        {"playback_errors", json::array()},
+        {"input", "mouse"},
+        {"encoding", "mp4"},
+        {"window_width_px", 1920},
+        {"window_height_px", 1080},
+        {"clip_width_px", 1920},
+        {"clip_height_px", 960},
+        {"screen_width_px", 1920},
+        {"screen_height_px", 1080},
+        {"device_pixel_ratio", 1}};
+    answer_besides(body, choice);
+    return body;
+  }
+
+  // What is asked besides the choice: a tenth of ties, and the rest by throws of dice.
+  void answer_besides(json& body, Side choice) {
+    const TrialOptions& asked = desk_.config().trial;
+    const auto die = [&](int sides) {
+      return 1 +
+             static_cast<int>(gsl_rng_uniform_int(rng_.get(), static_cast<unsigned long>(sides)));
+    };
+    if (asked.is_graded) {
+      const bool is_tie = uniform() < 0.1;
+      const int grade = is_tie ? 0 : die(3);
+      body["preference"] = choice == Side::left ? -grade : grade;
+      if (is_tie) body["choice"] = "tie";
+    }
+    if (asked.confidence > 0) body["confidence"] = die(asked.confidence);
+    if (asked.reason > 0) {
+      body["reason"] = std::string("simulated").substr(0, static_cast<std::size_t>(asked.reason));
+    }
+    if (asked.click_where) {
+      body.update({{"where_side", to_string(opposite(choice))},
+                   {"where_x", uniform()},
+                   {"where_y", uniform()},
+                   {"where_time_s", uniform()}});
+    }
   }
 
   Desk& desk_;

@@ -46,7 +46,8 @@ std::string choice(const json& trial) {
   if (trial["kind"] == "attention") {
     return trial["choice"] == trial["expected"] ? "pass" : "fail";
   }
-  const std::string chosen = trial[trial["choice"].get<std::string>()];
+  const std::string side = trial["choice"];
+  const std::string chosen = trial.value(side, side);  // a tie is none of the sides
   return chosen == "baseline" ? "cable" : chosen;
 }
 
@@ -69,6 +70,7 @@ struct Column {
   const char* description;
   std::string (*value)(const json& file, const json& trial) = nullptr;
   unsigned kinds = every_kind;
+  bool is_asked_besides = false;  // left out where no trial has it
 };
 
 const std::vector<Column> columns = {
@@ -91,7 +93,8 @@ const std::vector<Column> columns = {
      thresholds},
     {"side", "Side that showed pinch joints",
      [](const json&, const json& trial) { return pinch_side(trial); }, two_methods},
-    {"choice", "What was chosen: pinch, cable or another method; in attention trials pass or fail",
+    {"choice",
+     "What was chosen: pinch, cable or another method, or tie; in attention trials pass or fail",
      [](const json&, const json& trial) { return choice(trial); }, two_methods | several_methods},
     {"chosen_side", "Side that was chosen",
      [](const json&, const json& trial) { return value_of(trial, "choice"); }},
@@ -117,6 +120,15 @@ const std::vector<Column> columns = {
     {"screen_width_px", "Width of the screen, CSS pixels"},
     {"screen_height_px", "Height of the screen, CSS pixels"},
     {"device_pixel_ratio", "Device pixels a CSS pixel"},
+    {"preference", "From -3, left by far, over 0, a tie, to 3, right by far", nullptr, every_kind,
+     true},
+    {"confidence", "How sure the participant was, from 1", nullptr, every_kind, true},
+    {"reason", "What the participant wrote about this choice", nullptr, every_kind, true},
+    {"where_side", "Clip in which the participant marked where it looks wrong", nullptr, every_kind,
+     true},
+    {"where_x", "Share of that clip's width, from its left edge", nullptr, every_kind, true},
+    {"where_y", "Share of its height, from its upper edge", nullptr, every_kind, true},
+    {"where_time_s", "Seconds of the clip at that moment", nullptr, every_kind, true},
 };
 
 std::string row(const std::vector<std::string>& values) {
@@ -125,24 +137,6 @@ std::string row(const std::vector<std::string>& values) {
     text += (text.empty() ? "" : ",") + csv_cell(harmless(value));
   }
   return text + "\n";
-}
-
-ordered_json description(unsigned kind, const QuestionColumns& questions) {
-  ordered_json variables = ordered_json::array();
-  for (const Column& column : columns) {
-    if ((column.kinds & kind) == 0) continue;
-    variables.push_back(
-        {{"@type", "PropertyValue"}, {"name", column.name}, {"description", column.description}});
-  }
-  for (const auto& [name, question] : questions) {
-    variables.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", question}});
-  }
-  return {{"@context", "https://schema.org/"},
-          {"@type", "Dataset"},
-          {"name", "Which cable looks most realistic?"},
-          {"description",
-           "Forced choices between simulations of cables, shown side by side. One row a trial."},
-          {"variableMeasured", variables}};
 }
 
 // Psych-DS recommends one (MISSING_README_DOC).
@@ -204,9 +198,9 @@ using Cells = std::vector<std::string>;
 
 // The answers of a folder: the columns of its kind of study, and each participant's rows.
 struct Answers {
-  unsigned kind = two_methods;  // of an empty folder
-  Cells names;
-  QuestionColumns questions;
+  std::vector<const Column*> columns;  // of trials
+  QuestionColumns questions;           // of participants, in each of their rows
+  Cells names;                         // of both
   std::vector<std::pair<json, std::vector<Cells>>> participants;  // answer file, rows
 };
 
@@ -216,37 +210,63 @@ std::vector<json> files_of(const Answers& answers) {
   return files;
 }
 
+std::vector<const Column*> columns_of(const std::vector<json>& files) {
+  const unsigned kind = files.empty() ? two_methods : kind_of(files.front());
+  const auto is_there = [&](const Column& column) {
+    return std::ranges::any_of(files, [&](const json& file) {
+      return std::ranges::any_of(file["trials"],
+                                 [&](const json& trial) { return trial.contains(column.name); });
+    });
+  };
+  std::vector<const Column*> chosen;
+  for (const Column& column : columns) {
+    const bool is_of_kind = (column.kinds & kind) != 0;
+    if (is_of_kind && (!column.is_asked_besides || is_there(column))) chosen.push_back(&column);
+  }
+  return chosen;
+}
+
 Answers read_folder(const fs::path& folder) {
   Answers answers;
   SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
     json file = read_json_file(path, largest_file);
     same_study.check(parse_answer_file(file, path.string()), path.string());
-    answers.kind = kind_of(file);
-    std::vector<Cells> rows;
+    answers.participants.emplace_back(std::move(file), std::vector<Cells>());
+  }
+  const std::vector<json> files = files_of(answers);
+  answers.columns = columns_of(files);
+  answers.questions = question_columns(files);
+  for (const Column* column : answers.columns) answers.names.emplace_back(column->name);
+  for (const auto& [name, question] : answers.questions) answers.names.push_back(name);
+  for (auto& [file, rows] : answers.participants) {
     for (const json& trial : file["trials"]) {
       Cells& values = rows.emplace_back();
-      for (const Column& column : columns) {
-        if ((column.kinds & answers.kind) == 0) continue;
-        values.push_back(column.value != nullptr ? column.value(file, trial)
-                                                 : value_of(trial, column.name));
+      for (const Column* column : answers.columns) {
+        values.push_back(column->value != nullptr ? column->value(file, trial)
+                                                  : value_of(trial, column->name));
       }
-    }
-    answers.participants.emplace_back(std::move(file), std::move(rows));
-  }
-  for (const Column& column : columns) {
-    if ((column.kinds & answers.kind) != 0) answers.names.emplace_back(column.name);
-  }
-  // What a participant answered besides stands in each of the rows.
-  answers.questions = question_columns(files_of(answers));
-  for (const auto& [name, question] : answers.questions) {
-    answers.names.push_back(name);
-    for (auto& [file, rows] : answers.participants) {
-      const std::string answer = own_answer(file, name);
-      for (Cells& values : rows) values.push_back(answer);
+      for (const auto& [name, question] : answers.questions) {
+        values.push_back(own_answer(file, name));
+      }
     }
   }
   return answers;
+}
+
+ordered_json description(const Answers& answers) {
+  ordered_json variables = ordered_json::array();
+  const auto add = [&](const std::string& name, const std::string& what) {
+    variables.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", what}});
+  };
+  for (const Column* column : answers.columns) add(column->name, column->description);
+  for (const auto& [name, question] : answers.questions) add(name, question);
+  return {{"@context", "https://schema.org/"},
+          {"@type", "Dataset"},
+          {"name", "Which cable looks most realistic?"},
+          {"description",
+           "Forced choices between simulations of cables, shown side by side. One row a trial."},
+          {"variableMeasured", variables}};
 }
 
 std::string csv_of(const Answers& answers) {
@@ -313,9 +333,8 @@ std::map<std::string, std::string> bids_files(const fs::path& folder) {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     of_participants[table.names[i]] = {{"Description", table.descriptions[i]}};
   }
-  for (const Column& column : columns) {
-    if ((column.kinds & answers.kind) != 0)
-      of_trials[column.name] = {{"Description", column.description}};
+  for (const Column* column : answers.columns) {
+    of_trials[column->name] = {{"Description", column->description}};
   }
   for (const auto& [name, question] : answers.questions) {
     of_trials[name] = {{"Description", question}};
@@ -340,10 +359,9 @@ void write_bids(const fs::path& folder, const fs::path& out) {
 
 std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
   const Answers answers = read_folder(folder);
-  return {
-      {"data/study-cables_data.csv", csv_of(answers)},
-      {"README.md", dataset_readme},
-      {"dataset_description.json", description(answers.kind, answers.questions).dump(2) + "\n"}};
+  return {{"data/study-cables_data.csv", csv_of(answers)},
+          {"README.md", dataset_readme},
+          {"dataset_description.json", description(answers).dump(2) + "\n"}};
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {

@@ -28,6 +28,10 @@ bool is_used(const std::string& key, const Config& config) {
   const std::pair<const char*, bool> options[] = {
       {"recruiting_", config.recruiting.has_value()},
       {"questionnaire_", !config.questionnaires.empty()},
+      {"graded_", config.trial.is_graded},
+      {"confidence_", config.trial.confidence > 0},
+      {"click_", config.trial.click_where},
+      {"reason_", config.trial.reason > 0},
       {"collected_", collects_more(config)}};
   for (const auto& [beginning, is_on] : options) {
     if (key.starts_with(beginning)) return is_on;

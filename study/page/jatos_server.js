@@ -72,7 +72,7 @@ export function connect(onTrouble) {
       await loaded;
       jatos.httpTimeout = 15000;  // ms
       jatos.httpRetry = 1;  // then the page says so, and tries again by itself
-      return { texts: input().texts, questionnaires: input().questionnaires };
+      return { texts: input().texts, questionnaires: input().questionnaires, trial_options: input().trial_options };
     },
 
     async running() {

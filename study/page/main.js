@@ -19,8 +19,8 @@ const tell = (trouble) => {
 };
 const backend = connect(tell);
 let isShared = false;  // one computer for many participants
-let recruiting = null, questionnaires = {};
-({ texts, recruiting = null, questionnaires = {}, shared_computer: isShared = false } = await backend.study());
+let recruiting = null, questionnaires = {}, options = {};
+({ texts, recruiting = null, questionnaires = {}, trial_options: options = {}, shared_computer: isShared = false } = await backend.study());
 const site = new Site(recruiting, texts);
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
@@ -68,6 +68,7 @@ try {
     texts,
     remaining: countedFrom(index),
     practice: session.trials[index].practice,
+    options,
     exit: () => exitButton(texts, leave),
     clip(onShare) {
       clips.want(index);

@@ -227,6 +227,35 @@ TEST(Jatos, OwnQuestionsComeBackChecked) {
   EXPECT_EQ(file["questionnaires"]["after"]["age"]["answer"], 44);
 }
 
+TEST(Jatos, WhatWasAskedInTrialsComesBackChecked) {
+  const Config config = parse_config({{"format", "pinchlab-study 1"},
+                                      {"demonstrations", demonstrations},
+                                      {"preference", "graded"},
+                                      {"confidence", 3}},
+                                     "study.json");
+  const Exported study = exported(config);
+  EXPECT_EQ(study.input["trial_options"], (json{{"preference", "graded"}, {"confidence", 3}}));
+  const auto bring = [&](const json& more) {
+    json one = result(study.input, 0, 3, "0123456789abcdef");
+    for (json& answer : one["answers"]) answer.update(more);
+    write_text(study.folder / "results.txt", one.dump());
+    return import_jatos({study.folder / "results.txt"}, study.folder / "study.key.json",
+                        study.folder / "answers");
+  };
+  const json tie = {{"choice", "tie"}, {"preference", 0}};
+  EXPECT_THROW(bring(json::object()), InputError) << "nothing of it is there";
+  EXPECT_THROW(bring(tie), InputError) << "the confidence is missing";
+  json full = tie;
+  full["confidence"] = 4;
+  EXPECT_THROW(bring(full), InputError) << "beyond the scale";
+  full["confidence"] = 3;
+  full["reason"] = "none";
+  EXPECT_THROW(bring(full), InputError) << "was not asked";
+  EXPECT_FALSE(fs::exists(study.folder / "answers"));
+  full.erase("reason");
+  EXPECT_EQ(bring(full).added, 1);
+}
+
 TEST(Jatos, WhatCannotBeIsToldAndNothingIsWritten) {
   const Exported study = exported(small_config());
   const auto error = [&](const std::string& text) -> std::string {
