@@ -44,6 +44,7 @@ struct Session {
   std::int64_t focus_lost_count = 0;
   std::int64_t dropped_frames = 0;
   std::int64_t playback_errors = 0;
+  double refresh_rate_hz = 0;                    ///< of the screen; 0: not measured
   std::map<std::string, std::string> free_text;  ///< question -> what was written
 };
 

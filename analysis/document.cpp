@@ -366,6 +366,13 @@ class Writer {
       if (!playback.errors_for.empty())
         text += fmt::format(" ({})", fmt::join(playback.errors_for, ", "));
       add(Paragraph{text + "."});
+      if (playback.screens_measured > 0) {
+        add(Paragraph{
+            fmt::format("{} of {} measured screens do not show 60 frames a second evenly{}{}.",
+                        playback.uneven_screens.size(), playback.screens_measured,
+                        playback.uneven_screens.empty() ? "" : ": ",
+                        fmt::join(playback.uneven_screens, ", "))});
+      }
     }
   }
 

@@ -38,6 +38,9 @@ class AnswerFiles {
       builder_.expect_answers_per_demonstration(file.answers_per_demonstration, named.name);
       builder_.note_session_records(file.is_pilot);
       for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
+      if (file.refresh_rate_hz > 0) {
+        builder_.session(file.participant).refresh_rate_hz = file.refresh_rate_hz;
+      }
       if (!file.free_text.empty()) builder_.session(file.participant).free_text = file.free_text;
     }
   }

@@ -254,6 +254,10 @@ std::string report_json(const Report& report, const AnswersTable& table) {
                           {"dropped_frames", report.playback.dropped_frames},
                           {"playback_errors", report.playback.playback_errors},
                           {"errors_for", report.playback.errors_for}};
+  if (report.playback.screens_measured > 0) {
+    document["playback"]["screens_measured"] = report.playback.screens_measured;
+    document["playback"]["uneven_screens"] = report.playback.uneven_screens;
+  }
   if (!report.graded.empty()) document["graded_preferences"] = graded_json(report.graded);
   return document.dump(2) + "\n";
 }

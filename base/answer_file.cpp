@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/did_you_mean.h"
@@ -182,8 +183,8 @@ void check_recruited(JsonObject recruited) {
 }
 
 // Answers to the researcher's own questions, by part and name.
-void check_questionnaires(JsonObject questionnaires) {
-  for (const char* part : {"before", "after"}) {
+void read_questionnaires(JsonObject questionnaires, AnswerFile& file) {
+  for (const std::string part : {"screen", "before", "after"}) {
     if (!questionnaires.has(part)) continue;
     JsonObject answers = questionnaires.object(part);
     for (const std::string& name : answers.all_keys()) {
@@ -194,7 +195,8 @@ void check_questionnaires(JsonObject questionnaires) {
       if (entry.need("answer").is_string()) {
         entry.text("answer", 100000);
       } else {
-        entry.number("answer", -1e9, 1e9);
+        const double number = entry.number("answer", -1e9, 1e9);
+        if (part == "screen" && name == "refresh_rate_hz") file.refresh_rate_hz = number;
       }
       entry.finish(format_cure);
     }
@@ -246,6 +248,11 @@ void read_texts(JsonObject& document, AnswerFile& file) {
 
 }  // namespace
 
+bool shows_60_evenly(double hz) {
+  const double times = std::round(hz / 60);
+  return times >= 1 && std::abs(hz - 60 * times) <= 0.02 * hz;
+}
+
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file_name) {
   JsonObject object(document, file_name, "");
   object.choice("format", {"pinchlab-answers"});
@@ -265,7 +272,7 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   object.text("software_version", 256);
   if (object.has("study")) read_study(object.object("study"), file);
   if (object.has("recruited")) check_recruited(object.object("recruited"));
-  if (object.has("questionnaires")) check_questionnaires(object.object("questionnaires"));
+  if (object.has("questionnaires")) read_questionnaires(object.object("questionnaires"), file);
   if (object.has("language")) object.text("language", 64);
   if (object.has("user_agent")) object.text("user_agent", 4096);
   if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");

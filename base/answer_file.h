@@ -49,9 +49,14 @@ struct AnswerFile {
   std::map<std::string, std::string> free_text;  ///< question -> text
   /// (demonstration, variant) -> hash
   std::map<std::pair<std::string, std::string>, std::string> clips_sha256;
+  double refresh_rate_hz = 0;  ///< of the screen; 0: not measured
   /// what was asked, told and shown (key -> text or hash); empty in files of older versions
   std::map<std::string, std::string> study;
 };
+
+/// Does a screen that is redrawn `hz` times a second show each of 60 frames a second equally often?
+/// Within 2 %, which is more than browsers' clocks are off.
+bool shows_60_evenly(double hz);
 
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.

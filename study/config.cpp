@@ -225,6 +225,7 @@ Config parse_config(const json& document, const std::string& file) {
                       "adaptive_trials",
                       "shared_computer",
                       "recruiting",
+                      "measure_screen",
                       "questionnaire_before",
                       "questionnaire_after",
                       "confidence",

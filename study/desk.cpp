@@ -227,7 +227,7 @@ void Desk::show(const std::string& token, std::size_t index) {
   use_up_link(token);
   change(token, [&](Session& session) {
     const auto open = open_questionnaires(session, options_.config.questionnaires);
-    if (!open.empty() && open.front() == "before") {
+    if (!open.empty() && open.front() != "after") {
       throw Refused(409, "the questions before the trials are not answered");
     }
     study::show(session, index, options_.utc_now());

@@ -95,7 +95,12 @@ std::string asked_besides(const Config& config) {
     text += fmt::format("In each trial participants are asked besides: {}.\n\n",
                         fmt::join(besides, "; "));
   }
-  for (const char* part : questionnaire_parts) {
+  if (!config.questionnaires.screen.empty()) {
+    text +=
+        "The size of a pixel (by a card held to the screen), the viewing distance (as estimated) "
+        "and the refresh rate are measured first.\n\n";
+  }
+  for (const char* part : {"before", "after"}) {
     const Questionnaire* questionnaire = config.questionnaires.find(part);
     if (questionnaire == nullptr) continue;
     text += fmt::format("Questions {} the trials:\n\n", part);

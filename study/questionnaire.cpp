@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
 
 namespace pinchlab::study {
@@ -147,7 +148,7 @@ json check_answer(const Question& question, JsonObject& answers) {
       if (question.is_whole && number != std::floor(number)) {
         answers.fail(name, "must be a whole number");
       }
-      return answers.need(name);
+      return question.is_whole ? json(static_cast<std::int64_t>(number)) : json(number);
     }
     case QuestionKind::text:
       break;
@@ -166,13 +167,41 @@ std::string words_of(const Question& question) {
 }  // namespace
 
 const Questionnaire* Questionnaires::find(const std::string& part) const {
-  const Questionnaire* found = part == "before" ? &before : part == "after" ? &after : nullptr;
+  const Questionnaire* found = part == "screen"   ? &screen
+                               : part == "before" ? &before
+                               : part == "after"  ? &after
+                                                  : nullptr;
   return found == nullptr || found->empty() ? nullptr : found;
+}
+
+Questionnaire screen_questions() {
+  const auto number = [](const char* name, const char* text, double least, double most,
+                         bool is_required) {
+    Question question;
+    question.name = name;
+    question.kind = QuestionKind::number;
+    question.text = text;
+    question.is_required = is_required;
+    question.least = least;
+    question.most = most;
+    return question;
+  };
+  return {
+      number("px_per_mm", "CSS pixels a millimetre of the screen, by a card held to it", 1, 20,
+             false),
+      number("viewing_distance_mm",
+             "Distance from the eyes to the screen, as estimated by the "
+             "participant",
+             200, 3000, true),
+      number("refresh_rate_hz", "How often a second the browser redraws, median", 1, 2000, false)};
 }
 
 Questionnaires read_questionnaires(JsonObject& object, const std::string& file) {
   std::set<std::string> names;
   Questionnaires questionnaires;
+  if (object.has("measure_screen") && object.flag("measure_screen")) {
+    questionnaires.screen = screen_questions();
+  }
   questionnaires.before = read_one(object, "questionnaire_before", file, names);
   questionnaires.after = read_one(object, "questionnaire_after", file, names);
   return questionnaires;
@@ -191,6 +220,7 @@ json to_json(const Questionnaires& questionnaires) {
 Questionnaires questionnaires_from_json(JsonObject object, const std::string& file) {
   std::set<std::string> names;
   Questionnaires questionnaires;
+  questionnaires.screen = read_one(object, "screen", file, names);
   questionnaires.before = read_one(object, "before", file, names);
   questionnaires.after = read_one(object, "after", file, names);
   object.finish();

@@ -29,18 +29,22 @@ struct Question {
 
 using Questionnaire = std::vector<Question>;
 
-/// The two questionnaires of a study; an empty one is not shown.
+/// The questionnaires of a study; an empty one is not shown.
 struct Questionnaires {
+  Questionnaire screen;  ///< screen_questions(), which a page of its own answers, or empty
   Questionnaire before, after;
 
-  [[nodiscard]] bool empty() const { return before.empty() && after.empty(); }
-  /// The one that is called "before" or "after"; nullptr for others and for an empty one.
+  [[nodiscard]] bool empty() const { return screen.empty() && before.empty() && after.empty(); }
+  /// The one that is called "screen", "before" or "after"; nullptr for others and an empty one.
   [[nodiscard]] const Questionnaire* find(const std::string& part) const;
 };
 
-inline constexpr std::array<const char*, 2> questionnaire_parts = {"before", "after"};
+inline constexpr std::array<const char*, 3> questionnaire_parts = {"screen", "before", "after"};
 
-/// Reads `questionnaire_before` and `questionnaire_after` of a configuration strictly. Throws
+/// What `measure_screen` asks: size of a pixel, viewing distance, refresh rate.
+Questionnaire screen_questions();
+
+/// Reads `measure_screen`, `questionnaire_before` and `questionnaire_after` of a configuration strictly. Throws
 /// InputError.
 Questionnaires read_questionnaires(JsonObject& object, const std::string& file);
 

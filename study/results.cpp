@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/answer_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
 
@@ -72,6 +73,11 @@ json summary_of(const json& file) {
   const double one_side = std::max(left, answers - ties - left);
   if (answers >= fewest_for_sides && one_side >= nearly_always * answers) {
     warnings.push_back(warning("one_side", file, one_side / answers));
+  }
+  const json measured =
+      file.value("/questionnaires/screen/refresh_rate_hz/answer"_json_pointer, json());
+  if (measured.is_number() && !shows_60_evenly(measured.get<double>())) {
+    warnings.push_back(warning("refresh_rate", file, measured));
   }
   return {{"demonstrations", demonstrations},
           {"left", left},

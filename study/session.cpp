@@ -162,7 +162,8 @@ std::vector<std::string> open_questionnaires(const Session& session, const Quest
 void answer_questionnaire(Session& session, const Questionnaires& asked, const json& body) {
   const auto [part, answers] = refusing([&] {
     JsonObject object(body, "request", "");
-    std::string name = object.choice("part", {"before", "after"});
+    std::string name =
+        object.choice("part", {questionnaire_parts.begin(), questionnaire_parts.end()});
     const Questionnaire* questionnaire = asked.find(name);
     if (questionnaire == nullptr) object.fail("part", "this study has no such questionnaire");
     json checked = check_answers(*questionnaire, object.object("answers"));
@@ -171,8 +172,8 @@ void answer_questionnaire(Session& session, const Questionnaires& asked, const j
   });
   const auto before = session.questionnaires.find(part);
   if (before != session.questionnaires.end() && before->second == answers) return;  // sent again
-  const bool is_due = part == "before" ? session.answers.empty() && session.shown_utc.empty()
-                                       : is_finished(session);
+  const bool is_due =
+      part == "after" ? is_finished(session) : session.answers.empty() && session.shown_utc.empty();
   if (!is_due || before != session.questionnaires.end()) {
     throw Refused(409, "these questions are not being asked");
   }

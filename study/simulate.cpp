@@ -70,6 +70,7 @@ class Simulated {
     const auto [number, first_plan] = desk_.plan_of(id);
     const std::size_t count = first_plan.size();
     become(number);
+    answer_questionnaire(client, "screen");
     answer_questionnaire(client, "before");
     for (std::size_t i = started.at("next"); i < count; ++i) {
       post(client, "/api/show", {{"index", i}});

@@ -28,6 +28,7 @@ bool is_used(const std::string& key, const Config& config) {
   const std::pair<const char*, bool> options[] = {
       {"recruiting_", config.recruiting.has_value()},
       {"questionnaire_", !config.questionnaires.empty()},
+      {"screen_", !config.questionnaires.screen.empty()},
       {"graded_", config.trial.is_graded},
       {"confidence_", config.trial.confidence > 0},
       {"click_", config.trial.click_where},
@@ -43,6 +44,9 @@ bool is_used(const std::string& key, const Config& config) {
 void tell_what_is_kept(const json& own, const Config& config, Texts& texts) {
   if (collects_more(config) && !own.contains("information_rights")) {
     texts["information_rights"] = texts.at("collected_rights");
+  }
+  if (!config.questionnaires.screen.empty()) {
+    texts["information_rights"] += "\n\n" + texts.at("screen_rights");
   }
   if (config.recruiting) texts["information_rights"] += "\n\n" + texts.at("recruiting_rights");
 }

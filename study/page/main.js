@@ -6,6 +6,7 @@ import { PagePlugin, askResume, exitButton, failed, goodbye, information, preloa
 import { PairTrial } from './pair_trial.js';
 import { questionnaire } from './questionnaire.js';
 import { Site } from './recruiting.js';
+import { measureScreen } from './screen.js';
 
 const stage = document.getElementById('stage');
 const notice = document.getElementById('notice');
@@ -42,7 +43,9 @@ function page(show) {
 async function ask(display, session, part, leave) {
   if (!session.questionnaires?.includes(part)) return;
   const show = (...content) => sheet(display, ...content);
-  await backend.questionnaire(part, await questionnaire(show, texts, part, questionnaires[part], exitButton(texts, leave)));
+  const exit = exitButton(texts, leave);
+  const asked = part === 'screen' ? measureScreen(show, texts, exit) : questionnaire(show, texts, part, questionnaires[part], exit);
+  await backend.questionnaire(part, await asked);
 }
 
 try {
@@ -56,6 +59,7 @@ try {
     else goodbye(stage, texts, site, isShared);
   };
 
+  await ask(stage, session, 'screen', leave);
   await ask(stage, session, 'before', leave);
   const clips = await preload(stage, texts, session, site, (isLost) => tell(isLost ? new Error('lost') : null));
   stage.replaceChildren();

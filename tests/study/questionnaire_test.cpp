@@ -2,10 +2,12 @@
 // The researcher's own questions: what can be asked, what can be answered, where it goes.
 #include "study/questionnaire.h"
 
+#include "analysis/report.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
 #include "study/answers.h"
+#include "study/results.h"
 #include "study/shown.h"
 #include "study/simulate.h"
 #include "study/tables.h"
@@ -194,6 +196,60 @@ TEST(Questionnaire, OtherQuestionsAreAnotherStudy) {
   options = asking_desk(folder);
   options.config = asking(json::array({age}), {ease, words});
   EXPECT_THROW(Desk desk(std::move(options)), std::runtime_error);
+}
+
+// The page that measures the screen answers a questionnaire of its own.
+TEST(Screen, IsMeasuredFirstAndReported) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  options.config = parse_config({{"format", "pinchlab-study 1"},
+                                 {"demonstrations", demonstrations},
+                                 {"measure_screen", true},
+                                 {"questionnaire_before", json::array({age})}},
+                                "study.json");
+  const auto& texts = options.config.texts;
+  EXPECT_TRUE(texts.at("information_rights").ends_with(texts.at("screen_rights")));
+  Desk desk(std::move(options));
+  for (const auto& [hz, good] : {std::pair{59.94, true}, {75.0, false}}) {
+    const std::string token = desk.start("", "");
+    EXPECT_EQ(desk.progress(token).questionnaires, (std::vector<std::string>{"screen", "before"}));
+    const auto status = [&](const json& answers) {
+      return refused([&] {
+        desk.questionnaire(token, {{"part", "screen"}, {"answers", answers}});
+      });
+    };
+    EXPECT_EQ(status({{"px_per_mm", 3.8}}), 422) << "the distance is missing";
+    EXPECT_EQ(status({{"viewing_distance_mm", 100}}), 422);
+    EXPECT_EQ(status({{"viewing_distance_mm", 600}, {"px_per_mm", 0.5}}), 422);
+    EXPECT_EQ(status({{"viewing_distance_mm", 600}, {"refresh_rate_hz", 0}}), 422);
+    EXPECT_EQ(status({{"viewing_distance_mm", 600}, {"refresh_rate_hz", hz}}), 0);
+    EXPECT_EQ(refused([&] { desk.show(token, 0); }), 409) << "the other questions come first too";
+    desk.questionnaire(token, {{"part", "before"}, {"answers", {{"age", 44}}}});
+    answer_trials(desk, token);
+    desk.save(token, {});
+    const json read = Results(folder / "answers").read(false);
+    EXPECT_EQ(read["warnings"].dump().find("refresh_rate") == std::string::npos, good) << read;
+  }
+  EXPECT_NE(participants_csv(folder / "answers")
+                .find("screen_refresh_rate_hz,screen_viewing_distance_mm\n"),
+            std::string::npos);
+  const analysis::AnswersTable table = analysis::read_answers({folder / "answers"}, {});
+  const analysis::Report report = analysis::analyse_table(table, {.bootstrap = 99});
+  EXPECT_EQ(report.playback.screens_measured, 2);
+  ASSERT_EQ(report.playback.uneven_screens.size(), 1U);
+  EXPECT_TRUE(report.playback.uneven_screens[0].ends_with(" (75 Hz)"));
+  EXPECT_NE(report_markdown(report, table, {}).find("1 of 2 measured screens"), std::string::npos);
+  EXPECT_EQ(json::parse(report_json(report, table))["playback"]["screens_measured"], 2);
+}
+
+TEST(Screen, RatesThatShow60FramesEvenly) {
+  for (const double hz : {59.0, 59.94, 60.0, 61.0, 119.9, 120.0, 180.0, 240.0}) {
+    EXPECT_TRUE(shows_60_evenly(hz)) << hz;
+  }
+  for (const double hz :
+       {0.0, 1.0, 24.0, 30.0, 48.0, 50.0, 57.0, 75.0, 90.0, 100.0, 144.0, 165.0}) {
+    EXPECT_FALSE(shows_60_evenly(hz)) << hz;
+  }
 }
 
 TEST(Questionnaire, SimulatedParticipantsAnswer) {
