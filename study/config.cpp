@@ -10,7 +10,6 @@
 #include "base/json_object.h"
 #include "base/strict_json.h"
 #include "base/text_checks.h"
-#include "study/texts.h"
 
 namespace pinchlab::study {
 namespace {
@@ -176,6 +175,18 @@ void read_series(JsonObject& object, const std::string& file, Config& config) {
   }
 }
 
+TextOptions text_options(const Config& config) {
+  TextOptions options;
+  options.recruiting = config.recruiting.has_value();
+  options.questionnaires = !config.questionnaires.empty();
+  options.screen = !config.questionnaires.screen.empty();
+  options.graded = config.trial.is_graded;
+  options.confidence = config.trial.confidence > 0;
+  options.click_where = config.trial.click_where;
+  options.reason = config.trial.reason > 0;
+  return options;
+}
+
 std::string read_language(JsonObject& object) {
   std::string language = object.name("language");
   const auto is_tag = [](char c) {
@@ -202,7 +213,7 @@ void check_number_of_trials(const Config& config, const std::string& file) {
 
 Config default_config() {
   Config config;
-  config.texts = read_texts(json::object(), "", config);
+  config.texts = read_texts(json::object(), "", config.language, {});
   return config;
 }
 
@@ -271,7 +282,7 @@ Config parse_config(const json& document, const std::string& file) {
   }
   config.trial = read_trial_options(object);
   config.questionnaires = read_questionnaires(object, file);
-  config.texts = read_texts(document, file, config);
+  config.texts = read_texts(document, file, config.language, text_options(config));
   check_number_of_trials(config, file);
   return config;
 }

@@ -12,6 +12,7 @@
 #include "study/plan.h"
 #include "study/questionnaire.h"
 #include "study/recruiting.h"
+#include "study/texts.h"
 #include "study/trial_options.h"
 
 namespace pinchlab::study {
@@ -51,9 +52,6 @@ struct Config {
   std::string language = "en";               ///< of the texts, a BCP 47 tag
   std::map<std::string, std::string> texts;  ///< every text of the page that is used, by its key
 };
-
-/// All delivered texts of a language, or nothing if there are none.
-std::map<std::string, std::string> delivered_texts(const std::string& language);
 
 /// What a study is without a file: every pair once, in English.
 Config default_config();

@@ -191,6 +191,26 @@ SentAnswer parse_answer(const json& body) {
   });
 }
 
+void check_asked(const TrialAnswer& answer, const TrialOptions& options) {
+  const auto refuse = [](const char* key, const char* why) {
+    throw Refused(422, std::string("request: /") + key + ": " + why);
+  };
+  if (answer.preference.has_value() != options.is_graded) {
+    refuse("preference", options.is_graded ? "is missing" : "was not asked");
+  }
+  if (answer.confidence.has_value() != (options.confidence > 0)) {
+    refuse("confidence", options.confidence > 0 ? "is missing" : "was not asked");
+  }
+  if (answer.confidence && *answer.confidence > options.confidence) {
+    refuse("confidence", "is beyond the scale");
+  }
+  constexpr std::size_t bytes_a_character = 4;
+  if (answer.reason.size() > bytes_a_character * static_cast<std::size_t>(options.reason)) {
+    refuse("reason", options.reason > 0 ? "is too long" : "was not asked");
+  }
+  if (answer.where && !options.click_where) refuse("where_side", "was not asked");
+}
+
 std::map<std::string, std::string> parse_free_text(const json& body) {
   return refusing([&] {
     JsonObject object(body, "request", "");

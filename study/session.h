@@ -19,6 +19,7 @@
 #include "study/plan.h"
 #include "study/questionnaire.h"
 #include "study/recruiting.h"
+#include "study/trial_options.h"
 
 namespace pinchlab::study {
 
@@ -37,8 +38,6 @@ struct Where {
 
   friend bool operator==(const Where&, const Where&) = default;
 };
-
-inline constexpr int longest_reason = 2000;  ///< characters
 
 /// What the page tells of one trial.
 struct TrialAnswer {
@@ -111,6 +110,9 @@ struct SentAnswer {
   TrialAnswer answer;
 };
 SentAnswer parse_answer(const nlohmann::json& body);
+
+/// Throws Refused(422) if an answer holds what was not asked, or lacks what has to be there.
+void check_asked(const TrialAnswer& answer, const TrialOptions& options);
 
 /// The optional texts at the end. Throws Refused(422).
 std::map<std::string, std::string> parse_free_text(const nlohmann::json& body);

@@ -19,36 +19,30 @@ constexpr std::size_t longest_text = 10000;  // bytes
 constexpr const char* key_cure = "; study/README.md has the keys";
 
 // Does the study ask for more than choices and two optional texts?
-bool collects_more(const Config& config) {
-  return config.recruiting.has_value() || !config.questionnaires.empty();
+bool collects_more(const TextOptions& options) {
+  return options.recruiting || options.questionnaires;
 }
 
 // Texts that only studies with an option have, by how their keys begin.
-bool is_used(const std::string& key, const Config& config) {
-  const std::pair<const char*, bool> options[] = {
-      {"recruiting_", config.recruiting.has_value()},
-      {"questionnaire_", !config.questionnaires.empty()},
-      {"screen_", !config.questionnaires.screen.empty()},
-      {"graded_", config.trial.is_graded},
-      {"confidence_", config.trial.confidence > 0},
-      {"click_", config.trial.click_where},
-      {"reason_", config.trial.reason > 0},
-      {"collected_", collects_more(config)}};
-  for (const auto& [beginning, is_on] : options) {
+bool is_used(const std::string& key, const TextOptions& options) {
+  const std::pair<const char*, bool> parts[] = {
+      {"recruiting_", options.recruiting}, {"questionnaire_", options.questionnaires},
+      {"screen_", options.screen},         {"graded_", options.graded},
+      {"confidence_", options.confidence}, {"click_", options.click_where},
+      {"reason_", options.reason},         {"collected_", collects_more(options)}};
+  for (const auto& [beginning, is_on] : parts) {
     if (key.starts_with(beginning)) return is_on;
   }
   return true;
 }
 
 // What participants are told is kept must be what is kept.
-void tell_what_is_kept(const json& own, const Config& config, Texts& texts) {
-  if (collects_more(config) && !own.contains("information_rights")) {
+void tell_what_is_kept(const json& own, const TextOptions& options, Texts& texts) {
+  if (collects_more(options) && !own.contains("information_rights")) {
     texts["information_rights"] = texts.at("collected_rights");
   }
-  if (!config.questionnaires.screen.empty()) {
-    texts["information_rights"] += "\n\n" + texts.at("screen_rights");
-  }
-  if (config.recruiting) texts["information_rights"] += "\n\n" + texts.at("recruiting_rights");
+  if (options.screen) texts["information_rights"] += "\n\n" + texts.at("screen_rights");
+  if (options.recruiting) texts["information_rights"] += "\n\n" + texts.at("recruiting_rights");
 }
 
 }  // namespace
@@ -60,8 +54,9 @@ Texts delivered_texts(const std::string& language) {
 
 // Texts of a language that is not delivered must be complete: half a translation is worse than
 // none.
-Texts read_texts(const json& document, const std::string& file, const Config& config) {
-  Texts texts = delivered_texts(config.language);
+Texts read_texts(const json& document, const std::string& file, const std::string& language,
+                 const TextOptions& options) {
+  Texts texts = delivered_texts(language);
   const Texts english = delivered_texts("en");
   std::vector<std::string> known;
   known.reserve(english.size());
@@ -77,16 +72,16 @@ Texts read_texts(const json& document, const std::string& file, const Config& co
       object.fail(key, "is empty");
     }
   }
-  std::erase_if(texts, [&](const auto& text) { return !is_used(text.first, config); });
+  std::erase_if(texts, [&](const auto& text) { return !is_used(text.first, options); });
   for (const std::string& key : known) {
-    if (is_used(key, config) && !texts.contains(key)) {
+    if (is_used(key, options) && !texts.contains(key)) {
       throw InputError(file + ": /texts",
                        fmt::format("no texts are delivered in the language `{}`, so all must be "
                                    "given; `{}` is missing (English: \"{}\")",
-                                   config.language, key, english.at(key)));
+                                   language, key, english.at(key)));
     }
   }
-  tell_what_is_kept(own, config, texts);
+  tell_what_is_kept(own, options, texts);
   return texts;
 }
 

@@ -8,7 +8,7 @@
 
 namespace pinchlab::study {
 
-struct TrialAnswer;
+inline constexpr int longest_reason = 2000;  ///< characters
 
 struct TrialOptions {
   int confidence = 0;        ///< points of the scale that is asked after each choice; 0: none
@@ -24,8 +24,5 @@ TrialOptions read_trial_options(JsonObject& object);
 
 /// The same keys, but for those that are off; empty where all are.
 nlohmann::json to_json(const TrialOptions& options);
-
-/// Throws Refused(422) if an answer holds what was not asked, or lacks what has to be there.
-void check_asked(const TrialAnswer& answer, const TrialOptions& options);
 
 }  // namespace pinchlab::study

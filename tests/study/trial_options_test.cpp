@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a study asks in each trial besides the choice.
-#include "study/trial_options.h"
+#include "study/session.h"
 
 #include "analysis/comparisons_table.h"
 #include "analysis/report.h"
