@@ -141,6 +141,7 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   report.reaction_times = reaction_times(table, options.pinch_label, options.cable_label);
   report.attention = attention_checks(table);
   report.playback = playback(table);
+  report.graded = graded_preferences(table);
   return report;
 }
 

@@ -44,6 +44,7 @@ struct Session {
   std::int64_t focus_lost_count = 0;
   std::int64_t dropped_frames = 0;
   std::int64_t playback_errors = 0;
+  double refresh_rate_hz = 0;                    ///< of the screen; 0: not measured
   std::map<std::string, std::string> free_text;  ///< question -> what was written
 };
 
@@ -51,6 +52,12 @@ struct Session {
 struct Exclusion {
   std::string participant;
   std::string reason;
+};
+
+/// A preference that was given in grades (comparison scale of ITU-R BT.500).
+struct GradedAnswer {
+  std::string participant, demonstration;
+  int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
 };
 
 /// What holding answers against the frozen design of their study showed (design_check.h).
@@ -69,7 +76,8 @@ struct AnswersTable {
   std::vector<std::string> demonstrations;
   std::vector<Group> groups;                  ///< the last one is "all"
   std::string groups_from;                    ///< in words: where the groups come from
-  std::vector<Answer> answers;                ///< empty if only counts are known
+  std::vector<Answer> answers;                ///< without ties; empty if only counts are known
+  std::vector<GradedAnswer> graded;           ///< all, ties among them, where they were graded
   std::vector<Counts> counts;                 ///< one a demonstration
   std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
   bool is_pilot = false;                      ///< answers of a trial run

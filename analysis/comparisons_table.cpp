@@ -72,9 +72,9 @@ void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
 void read_file(const AnswerFile& file, std::vector<Row>& rows) {
   for (const Trial& trial : file.trials) {
     if (trial.kind != TrialKind::main) continue;
-    const bool is_left = trial.choice == Side::left;
-    rows.push_back({file.participant, trial.demonstration, trial.left, trial.right, is_left ? 1 : 0,
-                    is_left ? 0 : 1, 0});
+    rows.push_back({file.participant, trial.demonstration, trial.left, trial.right,
+                    trial.choice == Side::left ? 1 : 0, trial.choice == Side::right ? 1 : 0,
+                    trial.choice == Side::unknown ? 1 : 0});
   }
 }
 

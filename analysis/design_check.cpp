@@ -102,6 +102,7 @@ void check_shown(const AnswerFile& file, const Design& design, Deviations& devia
       {"question", "another question"},
       {"consent_sha256", "another consent text"},
       {"texts_sha256", "another text of the page"},
+      {"options_sha256", "other questions or options"},
       {"clips_sha256", "other clips"}};
   for (const auto& [key, value] : design.study) {
     const auto found = file.study.find(key);
@@ -109,6 +110,9 @@ void check_shown(const AnswerFile& file, const Design& design, Deviations& devia
       const auto word = words.find(key);
       deviations.add(word == words.end() ? "another " + key : word->second, file.participant);
     }
+  }
+  if (file.study.contains("options_sha256") && !design.study.contains("options_sha256")) {
+    deviations.add(words.at("options_sha256"), file.participant);
   }
   for (const auto& [clip, hash] : file.clips_sha256) {
     const auto planned = design.clips_sha256.find(clip.first);

@@ -47,6 +47,7 @@ class Writer {
     pooled();
     differences();
     effects();
+    for (Block& block : graded_blocks(report_)) add(std::move(block));
     input();
     free_texts();
     methods();
@@ -365,6 +366,13 @@ class Writer {
       if (!playback.errors_for.empty())
         text += fmt::format(" ({})", fmt::join(playback.errors_for, ", "));
       add(Paragraph{text + "."});
+      if (playback.screens_measured > 0) {
+        add(Paragraph{
+            fmt::format("{} of {} measured screens do not show 60 frames a second evenly{}{}.",
+                        playback.uneven_screens.size(), playback.screens_measured,
+                        playback.uneven_screens.empty() ? "" : ": ",
+                        fmt::join(playback.uneven_screens, ", "))});
+      }
     }
   }
 

@@ -44,6 +44,9 @@ struct Document {
 
 Document make_document(const Report& report, const AnswersTable& table);
 
+/// What there is to say of graded preferences; nothing where there are none.
+std::vector<Block> graded_blocks(const Report& report);
+
 /// "0.0455", "4.7e-04", "1": for tables that readers look numbers up in.
 std::string p_text(double p);
 /// Thesis style: rounded to `decimals`, "<0.001" below the last digit, "1" at one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/effects.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_statistics_double.h>
 
@@ -239,6 +240,11 @@ Playback playback(const AnswersTable& table) {
     result.dropped_frames += session.dropped_frames;
     result.playback_errors += session.playback_errors;
     if (session.playback_errors > 0) result.errors_for.push_back(table.participants[participant]);
+    if (session.refresh_rate_hz <= 0) continue;
+    ++result.screens_measured;
+    if (shows_60_evenly(session.refresh_rate_hz)) continue;
+    result.uneven_screens.push_back(
+        fmt::format("{} ({:.0f} Hz)", table.participants[participant], session.refresh_rate_hz));
   }
   return result;
 }

@@ -62,6 +62,9 @@ struct Playback {
   std::int64_t dropped_frames = 0;
   std::int64_t playback_errors = 0;
   std::vector<std::string> errors_for;  ///< participants with playback errors
+  int screens_measured = 0;
+  /// participants whose screens do not show 60 frames a second evenly, with the rate: "p (75 Hz)"
+  std::vector<std::string> uneven_screens;
 };
 Playback playback(const AnswersTable& table);
 

@@ -116,6 +116,10 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
         "all of them is an average of unlike cases.",
         difference.name, difference.statistic.value, difference.df.value, p_in_words(difference.p));
   }
+  if (!report.graded.empty() && report.graded.back().ties > 0) {
+    text += fmt::format(" {} of {} answers were ties, and are in no count here.",
+                        report.graded.back().ties, report.graded.back().answers);
+  }
   if (!table.exclusions.empty()) {
     text += fmt::format(" {} participant{} left out (listed below with the reasons).",
                         table.exclusions.size(), table.exclusions.size() == 1 ? " was" : "s were");

@@ -38,6 +38,9 @@ class AnswerFiles {
       builder_.expect_answers_per_demonstration(file.answers_per_demonstration, named.name);
       builder_.note_session_records(file.is_pilot);
       for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
+      if (file.refresh_rate_hz > 0) {
+        builder_.session(file.participant).refresh_rate_hz = file.refresh_rate_hz;
+      }
       if (!file.free_text.empty()) builder_.session(file.participant).free_text = file.free_text;
     }
   }
@@ -55,7 +58,11 @@ class AnswerFiles {
       answer.chose_pinch = trial.choice == answer.pinch_side;
       answer.position = trial.position;
       answer.reaction_time_s = trial.reaction_time_s;
-      builder_.add_answer(answer, index + 1);
+      if (trial.preference) {
+        const int sign = answer.pinch_side == Side::left ? -1 : 1;
+        builder_.add_graded({file.participant, trial.demonstration, sign * *trial.preference});
+      }
+      if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
     }
     if (trial.focus_lost_count + trial.dropped_frames + trial.playback_errors > 0) {
       Session& session = builder_.session(file.participant);

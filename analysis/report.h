@@ -11,6 +11,7 @@
 #include "analysis/answers_table.h"
 #include "analysis/clustered.h"
 #include "analysis/effects.h"
+#include "analysis/graded_preference.h"
 #include "analysis/mixed_model.h"
 #include "analysis/tests_2afc.h"
 
@@ -58,6 +59,7 @@ struct Report {
   std::vector<ReactionTimes> reaction_times;
   AttentionChecks attention;
   Playback playback;
+  std::vector<GradedPreference> graded;  ///< empty where preferences were not graded
 
   [[nodiscard]] const GroupResult& all() const { return groups.back(); }
 };

@@ -21,6 +21,27 @@ void put(ordered_json& object, const std::string& key, const Estimate& estimate)
   }
 }
 
+ordered_json graded_json(const std::vector<GradedPreference>& graded) {
+  ordered_json rows = ordered_json::array();
+  for (const GradedPreference& one : graded) {
+    ordered_json row = {{"name", one.name},
+                        {"answers", one.answers},
+                        {"ties", one.ties},
+                        {"participants", one.participants},
+                        {"mean", one.mean},
+                        {"participants_for", one.test.positive},
+                        {"participants_against", one.test.negative},
+                        {"participants_neither", one.test.zeros},
+                        {"w_plus", one.test.w_plus},
+                        {"exact", one.test.is_exact}};
+    put(row, "p_signed_rank", one.test.p);
+    put(row, "p_signed_rank_holm", one.p_holm);
+    put(row, "p_sign", one.test.p_sign);
+    rows.push_back(std::move(row));
+  }
+  return {{"ties", "left out of all counts, shares and tests of choices; 0 here"}, {"rows", rows}};
+}
+
 // A number that holds only if the row's answers are independent of each other.
 void put_naive(ordered_json& object, const Row& row, const std::string& key, double value) {
   put(object, key,
@@ -233,6 +254,11 @@ std::string report_json(const Report& report, const AnswersTable& table) {
                           {"dropped_frames", report.playback.dropped_frames},
                           {"playback_errors", report.playback.playback_errors},
                           {"errors_for", report.playback.errors_for}};
+  if (report.playback.screens_measured > 0) {
+    document["playback"]["screens_measured"] = report.playback.screens_measured;
+    document["playback"]["uneven_screens"] = report.playback.uneven_screens;
+  }
+  if (!report.graded.empty()) document["graded_preferences"] = graded_json(report.graded);
   return document.dump(2) + "\n";
 }
 

@@ -138,6 +138,11 @@ void TableBuilder::add_answer(const RawAnswer& raw, size_t line) {
   table_.answers.push_back(answer);
 }
 
+void TableBuilder::add_graded(const GradedAnswer& answer) {
+  table_.graded.push_back(answer);
+  if (answer.grade == 0) ++ties_[answer.participant];
+}
+
 void TableBuilder::add_counts(std::string_view demonstration, std::string_view group, Counts counts,
                               size_t line) {
   check_kind(true, line);
@@ -243,7 +248,8 @@ void TableBuilder::check_missing() {
   for (std::uint32_t p = 0; p < table_.participants.size(); ++p) {
     size_t end = begin;
     while (end < table_.answers.size() && table_.answers[end].participant == p) ++end;
-    if (end - begin < complete) {
+    const auto ties = ties_.find(table_.participants[p]);
+    if (end - begin + (ties == ties_.end() ? 0 : ties->second) < complete) {
       std::uint16_t missing = 0;
       for (size_t have = begin; missing + 1U < table_.demonstrations.size(); ++missing) {
         size_t count = 0;

@@ -32,6 +32,8 @@ class TableBuilder {
   bool excluded(std::string_view participant);
 
   void add_answer(const RawAnswer& answer, size_t line);
+  /// A grade; one that is a tie is no answer besides.
+  void add_graded(const GradedAnswer& answer);
   void add_counts(std::string_view demonstration, std::string_view group, Counts counts,
                   size_t line);
   void add_attention_check(std::string_view participant, bool passed);
@@ -77,6 +79,7 @@ class TableBuilder {
   Index demonstrations_;
   std::map<std::string, std::string> column_groups_;
   std::map<std::string, bool, std::less<>> excluded_;  // participant -> seen in an input?
+  std::map<std::string, std::size_t> ties_;            // by participant
   bool allow_missing_;
   std::string expected_from_;  // the place that set answers_per_demonstration
   std::uint32_t last_participant_ = 0;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/did_you_mean.h"
@@ -57,6 +58,32 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
 }
 
+// The choice, which follows from the grade where there is one.
+void read_choice(JsonObject& object, const AnswerFile& file, Trial& trial) {
+  const std::string choice = object.choice("choice", {"left", "right", "tie"});
+  trial.choice = choice == "tie" ? Side::unknown : side_of(choice);
+  if (object.has("preference")) {
+    trial.preference = static_cast<int>(object.whole("preference", -3, 3));
+    if (!file.graded_hit.empty()) object.fail("preference", "has no place in a study of levels");
+  }
+  const int sign = trial.preference.value_or(choice == "left" ? -1 : 1);
+  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
+    object.fail("choice",
+                "must be left, right or tie as `preference` is less than, more than, or 0");
+  }
+}
+
+// What a study can ask in each trial besides.
+void check_besides(JsonObject& object) {
+  if (object.has("confidence")) object.whole("confidence", 1, 9);
+  if (object.has("reason")) object.text("reason", 8000);
+  if (!object.has("where_side")) return;  // then the rest of a place is unknown too
+  object.choice("where_side", {"left", "right"});
+  object.number("where_x", 0, 1);
+  object.number("where_y", 0, 1);
+  object.number("where_time_s", 0, 86400);
+}
+
 // What the sides can show.
 std::vector<std::string> sides_of(const AnswerFile& file) {
   if (!file.graded_hit.empty()) return {"reference", "graded"};
@@ -80,7 +107,8 @@ Trial read_trial(JsonObject object, const AnswerFile& file) {
     object.fail("right",
                 fmt::format("`{}` on both sides; a pair shows each method once", trial.right));
   }
-  trial.choice = side_of(object.choice("choice", {"left", "right"}));
+  read_choice(object, file, trial);
+  check_besides(object);
   if (trial.kind == TrialKind::attention) {
     trial.expected = side_of(object.choice("expected", {"left", "right"}));
   }
@@ -141,7 +169,39 @@ void read_study(JsonObject study, AnswerFile& file) {
   for (const char* key : {"consent_sha256", "texts_sha256", "clips_sha256"}) {
     file.study[key] = study.sha256(key);
   }
+  if (study.has("options_sha256")) file.study["options_sha256"] = study.sha256("options_sha256");
   study.finish();
+}
+
+// Ids of a site that sent the participant.
+void check_recruited(JsonObject recruited) {
+  recruited.name("participant");
+  for (const char* key : {"study", "session"}) {
+    if (recruited.has(key)) recruited.name(key);
+  }
+  recruited.finish(format_cure);
+}
+
+// Answers to the researcher's own questions, by part and name.
+void read_questionnaires(JsonObject questionnaires, AnswerFile& file) {
+  for (const std::string part : {"screen", "before", "after"}) {
+    if (!questionnaires.has(part)) continue;
+    JsonObject answers = questionnaires.object(part);
+    for (const std::string& name : answers.all_keys()) {
+      const std::string why = why_not_a_name(name);
+      if (!why.empty()) answers.fail(name, fmt::format("bad key: {}", why));
+      JsonObject entry = answers.object(name);
+      entry.text("question", 10000);
+      if (entry.need("answer").is_string()) {
+        entry.text("answer", 100000);
+      } else {
+        const double number = entry.number("answer", -1e9, 1e9);
+        if (part == "screen" && name == "refresh_rate_hz") file.refresh_rate_hz = number;
+      }
+      entry.finish(format_cure);
+    }
+  }
+  questionnaires.finish(format_cure);
 }
 
 void read_trials(const nlohmann::json& trials, const std::string& file_name, AnswerFile& file) {
@@ -188,6 +248,11 @@ void read_texts(JsonObject& document, AnswerFile& file) {
 
 }  // namespace
 
+bool shows_60_evenly(double hz) {
+  const double times = std::round(hz / 60);
+  return times >= 1 && std::abs(hz - 60 * times) <= 0.02 * hz;
+}
+
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file_name) {
   JsonObject object(document, file_name, "");
   object.choice("format", {"pinchlab-answers"});
@@ -206,6 +271,8 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
   }
   object.text("software_version", 256);
   if (object.has("study")) read_study(object.object("study"), file);
+  if (object.has("recruited")) check_recruited(object.object("recruited"));
+  if (object.has("questionnaires")) read_questionnaires(object.object("questionnaires"), file);
   if (object.has("language")) object.text("language", 64);
   if (object.has("user_agent")) object.text("user_agent", 4096);
   if (object.has("withdrawal_code_sha256")) object.sha256("withdrawal_code_sha256");
@@ -315,11 +382,10 @@ void SameStudy::check(const AnswerFile& file, const std::string& name) {
                                        study_of_));
   }
   if (file.study != study_) {
-    const std::map<std::string, std::string> words = {{"language", "the language"},
-                                                      {"question", "the question"},
-                                                      {"consent_sha256", "the consent text"},
-                                                      {"texts_sha256", "the texts of the page"},
-                                                      {"clips_sha256", "the clips"}};
+    const std::map<std::string, std::string> words = {
+        {"language", "the language"},           {"question", "the question"},
+        {"consent_sha256", "the consent text"}, {"texts_sha256", "the texts of the page"},
+        {"clips_sha256", "the clips"},          {"options_sha256", "what is asked besides"}};
     std::string what;
     const auto value = [](const std::map<std::string, std::string>& study, const std::string& key) {
       const auto found = study.find(key);

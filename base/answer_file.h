@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct Trial {
   /// "pinch" and "baseline", or methods of the plan, or "reference" and "graded"; attention checks
   /// may show "check"
   std::string left, right;
-  double level = 0.0;  ///< of the graded clip, in studies of thresholds
-  Side choice = Side::left;
+  double level = 0.0;             ///< of the graded clip, in studies of thresholds
+  Side choice = Side::left;       ///< unknown: a tie, where preferences are graded
+  std::optional<int> preference;  ///< from -3, left by far, to 3, right by far, where it is graded
   Side expected = Side::unknown;  ///< attention checks only: the side that a watchful eye picks
   double reaction_time_s = 0.0;   ///< s, from the moment the buttons appear to the choice
   long focus_lost_count = 0;
@@ -47,9 +49,14 @@ struct AnswerFile {
   std::map<std::string, std::string> free_text;  ///< question -> text
   /// (demonstration, variant) -> hash
   std::map<std::pair<std::string, std::string>, std::string> clips_sha256;
+  double refresh_rate_hz = 0;  ///< of the screen; 0: not measured
   /// what was asked, told and shown (key -> text or hash); empty in files of older versions
   std::map<std::string, std::string> study;
 };
+
+/// Does a screen that is redrawn `hz` times a second show each of 60 frames a second equally often?
+/// Within 2 %, which is more than browsers' clocks are off.
+bool shows_60_evenly(double hz);
 
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.

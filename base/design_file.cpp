@@ -53,13 +53,14 @@ double failed_checks(const json& answers) {
 }
 
 double share_of_one_side(const json& answers) {
-  double left = 0, all = 0;
+  double left = 0, right = 0, all = 0;
   for (const json& trial : answers.at("trials")) {
     if (!is_main(trial)) continue;
     ++all;
     left += trial.at("choice") == "left" ? 1 : 0;
+    right += trial.at("choice") == "right" ? 1 : 0;
   }
-  return std::max(left, all - left) / all;
+  return std::max(left, right) / all;
 }
 
 // A value of an option of `analyse` as text: a number as it is printed, or a word.

@@ -31,21 +31,21 @@ std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
 
 ordered_json trial_entry(const PlannedTrial& trial, std::size_t position,
                          const AnsweredTrial& answered, const std::string& clip) {
-  const TrialAnswer& answer = answered.answer;
+  const ordered_json told = to_json(answered.answer);
   const auto [left, right] = sides(trial);
   ordered_json entry = {{"position", position},
                         {"kind", to_string(trial.kind)},
                         {"demonstration", trial.demonstration},
                         {"left", left},
                         {"right", right},
-                        {"choice", to_string(answer.choice)}};
+                        {"choice", told.at("choice")}};
   if (trial.kind == TrialKind::attention) {
     entry["expected"] = to_string(trial.pinch);
   }
   if (trial.level) entry["level"] = *trial.level;
   entry["shown_utc"] = answered.shown_utc;
   entry["clip"] = clip;
-  entry.update(to_json(answer));
+  entry.update(told);
   entry.erase("encoding");  // the clip's name tells it
   return entry;
 }
@@ -110,6 +110,8 @@ ordered_json answer_file(const Session& session, const AnsweredStudy& study,
                        {"trials", trials},
                        {"free_text", free_text}};
   if (study.is_pilot) file["pilot"] = true;
+  if (!session.questionnaires.empty()) file["questionnaires"] = session.questionnaires;
+  if (!session.recruited.participant.empty()) file["recruited"] = to_json(session.recruited);
   return file;
 }
 

@@ -377,6 +377,7 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
     desk_options.config = read_or_default(options->config);
     desk_options.config.is_pilot = true;
     desk_options.config.one_time_links = false;
+    desk_options.config.recruiting.reset();
     desk_options.config.participant_limit = 0;
     desk_options.clips = prepare(desk_options.config, stimuli, options->clips, true);
     desk_options.answers = options->answers;

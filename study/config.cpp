@@ -10,7 +10,6 @@
 #include "base/json_object.h"
 #include "base/strict_json.h"
 #include "base/text_checks.h"
-#include "study/page_assets.h"
 
 namespace pinchlab::study {
 namespace {
@@ -18,7 +17,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t largest_file = 1U << 20U;  // bytes
-constexpr std::size_t longest_text = 10000;      // bytes
 constexpr std::size_t most_trials = 1000;        // of one participant
 constexpr const char* key_cure = "; study/README.md has the keys";
 
@@ -177,36 +175,16 @@ void read_series(JsonObject& object, const std::string& file, Config& config) {
   }
 }
 
-// Texts of a language that is not delivered must be complete: half a translation is worse than
-// none.
-std::map<std::string, std::string> read_texts(const json& document, const std::string& file,
-                                              const std::string& language) {
-  std::map<std::string, std::string> texts = delivered_texts(language);
-  const std::map<std::string, std::string> english = delivered_texts("en");
-  std::vector<std::string> known;
-  known.reserve(english.size());
-  for (const auto& [key, text] : english) {
-    known.push_back(key);
-  }
-  if (document.contains("texts")) {
-    JsonObject object(document["texts"], file, "/texts");
-    object.expect_only(known, key_cure);
-    for (const std::string& key : object.all_keys()) {
-      texts[key] = object.text(key, longest_text);
-      if (texts[key].find_first_not_of(" \n") == std::string::npos) {
-        object.fail(key, "is empty");
-      }
-    }
-  }
-  for (const std::string& key : known) {
-    if (!texts.contains(key)) {
-      throw InputError(file + ": /texts",
-                       fmt::format("no texts are delivered in the language `{}`, so all must be "
-                                   "given; `{}` is missing (English: \"{}\")",
-                                   language, key, english.at(key)));
-    }
-  }
-  return texts;
+TextOptions text_options(const Config& config) {
+  TextOptions options;
+  options.recruiting = config.recruiting.has_value();
+  options.questionnaires = !config.questionnaires.empty();
+  options.screen = !config.questionnaires.screen.empty();
+  options.graded = config.trial.is_graded;
+  options.confidence = config.trial.confidence > 0;
+  options.click_where = config.trial.click_where;
+  options.reason = config.trial.reason > 0;
+  return options;
 }
 
 std::string read_language(JsonObject& object) {
@@ -233,25 +211,39 @@ void check_number_of_trials(const Config& config, const std::string& file) {
 
 }  // namespace
 
-std::map<std::string, std::string> delivered_texts(const std::string& language) {
-  const PageAsset* asset = find_asset("texts/" + language + ".json");
-  return asset == nullptr ? std::map<std::string, std::string>()
-                          : json::parse(asset->bytes).get<std::map<std::string, std::string>>();
-}
-
 Config default_config() {
   Config config;
-  config.texts = delivered_texts(config.language);
+  config.texts = read_texts(json::object(), "", config.language, {});
   return config;
 }
 
 Config parse_config(const json& document, const std::string& file) {
   JsonObject object(document, file, "");
-  object.expect_only(
-      {"format", "language", "demonstrations", "training", "attention_checks", "repetitions",
-       "both_orders", "participant_limit", "one_time_links", "texts", "methods",
-       "pairs_per_demonstration", "series", "graded_hit", "adaptive_trials", "shared_computer"},
-      key_cure);
+  object.expect_only({"format",
+                      "language",
+                      "demonstrations",
+                      "training",
+                      "attention_checks",
+                      "repetitions",
+                      "both_orders",
+                      "participant_limit",
+                      "one_time_links",
+                      "texts",
+                      "methods",
+                      "pairs_per_demonstration",
+                      "series",
+                      "graded_hit",
+                      "adaptive_trials",
+                      "shared_computer",
+                      "recruiting",
+                      "measure_screen",
+                      "questionnaire_before",
+                      "questionnaire_after",
+                      "confidence",
+                      "preference",
+                      "reason",
+                      "click_where"},
+                     key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
   if (object.has("language")) config.language = read_language(object);
@@ -280,7 +272,17 @@ Config parse_config(const json& document, const std::string& file) {
     config.participant_limit = static_cast<int>(object.whole("participant_limit", 1, 100000));
   }
   if (object.has("one_time_links")) config.one_time_links = object.flag("one_time_links");
-  config.texts = read_texts(document, file, config.language);
+  if (object.has("recruiting")) {
+    config.recruiting = read_recruiting(object.object("recruiting"));
+    if (config.one_time_links || config.shared_computer) {
+      object.fail("recruiting",
+                  "cannot be combined with one_time_links or shared_computer: the site's ids let "
+                  "each participant start once");
+    }
+  }
+  config.trial = read_trial_options(object);
+  config.questionnaires = read_questionnaires(object, file);
+  config.texts = read_texts(document, file, config.language, text_options(config));
   check_number_of_trials(config, file);
   return config;
 }

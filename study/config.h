@@ -5,10 +5,15 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "study/plan.h"
+#include "study/questionnaire.h"
+#include "study/recruiting.h"
+#include "study/texts.h"
+#include "study/trial_options.h"
 
 namespace pinchlab::study {
 
@@ -40,13 +45,13 @@ struct Config {
   bool shared_computer = false;  ///< the last page leads to the next participant
   int participant_limit = 0;     ///< 0: none
   bool one_time_links = false;
+  std::optional<Recruiting> recruiting;  ///< participants who are sent by a site
+  TrialOptions trial;
+  Questionnaires questionnaires;             ///< around the trials
   bool is_pilot = false;                     ///< a trial run; of the command line, not of the file
   std::string language = "en";               ///< of the texts, a BCP 47 tag
-  std::map<std::string, std::string> texts;  ///< every text of the page, by its key
+  std::map<std::string, std::string> texts;  ///< every text of the page that is used, by its key
 };
-
-/// The delivered texts of a language, or nothing if there are none.
-std::map<std::string, std::string> delivered_texts(const std::string& language);
 
 /// What a study is without a file: every pair once, in English.
 Config default_config();

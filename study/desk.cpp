@@ -78,10 +78,13 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
 }
 
 std::string Desk::start(const std::string& link, const std::string& user_agent,
-                        const std::string& address) {
+                        const std::string& address, const Recruited& recruited) {
+  if (options_.config.recruiting && recruited.participant.empty()) {
+    throw Refused(403, "this study needs the id of the site that it recruits by");
+  }
   try {
     drop_idle();
-    if (const auto entry = who_makes_room(link, address)) {
+    if (const auto entry = who_makes_room(link, address, recruited)) {
       drop(entry, "had answered nothing and made room", true);
     }
   } catch (const std::exception& error) {
@@ -94,6 +97,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   session.id = random_hex(8);
   session.secret_sha256 = sha256(secret);
   session.seed = study_.seed;
+  if (options_.config.recruiting) session.recruited = recruited;
   session.language = options_.config.language;
   session.user_agent = printable(user_agent);
   session.started_utc = session.last_seen_utc = options_.utc_now();
@@ -106,6 +110,9 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
         static_cast<std::size_t>(unanswered) >= options_.most_unanswered) {
       throw Refused(503, "too many participants at a time");
     }
+    if (recruited_.contains(session.recruited.participant)) {
+      throw Refused(410, "this id has a place already");
+    }
     session.number = number_for(link);
     session.plan = make_plan(study_.seed, session.number, plan_options(options_.config));
     choose_level(session, options_.config);
@@ -113,7 +120,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
       session.media.push_back(random_hex(16));
     }
     // The number is taken before the disk is waited for, without holding up the others.
-    taken_.insert(session.number);
+    take(session);
   }
   try {
     write_durably(session_path(session.id), to_json(session).dump());
@@ -121,7 +128,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
     add(entry, address);
   } catch (const std::exception& error) {
     const std::scoped_lock lock(mutex_);
-    taken_.erase(session.number);
+    give_back(session);
     options_.tell(fmt::format("a participant could not start: {}", error.what()));
     throw Refused(503, "the disk does not take it");
   }
@@ -166,6 +173,7 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.answers = std::move(next.answers);
   entry->session.plan = std::move(next.plan);
   entry->session.shown_utc = std::move(next.shown_utc);
+  entry->session.questionnaires = std::move(next.questionnaires);
   entry->session.last_seen_utc = std::move(next.last_seen_utc);
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
@@ -183,6 +191,7 @@ Progress Desk::progress_of(const Session& session) const {
   });
   progress.is_adaptive = options_.config.adaptive_trials > 0;
   progress.next = session.answers.size();
+  progress.questionnaires = open_questionnaires(session, options_.config.questionnaires);
   return progress;
 }
 
@@ -216,7 +225,19 @@ void Desk::use_up_link(const std::string& token) {
 
 void Desk::show(const std::string& token, std::size_t index) {
   use_up_link(token);
-  change(token, [&](Session& session) { study::show(session, index, options_.utc_now()); });
+  change(token, [&](Session& session) {
+    const auto open = open_questionnaires(session, options_.config.questionnaires);
+    if (!open.empty() && open.front() != "after") {
+      throw Refused(409, "the questions before the trials are not answered");
+    }
+    study::show(session, index, options_.utc_now());
+  });
+}
+
+void Desk::questionnaire(const std::string& token, const json& body) {
+  change(token, [&](Session& session) {
+    answer_questionnaire(session, options_.config.questionnaires, body);
+  });
 }
 
 void Desk::answer(const std::string& token, const SentAnswer& sent) {
@@ -228,6 +249,7 @@ void Desk::answer(const std::string& token, const SentAnswer& sent) {
     if (files != nullptr && sent.answer.encoding == Encoding::webm && !files->webm) {
       throw Refused(422, "request: /encoding: was not offered");
     }
+    check_asked(sent.answer, options_.config.trial);
     study::answer(session, sent.index, sent.answer);
     choose_level(session, options_.config);
   });
@@ -260,7 +282,7 @@ void Desk::leave(const std::string& token) {
   entry->is_gone = true;
   const std::scoped_lock lock(mutex_);
   remove(*entry);
-  taken_.erase(entry->session.number);
+  give_back(entry->session);
   ++left_;
   options_.tell(fmt::format("{} left after {} of {} trials; nothing is kept", id,
                             entry->session.answers.size(), entry->session.plan.size()));
@@ -297,6 +319,10 @@ std::string Desk::save(const std::string& token,
   std::string code = withdrawal_code(secret);
   if (entry->is_gone) {
     return saved_code(id, secret) == code ? code : throw Refused(401, "no session");
+  }
+  if (is_finished(entry->session) &&
+      !open_questionnaires(entry->session, options_.config.questionnaires).empty()) {
+    throw Refused(409, "there are questions left to answer");
   }
   const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
     const Clip& clip = options_.clips.at(clip_key(trial)).in(encoding).at(trial.pinch);

@@ -51,6 +51,7 @@ struct Progress {
   bool has_webm = false;     ///< all of them do: one without would stand out
   bool is_adaptive = false;  ///< the clip of a trial can be had once those before are answered
   std::size_t next = 0;      ///< trial to show; trials.size(): all are answered
+  std::vector<std::string> questionnaires;  ///< parts that are still to be answered
 };
 
 struct Overview {
@@ -76,23 +77,27 @@ class Desk {
   /// One-time links' secrets, by participant number; empty if the study has none.
   [[nodiscard]] std::vector<std::string> links() const;
 
-  /// A new participant's token. Refused: 403 for a link that is unknown or used, 409 where the
-  /// study is full, 503 where too many are running or the disk does not take it.
+  /// A new participant's token. Refused: 403 for a link that is unknown or used, or without the id
+  /// of the site that the study recruits by; 410 where that id has a place already; 409 where the
+  /// study is full; 503 where too many are running or the disk does not take it.
   ///
   /// A link is used up when its first clip is shown: until then opening it again begins anew, so
-  /// that a start whose reply was lost costs nobody the link.
+  /// that a start whose reply was lost costs nobody the link. An id is treated likewise; who leaves
+  /// can come back with it.
   ///
   /// Where places are short, the newcomer takes that of somebody who has not answered anything: the
   /// oldest one of the address that has most of them and more than the newcomer's own will have, or
   /// else one that was not seen for five minutes. So many starts from one address fill no study.
   std::string start(const std::string& link, const std::string& user_agent,
-                    const std::string& address = "");
+                    const std::string& address = "", const Recruited& recruited = {});
 
   // All of these refuse (401) a token that is not one of a running session.
   Progress progress(const std::string& token);
   Progress resume(const std::string& token);  ///< after a reload
   void show(const std::string& token, std::size_t index);
   void answer(const std::string& token, const SentAnswer& sent);
+
+  void questionnaire(const std::string& token, const nlohmann::json& body);
 
   /// Keeps nothing. Refused (409) if the answers have been saved: they stay.
   void leave(const std::string& token);
@@ -158,7 +163,10 @@ class Desk {
             bool only_without_answers = false);
   void forget(const std::string& id) const;
   void sweep() const;
-  std::shared_ptr<Entry> who_makes_room(const std::string& link, const std::string& address);
+  std::shared_ptr<Entry> who_makes_room(const std::string& link, const std::string& address,
+                                        const Recruited& recruited);
+  void take(const Session& session);
+  void give_back(const Session& session);
   void use_up_link(const std::string& token);
   std::uint64_t number_for(const std::string& link);
   std::string link_of(std::uint64_t number) const;
@@ -176,7 +184,8 @@ class Desk {
   std::map<std::string, Place> places_;  // by participant, who is running
   std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;
-  std::set<std::uint64_t> taken_;  // numbers of running and finished participants
+  std::set<std::uint64_t> taken_;    // numbers of running and finished participants
+  std::set<std::string> recruited_;  // their ids at the site that sent them
   std::size_t finished_ = 0, left_ = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "base/durable_file.h"
 #include "base/input_error.h"
+#include "base/json_object.h"
 #include "base/partial_file.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
@@ -48,6 +49,10 @@ void Desk::read_finished() {
     }
     if (file.value("participant_number", json()).is_number_unsigned()) {
       taken_.insert(file["participant_number"].get<std::uint64_t>());
+    }
+    if (file.contains("recruited")) {
+      recruited_.insert(
+          read_recruited(JsonObject(file["recruited"], path.string(), "/recruited")).participant);
     }
     ++finished_;
   }
@@ -92,9 +97,20 @@ void Desk::sweep() const {
 void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
   const Session& session = entry->session;
   for (std::size_t i = 0; i < session.plan.size(); ++i) offer(session, i);
-  taken_.insert(session.number);
+  take(session);
   places_[session.id] = {entry, address, ++starts_, {}, false, false};
   note(session);
+}
+
+// Nobody else gets the number, and nobody the id once more. Under mutex_.
+void Desk::take(const Session& session) {
+  taken_.insert(session.number);
+  if (!session.recruited.participant.empty()) recruited_.insert(session.recruited.participant);
+}
+
+void Desk::give_back(const Session& session) {
+  taken_.erase(session.number);
+  recruited_.erase(session.recruited.participant);
 }
 
 // Lets the clip of a trial be had, once its level is chosen. Under mutex_.
@@ -148,7 +164,7 @@ void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
   entry->is_gone = true;
   const std::scoped_lock lock(mutex_);
   remove(*entry);
-  taken_.erase(entry->session.number);
+  give_back(entry->session);
   ++left_;
   options_.tell(fmt::format("{} {}; nothing is kept", entry->session.id, why));
 }
@@ -184,7 +200,8 @@ void Desk::release(const std::string& id) {
 
 // Who has to go for somebody that starts from `address`; nullptr: nobody has to, or nobody can.
 std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
-                                                  const std::string& address) {
+                                                  const std::string& address,
+                                                  const Recruited& recruited) {
   const auto now = parse_utc(options_.utc_now());
   const std::scoped_lock lock(mutex_);
   std::map<std::string, std::size_t> unanswered;  // by address
@@ -207,6 +224,11 @@ std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
   if (options_.config.one_time_links) {
     return oldest([&](const Place& place) {
       return !place.is_shown && equal_in_constant_time(link, link_of(place.entry->session.number));
+    });
+  }
+  if (options_.config.recruiting && recruited_.contains(recruited.participant)) {
+    return oldest([&](const Place& place) {
+      return !place.is_shown && place.entry->session.recruited.participant == recruited.participant;
     });
   }
   if (unanswered[address] >= options_.most_unanswered) {

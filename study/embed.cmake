@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DPAGE=study/page -DOUT=embedded_page.cpp -P embed.cmake
 # Turns the files of the page, and jsPsych if npm has installed it, into C++.
-set(files index.html researcher.html style.css icon.svg main.js make.js pages.js pair_trial.js errors.js
-  server.js jatos_server.js researcher.js texts/en.json texts/sv.json
+set(files index.html researcher.html style.css icon.svg after_choice.js main.js make.js pages.js pair_trial.js recruiting.js
+  questionnaire.js screen.js errors.js  server.js jatos_server.js researcher.js texts/en.json texts/sv.json
   texts/researcher.en.json texts/researcher.sv.json)
 set(jspsych node_modules/jspsych/dist/index.browser.min.js)
 set(types "html=text/html" "css=text/css" "js=text/javascript"

@@ -159,6 +159,8 @@ struct Key {  // NOLINT(bugprone-exception-escape)
   std::uint64_t seed = 0;
   PlanOptions options;
   json shown;  // what_is_shown()
+  Questionnaires questionnaires;
+  TrialOptions trial;
   json files, plans;
 };
 
@@ -188,6 +190,14 @@ Key read_key(const fs::path& path) {
   key.options.both_orders = options.flag("both_orders");
   options.finish();
   key.shown = object.need("shown");
+  if (object.has("trial_options")) {
+    JsonObject trial = object.object("trial_options");
+    key.trial = read_trial_options(trial);
+    trial.finish();
+  }
+  if (object.has("questionnaires")) {
+    key.questionnaires = questionnaires_from_json(object.object("questionnaires"), path.string());
+  }
   key.files = object.need("files");
   key.plans = object.array("plans", 1000000);
   object.finish();
@@ -198,6 +208,19 @@ struct Result {
   std::string id;
   ordered_json file;
 };
+
+// What was answered to each part that was asked.
+std::map<std::string, json> read_questionnaires(JsonObject& result, const Key& key) {
+  std::map<std::string, json> checked;
+  if (key.questionnaires.empty()) return checked;
+  JsonObject answers = result.object("questionnaires");
+  for (const char* part : questionnaire_parts) {
+    const Questionnaire* asked = key.questionnaires.find(part);
+    if (asked != nullptr) checked[part] = check_answers(*asked, answers.object(part));
+  }
+  answers.finish();
+  return checked;
+}
 
 // One line of the results: what jatos_server.js submitted.
 Result read_result(const std::string& line, const std::string& place, const Key& key) {
@@ -233,10 +256,13 @@ Result read_result(const std::string& line, const std::string& place, const Key&
                                  {"plan", key.plans[static_cast<std::size_t>(number)]},
                                  {"answers", object.need("answers")}};
   const json free_text = {{"free_text", object.need("free_text")}};
+  const std::map<std::string, json> questionnaires = read_questionnaires(object, key);
   object.finish();
   Result result;
   try {
-    const Session session = session_from_json(session_document);
+    Session session = session_from_json(session_document);
+    session.questionnaires = questionnaires;
+    for (const AnsweredTrial& trial : session.answers) check_asked(trial.answer, key.trial);
     if (session.id.size() != 16 ||
         session.id.find_first_not_of("0123456789abcdef") != std::string::npos) {
       throw std::runtime_error("participant: must be 16 hexadecimal digits");
@@ -291,6 +317,11 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
     throw std::runtime_error(
         "studies of several methods and of thresholds run on our own server only; use study serve");
   }
+  if (config.recruiting) {
+    throw std::runtime_error(
+        "recruiting is for study serve; on a JATOS server, leave it out of the configuration: "
+        "JATOS' own study links and End Redirect URL do this");
+  }
   const std::string uuid = random_uuid();
   MediaNames names;
   ZipWriter zip(archive);
@@ -306,10 +337,12 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
     }
   }
   add_clips(zip, clips, names);
-  const json input = {{"study", uuid},
-                      {"participants", participants},
-                      {"language", config.language},
-                      {"texts", config.texts}};
+  json input = {{"study", uuid},
+                {"participants", participants},
+                {"language", config.language},
+                {"texts", config.texts}};
+  if (config.trial != TrialOptions()) input["trial_options"] = to_json(config.trial);
+  if (!config.questionnaires.empty()) input["questionnaires"] = to_json(config.questionnaires);
   zip.add(std::string(folder_name) + ".jas", study_properties(config, uuid, input).dump());
 
   json files = json::object();
@@ -319,18 +352,20 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
       files[name]["webm"] = file_entry(*pair.webm);
     }
   }
-  const ordered_json key = {{"format", "pinchlab-jatos-key 2"},
-                            {"study", uuid},
-                            {"seed", seed},
-                            {"options",
-                             {{"demonstrations", options.demonstrations},
-                              {"training", options.training},
-                              {"attention_checks", options.attention_checks},
-                              {"repetitions", options.repetitions},
-                              {"both_orders", options.both_orders}}},
-                            {"shown", what_is_shown(config, clips)},
-                            {"files", files},
-                            {"plans", plans}};
+  ordered_json key = {{"format", "pinchlab-jatos-key 2"},
+                      {"study", uuid},
+                      {"seed", seed},
+                      {"options",
+                       {{"demonstrations", options.demonstrations},
+                        {"training", options.training},
+                        {"attention_checks", options.attention_checks},
+                        {"repetitions", options.repetitions},
+                        {"both_orders", options.both_orders}}},
+                      {"shown", what_is_shown(config, clips)},
+                      {"files", files},
+                      {"plans", plans}};
+  if (config.trial != TrialOptions()) key["trial_options"] = to_json(config.trial);
+  if (!config.questionnaires.empty()) key["questionnaires"] = to_json(config.questionnaires);
   // The key first: an archive without one would be worthless.
   write_durably(key_path(archive), key.dump(1) + "\n");
   try {

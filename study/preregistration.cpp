@@ -77,6 +77,41 @@ std::string what_varies(const json& design, const Config& config) {
       shown, each == 1 ? std::string("once") : fmt::format("{} times", each));
 }
 
+std::string asked_besides(const Config& config) {
+  std::string text;
+  const TrialOptions& trial = config.trial;
+  if (trial.is_graded) {
+    text +=
+        "Preferences are given in seven grades, from the left by far to the right by far; the "
+        "middle one is a tie, which counts as no choice.\n\n";
+  }
+  std::vector<std::string> besides;
+  if (trial.confidence > 0) {
+    besides.push_back(fmt::format("how sure they are (1 to {})", trial.confidence));
+  }
+  if (trial.click_where) besides.emplace_back("to click on where it looks wrong");
+  if (trial.reason > 0) besides.emplace_back("for a reason in words");
+  if (!besides.empty()) {
+    text += fmt::format("In each trial participants are asked besides: {}.\n\n",
+                        fmt::join(besides, "; "));
+  }
+  if (!config.questionnaires.screen.empty()) {
+    text +=
+        "The size of a pixel (by a card held to the screen), the viewing distance (as estimated) "
+        "and the refresh rate are measured first.\n\n";
+  }
+  for (const char* part : {"before", "after"}) {
+    const Questionnaire* questionnaire = config.questionnaires.find(part);
+    if (questionnaire == nullptr) continue;
+    text += fmt::format("Questions {} the trials:\n\n", part);
+    for (const Question& question : *questionnaire) {
+      text += fmt::format("* {}{}\n", question.text, question.is_required ? "" : " (optional)");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 std::string procedure(const json& design, const Config& config) {
   const json& plan = design.at("plan");
   std::string text = fmt::format(
@@ -95,6 +130,7 @@ std::string procedure(const json& design, const Config& config) {
       "(once more on one for odd numbers), none more than three times running. Participants cannot "
       "know which method a clip shows; nothing that a browser receives names one.\n\n",
       design.at("seed").get<std::uint64_t>());
+  text += asked_besides(config);
   text += fmt::format(
       "The page is in the language `{}`. SHA-256 of the consent text: `{}`; of all texts: `{}`.\n",
       config.language, design.at("study").at("consent_sha256").get<std::string>(),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/answer_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
 
@@ -37,7 +38,7 @@ void add(json& sum, const json& more) {
 // What is kept of a file: counts by demonstration, sides, warnings.
 json summary_of(const json& file) {
   json demonstrations = json::object();
-  int left = 0, answers = 0, failed = 0, narrowest = 1 << 20;
+  int left = 0, ties = 0, answers = 0, failed = 0, narrowest = 1 << 20;
   double frames = 0, dropped = 0, away = 0;
   for (const json& trial : file["trials"]) {
     frames += trial.value("frame_count", 0);
@@ -52,8 +53,9 @@ json summary_of(const json& file) {
     const bool is_left = side == "left";
     ++answers;
     left += is_left ? 1 : 0;
+    ties += side == "tie" ? 1 : 0;
     json one = {{"answers", 1}, {"left", is_left ? 1 : 0}};
-    const std::string chosen = trial[side];
+    const std::string chosen = trial.value(side, side);  // a tie is none of the sides
     if (trial.contains("level")) {
       one["levels"] = {{trial["level"].dump(), {{chosen, 1}}}};
     } else {
@@ -68,13 +70,18 @@ json summary_of(const json& file) {
   if (narrowest < small_clip) warnings.push_back(warning("small_clip", file, narrowest));
   if (failed > 0) warnings.push_back(warning("failed_check", file, failed));
   if (away > often_away) warnings.push_back(warning("focus_lost", file, away));
-  const double one_side = std::max(left, answers - left);
+  const double one_side = std::max(left, answers - ties - left);
   if (answers >= fewest_for_sides && one_side >= nearly_always * answers) {
     warnings.push_back(warning("one_side", file, one_side / answers));
   }
+  const json measured =
+      file.value("/questionnaires/screen/refresh_rate_hz/answer"_json_pointer, json());
+  if (measured.is_number() && !shows_60_evenly(measured.get<double>())) {
+    warnings.push_back(warning("refresh_rate", file, measured));
+  }
   return {{"demonstrations", demonstrations},
           {"left", left},
-          {"answers", answers},
+          {"right", answers - ties - left},
           {"warnings", warnings},
           {"version", file["software_version"]}};
 }
@@ -93,11 +100,11 @@ json Results::read(bool reveal) {
   summaries_ = std::move(present);
   json demonstrations = json::object(), warnings = json::array();
   std::set<std::string> versions;
-  int left = 0, answers = 0;
+  int left = 0, right = 0;
   for (const auto& [name, summary] : summaries_) {
     add(demonstrations, summary["demonstrations"]);
     left += summary["left"].get<int>();
-    answers += summary["answers"].get<int>();
+    right += summary["right"].get<int>();
     versions.insert(summary["version"].get<std::string>());
     for (const json& one : summary["warnings"]) warnings.push_back(one);
   }
@@ -115,7 +122,7 @@ json Results::read(bool reveal) {
   }
   return {{"finished", summaries_.size()},
           {"demonstrations", rows},
-          {"sides", {{"left", left}, {"right", answers - left}}},
+          {"sides", {{"left", left}, {"right", right}}},
           {"warnings", warnings}};
 }
 

@@ -99,6 +99,7 @@ json progress_json(const Progress& progress) {
   }
   json object = {{"trials", trials}, {"next", progress.next}};
   if (progress.is_adaptive) object["ahead"] = 1;
+  if (!progress.questionnaires.empty()) object["questionnaires"] = progress.questionnaires;
   return object;
 }
 
@@ -218,10 +219,16 @@ struct Server::Implementation {
   void add_interface() {
     routes[{"GET", "/api/study"}] = [this](const HttpRequest&) {
       const Config& config = desk.config();
-      return reply({{"language", config.language},
+      json study = {{"language", config.language},
                     {"texts", config.texts},
                     {"needs_link", config.one_time_links},
-                    {"shared_computer", config.shared_computer}});
+                    {"shared_computer", config.shared_computer}};
+      if (config.trial != TrialOptions()) study["trial_options"] = to_json(config.trial);
+      if (!config.questionnaires.empty()) {
+        study["questionnaires"] = to_json(config.questionnaires);
+      }
+      if (config.recruiting) study["recruiting"] = for_page(*config.recruiting);
+      return reply(study);
     };
     routes[{"POST", "/api/start"}] = [this](const HttpRequest& request) { return start(request); };
     routes[{"GET", "/api/session"}] = [this](const HttpRequest& request) {
@@ -241,13 +248,21 @@ struct Server::Implementation {
       desk.show(token_of(request), index.get<std::size_t>());
       return reply({{"done", true}});
     };
+    routes[{"POST", "/api/questionnaire"}] = [this](const HttpRequest& request) {
+      desk.questionnaire(token_of(request), parse_body(request));
+      return reply({{"done", true}});
+    };
     routes[{"POST", "/api/answer"}] = [this](const HttpRequest& request) {
       desk.answer(token_of(request), parse_answer(parse_body(request)));
       return reply({{"done", true}});
     };
     routes[{"POST", "/api/save"}] = [this](const HttpRequest& request) {
       const std::string code = desk.save(token_of(request), parse_free_text(parse_body(request)));
-      return reply({{"done", true}, {"code", code}});
+      json saved = {{"done", true}, {"code", code}};
+      if (const auto& recruiting = desk.config().recruiting; recruiting) {
+        saved["completion"] = completion(*recruiting);
+      }
+      return reply(saved);
     };
     routes[{"POST", "/api/leave"}] = [this](const HttpRequest& request) {
       check_keys(parse_body(request), {});
@@ -349,7 +364,7 @@ struct Server::Implementation {
 
   HttpReply start(const HttpRequest& request) {
     const json body = parse_body(request);
-    check_keys(body, {"consent", "link"});
+    check_keys(body, {"consent", "link", "recruited"});
     if (body.value("consent", json()) != true) {
       throw Refused(422, "without consent nothing begins");
     }
@@ -357,8 +372,8 @@ struct Server::Implementation {
     if (!link.is_string()) {
       throw Refused(422, "the link must be a string");
     }
-    const std::string token =
-        desk.start(link.get<std::string>(), request.header("user-agent"), request.address);
+    const std::string token = desk.start(link.get<std::string>(), request.header("user-agent"),
+                                         request.address, parse_recruited(body));
     json started = progress_json(desk.progress(token));
     started["token"] = token;
     return reply(started);

@@ -37,10 +37,43 @@ std::optional<double> optional_seconds(JsonObject& object, const char* key) {
   return object.has(key) ? std::optional(object.number(key, -1, 86400)) : std::nullopt;
 }
 
+std::string word_of(std::optional<Side> choice) {
+  return choice ? to_string(*choice) : "tie";
+}
+
+// The choice, which follows from the grade where there is one.
+void read_choice(JsonObject& object, TrialAnswer& answer) {
+  const std::string choice = object.choice("choice", {"left", "right", "tie"});
+  if (choice != "tie") answer.choice = side_from(choice);
+  if (object.has("preference")) {
+    answer.preference = static_cast<int>(object.whole("preference", -3, 3));
+  }
+  const int sign = answer.preference.value_or(choice == "left" ? -1 : 1);
+  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
+    object.fail("choice",
+                "must be left, right or tie as `preference` is less than, more than, or 0");
+  }
+}
+
+void read_besides(JsonObject& object, TrialAnswer& answer) {
+  if (object.has("confidence")) {
+    answer.confidence = static_cast<int>(object.whole("confidence", 1, 9));
+  }
+  if (object.has("reason")) {
+    answer.reason = object.text("reason", std::size_t{4} * longest_reason);
+    if (answer.reason.empty()) object.fail("reason", "is empty; leave it out");
+  }
+  if (!object.has("where_side")) return;  // then the rest of a place is unknown too
+  answer.where = Where{side_from(object.choice("where_side", {"left", "right"})),
+                       object.number("where_x", 0, 1), object.number("where_y", 0, 1),
+                       object.number("where_time_s", 0, 86400)};
+}
+
 // The answer proper, without what goes around it; used for requests and for session files.
 TrialAnswer read_answer(JsonObject& object) {
   TrialAnswer answer;
-  answer.choice = side_from(object.choice("choice", {"left", "right"}));
+  read_choice(object, answer);
+  read_besides(object, answer);
   answer.reaction_time_s = object.number("reaction_time_s", 0, 86400);
   answer.loops_watched = whole(object, "loops_watched", most_counted);
   answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
@@ -116,6 +149,37 @@ void answer(Session& session, std::size_t index, const TrialAnswer& given) {
   session.shown_utc.clear();
 }
 
+std::vector<std::string> open_questionnaires(const Session& session, const Questionnaires& asked) {
+  std::vector<std::string> open;
+  for (const char* part : questionnaire_parts) {
+    if (asked.find(part) != nullptr && !session.questionnaires.contains(part)) {
+      open.emplace_back(part);
+    }
+  }
+  return open;
+}
+
+void answer_questionnaire(Session& session, const Questionnaires& asked, const json& body) {
+  const auto [part, answers] = refusing([&] {
+    JsonObject object(body, "request", "");
+    std::string name =
+        object.choice("part", {questionnaire_parts.begin(), questionnaire_parts.end()});
+    const Questionnaire* questionnaire = asked.find(name);
+    if (questionnaire == nullptr) object.fail("part", "this study has no such questionnaire");
+    json checked = check_answers(*questionnaire, object.object("answers"));
+    object.finish();
+    return std::pair(std::move(name), std::move(checked));
+  });
+  const auto before = session.questionnaires.find(part);
+  if (before != session.questionnaires.end() && before->second == answers) return;  // sent again
+  const bool is_due =
+      part == "after" ? is_finished(session) : session.answers.empty() && session.shown_utc.empty();
+  if (!is_due || before != session.questionnaires.end()) {
+    throw Refused(409, "these questions are not being asked");
+  }
+  session.questionnaires[part] = answers;
+}
+
 SentAnswer parse_answer(const json& body) {
   return refusing([&] {
     JsonObject object(body, "request", "");
@@ -125,6 +189,26 @@ SentAnswer parse_answer(const json& body) {
     object.finish();
     return sent;
   });
+}
+
+void check_asked(const TrialAnswer& answer, const TrialOptions& options) {
+  const auto refuse = [](const char* key, const char* why) {
+    throw Refused(422, std::string("request: /") + key + ": " + why);
+  };
+  if (answer.preference.has_value() != options.is_graded) {
+    refuse("preference", options.is_graded ? "is missing" : "was not asked");
+  }
+  if (answer.confidence.has_value() != (options.confidence > 0)) {
+    refuse("confidence", options.confidence > 0 ? "is missing" : "was not asked");
+  }
+  if (answer.confidence && *answer.confidence > options.confidence) {
+    refuse("confidence", "is beyond the scale");
+  }
+  constexpr std::size_t bytes_a_character = 4;
+  if (answer.reason.size() > bytes_a_character * static_cast<std::size_t>(options.reason)) {
+    refuse("reason", options.reason > 0 ? "is too long" : "was not asked");
+  }
+  if (answer.where && !options.click_where) refuse("where_side", "was not asked");
 }
 
 std::map<std::string, std::string> parse_free_text(const json& body) {
@@ -143,9 +227,15 @@ std::map<std::string, std::string> parse_free_text(const json& body) {
   });
 }
 
+Recruited parse_recruited(const json& body) {
+  if (!body.contains("recruited")) return {};
+  return refusing(
+      [&] { return read_recruited(JsonObject(body["recruited"], "request", "/recruited")); });
+}
+
 ordered_json to_json(const TrialAnswer& answer) {
   ordered_json object = {
-      {"choice", to_string(answer.choice)},    {"reaction_time_s", answer.reaction_time_s},
+      {"choice", word_of(answer.choice)},      {"reaction_time_s", answer.reaction_time_s},
       {"loops_watched", answer.loops_watched}, {"focus_lost_count", answer.focus_lost_count},
       {"frame_count", answer.frame_count},     {"dropped_frames", answer.dropped_frames}};
   if (answer.loop_gap_median_s) object["loop_gap_median_s"] = *answer.loop_gap_median_s;
@@ -160,6 +250,15 @@ ordered_json to_json(const TrialAnswer& answer) {
                  {"screen_width_px", answer.screen_width_px},
                  {"screen_height_px", answer.screen_height_px},
                  {"device_pixel_ratio", answer.device_pixel_ratio}});
+  if (answer.preference) object["preference"] = *answer.preference;
+  if (answer.confidence) object["confidence"] = *answer.confidence;
+  if (!answer.reason.empty()) object["reason"] = answer.reason;
+  if (answer.where) {
+    object.update({{"where_side", to_string(answer.where->side)},
+                   {"where_x", answer.where->x},
+                   {"where_y", answer.where->y},
+                   {"where_time_s", answer.where->time_s}});
+  }
   return object;
 }
 
@@ -187,19 +286,22 @@ json to_json(const Session& session) {
     answers.push_back(json(to_json(trial.answer)));
     answers.back()["shown_utc"] = trial.shown_utc;
   }
-  return {{"format", "pinchlab-session 1"},
-          {"id", session.id},
-          {"secret_sha256", session.secret_sha256},
-          {"number", session.number},
-          {"seed", session.seed},
-          {"language", session.language},
-          {"user_agent", session.user_agent},
-          {"started_utc", session.started_utc},
-          {"last_seen_utc", session.last_seen_utc},
-          {"resumed_count", session.resumed_count},
-          {"shown_utc", session.shown_utc},
-          {"plan", plan},
-          {"answers", answers}};
+  json file = {{"format", "pinchlab-session 1"},
+               {"id", session.id},
+               {"secret_sha256", session.secret_sha256},
+               {"number", session.number},
+               {"seed", session.seed},
+               {"language", session.language},
+               {"user_agent", session.user_agent},
+               {"started_utc", session.started_utc},
+               {"last_seen_utc", session.last_seen_utc},
+               {"resumed_count", session.resumed_count},
+               {"shown_utc", session.shown_utc},
+               {"plan", plan},
+               {"answers", answers}};
+  if (!session.questionnaires.empty()) file["questionnaires"] = session.questionnaires;
+  if (!session.recruited.participant.empty()) file["recruited"] = to_json(session.recruited);
+  return file;
 }
 
 Session session_from_json(const json& document) {
@@ -212,6 +314,7 @@ Session session_from_json(const json& document) {
   session.number = static_cast<std::uint64_t>(object.whole("number", 0, 1000000000));
   session.seed =
       static_cast<std::uint64_t>(object.whole("seed", 0, static_cast<long>(largest_seed)));
+  if (object.has("recruited")) session.recruited = read_recruited(object.object("recruited"));
   session.language = object.text("language", 64);
   session.user_agent = object.text("user_agent", 4096);
   session.started_utc = object.utc("started_utc");
@@ -224,6 +327,13 @@ Session session_from_json(const json& document) {
     JsonObject trial(answers[i], file, fmt::format("/answers/{}", i));
     session.answers.push_back({trial.utc("shown_utc"), read_answer(trial)});
     trial.finish();
+  }
+  if (object.has("questionnaires")) {
+    JsonObject questionnaires = object.object("questionnaires");
+    for (const char* part : questionnaire_parts) {
+      if (questionnaires.has(part)) session.questionnaires[part] = questionnaires.need(part);
+    }
+    questionnaires.finish();
   }
   object.finish();
   return session;

@@ -7,6 +7,18 @@ namespace pinchlab::study {
 
 using nlohmann::json;
 
+namespace {
+
+// What participants are asked besides the choices; empty where that is nothing.
+json options_of(const Config& config) {
+  json options = json::object();
+  if (!config.questionnaires.empty()) options["questionnaires"] = to_json(config.questionnaires);
+  if (config.trial != TrialOptions()) options["trials"] = to_json(config.trial);
+  return options;
+}
+
+}  // namespace
+
 json what_is_shown(const Config& config, const Clips& clips) {
   json consent = json::object();
   for (const char* key : {"information_heading", "information_body", "information_rights",
@@ -17,11 +29,15 @@ json what_is_shown(const Config& config, const Clips& clips) {
   for (const auto& [name, pair] : clips) {
     files[name] = {pair.mp4.left->sha256(), pair.mp4.right->sha256()};
   }
-  return {{"language", config.language},
-          {"question", config.texts.at("question")},
-          {"consent_sha256", sha256(consent.dump())},
-          {"texts_sha256", sha256(json(config.texts).dump())},
-          {"clips_sha256", sha256(files.dump())}};
+  json shown = {{"language", config.language},
+                {"question", config.texts.at("question")},
+                {"consent_sha256", sha256(consent.dump())},
+                {"texts_sha256", sha256(json(config.texts).dump())},
+                {"clips_sha256", sha256(files.dump())}};
+  if (const json options = options_of(config); !options.empty()) {
+    shown["options_sha256"] = sha256(options.dump());
+  }
+  return shown;
 }
 
 std::string difference(const json& one, const json& other) {
@@ -29,6 +45,7 @@ std::string difference(const json& one, const json& other) {
                                                        {"question", "the question"},
                                                        {"consent_sha256", "the consent text"},
                                                        {"clips_sha256", "the clips"},
+                                                       {"options_sha256", "what is asked besides"},
                                                        {"texts_sha256", "a text of the page"}};
   std::string words;
   for (const auto& [key, what] : parts) {

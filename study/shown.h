@@ -13,7 +13,8 @@ namespace pinchlab::study {
 /// An object of strings (analysis/answers.schema.json, `study`): `language`; `question` as it was
 /// asked; and the SHA-256 of `consent_sha256` (information and consent), `texts_sha256` (all texts
 /// of the page) and `clips_sha256` (the MP4 files of all pairs with their names; each file that was
-/// played is listed with the answers besides, WebM too).
+/// played is listed with the answers besides, WebM too); and, where there are questionnaires or
+/// options of trials, `options_sha256` of these.
 nlohmann::json what_is_shown(const Config& config, const Clips& clips);
 
 /// In words, in what two of them differ: "the question, the clips".

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <chrono>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -70,6 +70,8 @@ class Simulated {
     const auto [number, first_plan] = desk_.plan_of(id);
     const std::size_t count = first_plan.size();
     become(number);
+    answer_questionnaire(client, "screen");
+    answer_questionnaire(client, "before");
     for (std::size_t i = started.at("next"); i < count; ++i) {
       post(client, "/api/show", {{"index", i}});
       const std::string mp4 = started.at("trials").at(i).at("mp4");
@@ -77,6 +79,7 @@ class Simulated {
       if (!clip || clip->status != 206) throw std::runtime_error("a clip could not be fetched");
       post(client, "/api/answer", answer_to(desk_.plan_of(id).second[i], i));
     }
+    answer_questionnaire(client, "after");
     post(client, "/api/save", {{"free_text", json::object()}});
   }
 
@@ -101,6 +104,36 @@ class Simulated {
                                            answer ? std::to_string(answer->status) : "nothing"));
     }
     return json::parse(answer->body);
+  }
+
+  // Every question, each answer as likely as another.
+  void answer_questionnaire(HttpClient& client, const char* part) {
+    const Questionnaire* questionnaire = desk_.config().questionnaires.find(part);
+    if (questionnaire == nullptr) return;
+    json answers = json::object();
+    for (const Question& question : *questionnaire) answers[question.name] = answer_to(question);
+    post(client, "/api/questionnaire", {{"part", part}, {"answers", answers}});
+  }
+
+  json answer_to(const Question& question) {
+    const auto one_of = [&](std::size_t count) {
+      return gsl_rng_uniform_int(rng_.get(), static_cast<unsigned long>(count));
+    };
+    switch (question.kind) {
+      case QuestionKind::choice:
+        return question.choices[one_of(question.choices.size())];
+      case QuestionKind::scale:
+        return 1 + one_of(static_cast<std::size_t>(question.points));
+      case QuestionKind::number: {
+        const double number = question.least + uniform() * (question.most - question.least);
+        return question.is_whole ? std::clamp(std::round(number), std::ceil(question.least),
+                                              std::floor(question.most))
+                                 : number;
+      }
+      case QuestionKind::text:
+        break;
+    }
+    return std::string("simulated").substr(0, question.longest);
   }
 
   // P(the first is chosen), sides and lapses left out.
@@ -129,23 +162,51 @@ class Simulated {
     const bool is_lapse = uniform() < truth_.lapses;
     const bool is_first = uniform() < (is_lapse ? 0.5 : share);
     const Side choice = is_first ? trial.pinch : opposite(trial.pinch);
-    return {{"index", index},
-            {"choice", to_string(choice)},
-            {"reaction_time_s", std::round(1000 * gsl_ran_lognormal(rng_.get(), 0, 0.5)) / 1000},
-            {"loops_watched", 1},
-            {"focus_lost_count", 0},
-            {"frame_count", 240},
-            {"dropped_frames", 0},
-            {"playback_errors", json::array()},
-            {"input", "mouse"},
-            {"encoding", "mp4"},
-            {"window_width_px", 1920},
-            {"window_height_px", 1080},
-            {"clip_width_px", 1920},
-            {"clip_height_px", 960},
-            {"screen_width_px", 1920},
-            {"screen_height_px", 1080},
-            {"device_pixel_ratio", 1}};
+    json body = {
+        {"index", index},
+        {"choice", to_string(choice)},
+        {"reaction_time_s", std::round(1000 * gsl_ran_lognormal(rng_.get(), 0, 0.5)) / 1000},
+        {"loops_watched", 1},
+        {"focus_lost_count", 0},
+        {"frame_count", 240},
+        {"dropped_frames", 0},
+        {"playback_errors", json::array()},
+        {"input", "mouse"},
+        {"encoding", "mp4"},
+        {"window_width_px", 1920},
+        {"window_height_px", 1080},
+        {"clip_width_px", 1920},
+        {"clip_height_px", 960},
+        {"screen_width_px", 1920},
+        {"screen_height_px", 1080},
+        {"device_pixel_ratio", 1}};
+    answer_besides(body, choice);
+    return body;
+  }
+
+  // What is asked besides the choice: a tenth of ties, and the rest by throws of dice.
+  void answer_besides(json& body, Side choice) {
+    const TrialOptions& asked = desk_.config().trial;
+    const auto die = [&](int sides) {
+      return 1 +
+             static_cast<int>(gsl_rng_uniform_int(rng_.get(), static_cast<unsigned long>(sides)));
+    };
+    if (asked.is_graded) {
+      const bool is_tie = uniform() < 0.1;
+      const int grade = is_tie ? 0 : die(3);
+      body["preference"] = choice == Side::left ? -grade : grade;
+      if (is_tie) body["choice"] = "tie";
+    }
+    if (asked.confidence > 0) body["confidence"] = die(asked.confidence);
+    if (asked.reason > 0) {
+      body["reason"] = std::string("simulated").substr(0, static_cast<std::size_t>(asked.reason));
+    }
+    if (asked.click_where) {
+      body.update({{"where_side", to_string(opposite(choice))},
+                   {"where_x", uniform()},
+                   {"where_y", uniform()},
+                   {"where_time_s", uniform()}});
+    }
   }
 
   Desk& desk_;

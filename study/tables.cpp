@@ -4,17 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "base/answer_file.h"
 #include "base/csv.h"
-#include "base/design_file.h"
 #include "base/durable_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
+#include "study/participants_table.h"
 
 namespace pinchlab::study {
 namespace {
@@ -47,7 +46,8 @@ std::string choice(const json& trial) {
   if (trial["kind"] == "attention") {
     return trial["choice"] == trial["expected"] ? "pass" : "fail";
   }
-  const std::string chosen = trial[trial["choice"].get<std::string>()];
+  const std::string side = trial["choice"];
+  const std::string chosen = trial.value(side, side);  // a tie is none of the sides
   return chosen == "baseline" ? "cable" : chosen;
 }
 
@@ -70,6 +70,7 @@ struct Column {
   const char* description;
   std::string (*value)(const json& file, const json& trial) = nullptr;
   unsigned kinds = every_kind;
+  bool is_asked_besides = false;  // left out where no trial has it
 };
 
 const std::vector<Column> columns = {
@@ -92,7 +93,8 @@ const std::vector<Column> columns = {
      thresholds},
     {"side", "Side that showed pinch joints",
      [](const json&, const json& trial) { return pinch_side(trial); }, two_methods},
-    {"choice", "What was chosen: pinch, cable or another method; in attention trials pass or fail",
+    {"choice",
+     "What was chosen: pinch, cable or another method, or tie; in attention trials pass or fail",
      [](const json&, const json& trial) { return choice(trial); }, two_methods | several_methods},
     {"chosen_side", "Side that was chosen",
      [](const json&, const json& trial) { return value_of(trial, "choice"); }},
@@ -118,6 +120,15 @@ const std::vector<Column> columns = {
     {"screen_width_px", "Width of the screen, CSS pixels"},
     {"screen_height_px", "Height of the screen, CSS pixels"},
     {"device_pixel_ratio", "Device pixels a CSS pixel"},
+    {"preference", "From -3, left by far, over 0, a tie, to 3, right by far", nullptr, every_kind,
+     true},
+    {"confidence", "How sure the participant was, from 1", nullptr, every_kind, true},
+    {"reason", "What the participant wrote about this choice", nullptr, every_kind, true},
+    {"where_side", "Clip in which the participant marked where it looks wrong", nullptr, every_kind,
+     true},
+    {"where_x", "Share of that clip's width, from its left edge", nullptr, every_kind, true},
+    {"where_y", "Share of its height, from its upper edge", nullptr, every_kind, true},
+    {"where_time_s", "Seconds of the clip at that moment", nullptr, every_kind, true},
 };
 
 std::string row(const std::vector<std::string>& values) {
@@ -126,21 +137,6 @@ std::string row(const std::vector<std::string>& values) {
     text += (text.empty() ? "" : ",") + csv_cell(harmless(value));
   }
   return text + "\n";
-}
-
-ordered_json description(unsigned kind) {
-  ordered_json variables = ordered_json::array();
-  for (const Column& column : columns) {
-    if ((column.kinds & kind) == 0) continue;
-    variables.push_back(
-        {{"@type", "PropertyValue"}, {"name", column.name}, {"description", column.description}});
-  }
-  return {{"@context", "https://schema.org/"},
-          {"@type", "Dataset"},
-          {"name", "Which cable looks most realistic?"},
-          {"description",
-           "Forced choices between simulations of cables, shown side by side. One row a trial."},
-          {"variableMeasured", variables}};
 }
 
 // Psych-DS recommends one (MISSING_README_DOC).
@@ -202,10 +198,33 @@ using Cells = std::vector<std::string>;
 
 // The answers of a folder: the columns of its kind of study, and each participant's rows.
 struct Answers {
-  unsigned kind = two_methods;  // of an empty folder
-  Cells names;
+  std::vector<const Column*> columns;  // of trials
+  QuestionColumns questions;           // of participants, in each of their rows
+  Cells names;                         // of both
   std::vector<std::pair<json, std::vector<Cells>>> participants;  // answer file, rows
 };
+
+std::vector<json> files_of(const Answers& answers) {
+  std::vector<json> files;
+  for (const auto& [file, rows] : answers.participants) files.push_back(file);
+  return files;
+}
+
+std::vector<const Column*> columns_of(const std::vector<json>& files) {
+  const unsigned kind = files.empty() ? two_methods : kind_of(files.front());
+  const auto is_there = [&](const Column& column) {
+    return std::ranges::any_of(files, [&](const json& file) {
+      return std::ranges::any_of(file["trials"],
+                                 [&](const json& trial) { return trial.contains(column.name); });
+    });
+  };
+  std::vector<const Column*> chosen;
+  for (const Column& column : columns) {
+    const bool is_of_kind = (column.kinds & kind) != 0;
+    if (is_of_kind && (!column.is_asked_besides || is_there(column))) chosen.push_back(&column);
+  }
+  return chosen;
+}
 
 Answers read_folder(const fs::path& folder) {
   Answers answers;
@@ -213,22 +232,41 @@ Answers read_folder(const fs::path& folder) {
   for (const fs::path& path : answer_files(folder)) {
     json file = read_json_file(path, largest_file);
     same_study.check(parse_answer_file(file, path.string()), path.string());
-    answers.kind = kind_of(file);
-    std::vector<Cells> rows;
+    answers.participants.emplace_back(std::move(file), std::vector<Cells>());
+  }
+  const std::vector<json> files = files_of(answers);
+  answers.columns = columns_of(files);
+  answers.questions = question_columns(files);
+  for (const Column* column : answers.columns) answers.names.emplace_back(column->name);
+  for (const auto& [name, question] : answers.questions) answers.names.push_back(name);
+  for (auto& [file, rows] : answers.participants) {
     for (const json& trial : file["trials"]) {
       Cells& values = rows.emplace_back();
-      for (const Column& column : columns) {
-        if ((column.kinds & answers.kind) == 0) continue;
-        values.push_back(column.value != nullptr ? column.value(file, trial)
-                                                 : value_of(trial, column.name));
+      for (const Column* column : answers.columns) {
+        values.push_back(column->value != nullptr ? column->value(file, trial)
+                                                  : value_of(trial, column->name));
+      }
+      for (const auto& [name, question] : answers.questions) {
+        values.push_back(own_answer(file, name));
       }
     }
-    answers.participants.emplace_back(std::move(file), std::move(rows));
-  }
-  for (const Column& column : columns) {
-    if ((column.kinds & answers.kind) != 0) answers.names.emplace_back(column.name);
   }
   return answers;
+}
+
+ordered_json description(const Answers& answers) {
+  ordered_json variables = ordered_json::array();
+  const auto add = [&](const std::string& name, const std::string& what) {
+    variables.push_back({{"@type", "PropertyValue"}, {"name", name}, {"description", what}});
+  };
+  for (const Column* column : answers.columns) add(column->name, column->description);
+  for (const auto& [name, question] : answers.questions) add(name, question);
+  return {{"@context", "https://schema.org/"},
+          {"@type", "Dataset"},
+          {"name", "Which cable looks most realistic?"},
+          {"description",
+           "Forced choices between simulations of cables, shown side by side. One row a trial."},
+          {"variableMeasured", variables}};
 }
 
 std::string csv_of(const Answers& answers) {
@@ -237,77 +275,6 @@ std::string csv_of(const Answers& answers) {
     for (const Cells& values : rows) csv += row(values);
   }
   return csv;
-}
-
-// What an exclusion rule is about, of one participant; empty where the file does not hold it.
-std::string measured(const json& file, const char* key) {
-  const auto rule = std::ranges::find(exclusion_rules(), key, &ExclusionRule::key);
-  const double value = measure(*rule, file);
-  return std::isnan(value) ? "" : fmt::format("{}", value);
-}
-
-std::string of_first_trial(const json& file, const char* key) {
-  return value_of(file["trials"].front(), key);
-}
-
-std::string free_text(const json& file, const char* key) {
-  return file.contains("free_text") ? value_of(file["free_text"], key) : "";
-}
-
-struct ParticipantColumn {
-  const char* name;
-  const char* description;
-  std::string (*value)(const json& file) = nullptr;  // without: the file's key of that name
-};
-
-const std::vector<ParticipantColumn> participant_columns = {
-    {"participant", "Random name of the participant"},
-    {"participant_number", "Number that the plan was counterbalanced by, from 0"},
-    {"language", "Of the page"},
-    {"started_utc", "When the participant began"},
-    {"saved_utc", "When the answers were saved"},
-    {"resumed_count", "Times that the page was loaded again"},
-    {"answers", "Main trials",
-     [](const json& file) {
-       return std::to_string(std::ranges::count(file["trials"], json("main"),
-                                                [](const json& trial) { return trial["kind"]; }));
-     }},
-    {"one_side_share", "Share of main trials in which the side that was chosen more often was",
-     [](const json& file) { return measured(file, "one_side_over"); }},
-    {"median_reaction_time_s", "Seconds from the moment the buttons appeared, of main trials",
-     [](const json& file) { return measured(file, "median_reaction_time_s_under"); }},
-    {"failed_checks", "Attention checks without the right answer",
-     [](const json& file) { return measured(file, "failed_checks_over"); }},
-    {"focus_lost_count", "Times the window lost the focus or was hidden in main trials",
-     [](const json& file) { return measured(file, "focus_lost_over"); }},
-    {"dropped_frames_share", "Share of the frames of main trials that the browser dropped",
-     [](const json& file) { return measured(file, "dropped_frames_over"); }},
-    {"smallest_clip_width_px", "Least width at which a main trial was shown, CSS pixels",
-     [](const json& file) { return measured(file, "clip_width_px_under"); }},
-    {"screen_width_px", "Width of the screen in the first trial, CSS pixels",
-     [](const json& file) { return of_first_trial(file, "screen_width_px"); }},
-    {"screen_height_px", "Height of the screen in the first trial, CSS pixels",
-     [](const json& file) { return of_first_trial(file, "screen_height_px"); }},
-    {"device_pixel_ratio", "Device pixels a CSS pixel in the first trial",
-     [](const json& file) { return of_first_trial(file, "device_pixel_ratio"); }},
-    {"user_agent", "What the browser says it is"},
-    {"common_details", "Optional text: details that choices were based on",
-     [](const json& file) { return free_text(file, "common_details"); }},
-    {"thoughts", "Optional text: thoughts about the test",
-     [](const json& file) { return free_text(file, "thoughts"); }}};
-
-Cells cells_of(const json& file) {
-  Cells cells;
-  for (const ParticipantColumn& column : participant_columns) {
-    cells.push_back(column.value != nullptr ? column.value(file) : value_of(file, column.name));
-  }
-  return cells;
-}
-
-Cells participant_names() {
-  Cells names;
-  for (const ParticipantColumn& column : participant_columns) names.emplace_back(column.name);
-  return names;
 }
 
 // BIDS writes what is not there as n/a, and has no quotes for tabs and ends of lines.
@@ -340,34 +307,37 @@ std::string answers_csv(const fs::path& folder) {
 }
 
 std::string participants_csv(const fs::path& folder) {
-  std::string csv = row(participant_names());
-  for (const auto& [file, rows] : read_folder(folder).participants) csv += row(cells_of(file));
+  const ParticipantsTable table = participants_table(files_of(read_folder(folder)), true);
+  std::string csv = row(table.names);
+  for (const Cells& cells : table.rows) csv += row(cells);
   return csv;
 }
 
 std::map<std::string, std::string> bids_files(const fs::path& folder) {
   const Answers answers = read_folder(folder);
   std::map<std::string, std::string> files;
-  Cells names = participant_names();
-  names.front() = "participant_id";
-  std::string participants = tsv_row(names);
-  for (const auto& [file, rows] : answers.participants) {
-    const std::string id = "sub-" + value_of(file, "participant");
-    Cells cells = cells_of(file);
+  ParticipantsTable table = participants_table(files_of(answers), false);
+  table.names.front() = "participant_id";
+  std::string participants = tsv_row(table.names);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    Cells& cells = table.rows[i];
+    const std::string id = "sub-" + cells.front();
     cells.front() = id;
     participants += tsv_row(cells);
-    std::string& table = files[fmt::format("{}/beh/{}_task-cables_beh.tsv", id, id)];
-    table = tsv_row(answers.names);
-    for (const Cells& values : rows) table += tsv_row(values);
+    std::string& trials = files[fmt::format("{}/beh/{}_task-cables_beh.tsv", id, id)];
+    trials = tsv_row(answers.names);
+    for (const Cells& values : answers.participants[i].second) trials += tsv_row(values);
   }
   files["participants.tsv"] = participants;
   ordered_json of_participants, of_trials = {{"TaskName", "cables"}};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    of_participants[names[i]] = {{"Description", participant_columns[i].description}};
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    of_participants[table.names[i]] = {{"Description", table.descriptions[i]}};
   }
-  for (const Column& column : columns) {
-    if ((column.kinds & answers.kind) != 0)
-      of_trials[column.name] = {{"Description", column.description}};
+  for (const Column* column : answers.columns) {
+    of_trials[column->name] = {{"Description", column->description}};
+  }
+  for (const auto& [name, question] : answers.questions) {
+    of_trials[name] = {{"Description", question}};
   }
   files["participants.json"] = of_participants.dump(2) + "\n";
   files["task-cables_beh.json"] = of_trials.dump(2) + "\n";
@@ -391,7 +361,7 @@ std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
   const Answers answers = read_folder(folder);
   return {{"data/study-cables_data.csv", csv_of(answers)},
           {"README.md", dataset_readme},
-          {"dataset_description.json", description(answers.kind).dump(2) + "\n"}};
+          {"dataset_description.json", description(answers).dump(2) + "\n"}};
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {

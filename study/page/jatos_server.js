@@ -58,7 +58,8 @@ export function connect(onTrouble) {
       if (!response.ok) throw new Error(`status ${response.status}`);
       return response.json();
     }, onTrouble);
-    return { trials: plan, next: session.answers.length };
+    const open = Object.keys(input().questionnaires ?? {}).filter((part) => !session.questionnaires?.[part]);
+    return { trials: plan, next: session.answers.length, questionnaires: open };
   }
 
   const result = (freeText) => {
@@ -71,7 +72,7 @@ export function connect(onTrouble) {
       await loaded;
       jatos.httpTimeout = 15000;  // ms
       jatos.httpRetry = 1;  // then the page says so, and tries again by itself
-      return { texts: input().texts };
+      return { texts: input().texts, questionnaires: input().questionnaires, trial_options: input().trial_options };
     },
 
     async running() {
@@ -100,6 +101,11 @@ export function connect(onTrouble) {
       await keep();
     },
 
+    async questionnaire(part, answers) {
+      session.questionnaires = { ...session.questionnaires, [part]: answers };
+      await keep();
+    },
+
     async answer({ index, ...answer }) {
       session.answers[index] = { shown_utc: session.shown_utc, ...answer };
       await keep();
@@ -115,7 +121,7 @@ export function connect(onTrouble) {
       } catch (error) {
         console.warn(error);
       }
-      return session.withdrawal_code;
+      return { code: session.withdrawal_code };
     },
 
     download: result,

@@ -2,8 +2,11 @@
 // The study from beginning to end, as a jsPsych timeline.
 
 import { NotKept } from './errors.js';
-import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, thanks } from './pages.js';
+import { PagePlugin, askResume, exitButton, failed, goodbye, information, preload, questions, save, sheet, thanks } from './pages.js';
 import { PairTrial } from './pair_trial.js';
+import { questionnaire } from './questionnaire.js';
+import { Site } from './recruiting.js';
+import { measureScreen } from './screen.js';
 
 const stage = document.getElementById('stage');
 const notice = document.getElementById('notice');
@@ -17,15 +20,17 @@ const tell = (trouble) => {
 };
 const backend = connect(tell);
 let isShared = false;  // one computer for many participants
-({ texts, shared_computer: isShared = false } = await backend.study());
+let recruiting = null, questionnaires = {}, options = {};
+({ texts, recruiting = null, questionnaires = {}, trial_options: options = {}, shared_computer: isShared = false } = await backend.study());
+const site = new Site(recruiting, texts);
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
-  const running = await backend.running();
-  if (!running) return information(stage, texts, backend);
+  const running = await backend.running(site.ids);
+  if (!running) return information(stage, texts, backend, site);
   if (await askResume(stage, texts)) return backend.resume();
   await backend.startAnew();
-  return information(stage, texts, backend);
+  return information(stage, texts, backend, site);
 }
 
 function page(show) {
@@ -34,19 +39,31 @@ function page(show) {
   return { type: PagePlugin, page: shown };
 }
 
+// The researcher's own questions, once: a part that was answered is not in `session.questionnaires` any more.
+async function ask(display, session, part, leave) {
+  if (!session.questionnaires?.includes(part)) return;
+  const show = (...content) => sheet(display, ...content);
+  const exit = exitButton(texts, leave);
+  const asked = part === 'screen' ? measureScreen(show, texts, exit) : questionnaire(show, texts, part, questionnaires[part], exit);
+  await backend.questionnaire(part, await asked);
+}
+
 try {
   const session = await begin();
-  const clips = await preload(stage, texts, session, (isLost) => tell(isLost ? new Error('lost') : null));
-  stage.replaceChildren();
-  const jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
-
+  let jsPsych = null;
   const leave = async () => {
-    const { code } = await backend.leave() ?? {};
-    jsPsych.abortExperiment();
+    const saved = await backend.leave() ?? {};
+    jsPsych?.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
-    if (code) thanks(stage, texts, code, isShared);  // saved already, in another window
-    else goodbye(stage, texts, isShared);
+    if (saved.code) thanks(stage, texts, saved, site, isShared);  // saved already, in another window
+    else goodbye(stage, texts, site, isShared);
   };
+
+  await ask(stage, session, 'screen', leave);
+  await ask(stage, session, 'before', leave);
+  const clips = await preload(stage, texts, session, site, (isLost) => tell(isLost ? new Error('lost') : null));
+  stage.replaceChildren();
+  jsPsych = jsPsychModule.initJsPsych({ display_element: stage });
 
   const countedFrom = (index) => session.trials.slice(index).filter(({ practice }) => !practice).length;
 
@@ -55,6 +72,7 @@ try {
     texts,
     remaining: countedFrom(index),
     practice: session.trials[index].practice,
+    options,
     exit: () => exitButton(texts, leave),
     clip(onShare) {
       clips.want(index);
@@ -67,13 +85,16 @@ try {
   });
 
   let freeText = {};
-  let code = '';
+  let saved = {};
   const timeline = session.trials.map((_, index) => index).filter((index) => index >= session.next).map(trial);
-  timeline.push(page(async (display) => { freeText = await questions(display, texts, leave); }));
-  timeline.push(page(async (display) => { code = await save(display, texts, backend, freeText, leave); }));
+  timeline.push(page(async (display) => {
+    if (questionnaires.after) await ask(display, session, 'after', leave);
+    else freeText = await questions(display, texts, leave);
+  }));
+  timeline.push(page(async (display) => { saved = await save(display, texts, backend, freeText, leave); }));
   timeline.push(page(async (display) => {
     if (document.fullscreenElement) document.exitFullscreen();
-    thanks(display, texts, code, isShared);
+    thanks(display, texts, saved, site, isShared);
     return new Promise(() => {});  // the end: stays
   }));
   await jsPsych.run(timeline);

@@ -11,7 +11,7 @@ const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars b
 const paragraphs = (text) => text.split('\n\n').map((part) => make('p', {}, part));
 
 // A sheet of paper in the middle; its heading takes the focus, so that a screen reader begins there.
-function sheet(stage, heading, ...children) {
+export function sheet(stage, heading, ...children) {
   const title = make('h1', { tabindex: -1 }, heading);
   stage.replaceChildren(make('div', { class: 'sheet' }, title, ...children));
   window.scrollTo(0, 0);
@@ -42,9 +42,11 @@ export function failed(stage, texts, error) {
   sheet(stage, texts.title, make('p', {}, error instanceof SessionGone ? texts.session_gone : texts.problem));
 }
 
-const startProblem = (texts, error) =>
-  error instanceof Refused && error.status === 403 ? (location.search ? texts.used_link : texts.no_link)
-    : error instanceof Refused && error.status === 409 ? texts.full : texts.busy;
+function startProblem(texts, error, site) {
+  if (!(error instanceof Refused)) return texts.busy;
+  if (error.status === 403 && !site.recruiting) return location.search ? texts.used_link : texts.no_link;
+  return { 403: texts.recruiting_no_id, 409: texts.full, 410: texts.recruiting_again, 422: texts.recruiting_no_id }[error.status] ?? texts.busy;
+}
 
 const isTouchOnly = () => matchMedia('(pointer: coarse)').matches && !matchMedia('(any-pointer: fine)').matches;
 const isSmall = () => innerWidth < smallestWindow.width || innerHeight < smallestWindow.height ||
@@ -54,15 +56,18 @@ function fullScreen() {
   document.documentElement.requestFullscreen?.().catch(() => { /* then without */ });
 }
 
-/** Information and consent. Resolves to the new session. */
-export function information(stage, texts, backend) {
+/** Information and consent. Resolves to the new session. `site`: where the participant comes from. */
+export function information(stage, texts, backend, site) {
   return new Promise((resolve) => {
     const tick = make('input', { type: 'checkbox', id: 'consent' });
     const problem = make('p', { class: 'wrong', role: 'alert' });
     const windowHint = make('p', { class: 'wrong', role: 'status' });
     const start = make('button', { type: 'button', id: 'start' }, texts.start);
+    const wayOut = make('div', { class: 'row', hidden: true }, ...site.back('screen_out'));
     const checkWindow = () => {
-      const hint = isTouchOnly() ? texts.touch_screen : isSmall()
+      const isUnfit = isTouchOnly() || isSmall();
+      wayOut.hidden = !isUnfit || wayOut.childElementCount === 0;
+      const hint = site.isMissing ? texts.recruiting_no_id : isTouchOnly() ? texts.touch_screen : isSmall()
         ? texts.small_window.replace('{width}', smallest.width).replace('{height}', smallest.height) : '';
       if (windowHint.textContent !== hint) windowHint.textContent = hint;
       start.disabled = hint !== '';
@@ -80,13 +85,14 @@ export function information(stage, texts, backend) {
         removeEventListener('resize', checkWindow);
         resolve(session);
       } catch (error) {
-        problem.textContent = startProblem(texts, error);
+        problem.textContent = startProblem(texts, error, site);
+        if (error instanceof Refused && error.status === 409) problem.append(' ', ...site.back('full'));
         start.disabled = false;
       }
     });
-    sheet(stage, texts.information_heading, windowHint, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
+    sheet(stage, texts.information_heading, windowHint, wayOut, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
       ...paragraphs(texts.information_questions), make('label', { class: 'tick' }, tick, texts.consent), problem,
-      make('div', { class: 'row' }, start), make('p', { class: 'hint' }, texts.keyboard_hint));
+      make('div', { class: 'row' }, start, ...site.back('declined', texts.recruiting_decline)), make('p', { class: 'hint' }, texts.keyboard_hint));
     addEventListener('resize', checkWindow);
     checkWindow();
   });
@@ -198,10 +204,10 @@ export class Clips {
 }
 
 /** Fetches the clips of the first trials that are left. Resolves to Clips. `onTrouble` hears whether the server is lost. */
-export async function preload(stage, texts, session, onTrouble) {
+export async function preload(stage, texts, session, site, onTrouble) {
   const encoding = playableEncoding(session.trials.slice(session.next));
   if (!encoding) {
-    sheet(stage, texts.preload_heading, make('p', { class: 'wrong' }, texts.no_video));
+    sheet(stage, texts.preload_heading, make('p', { class: 'wrong' }, texts.no_video), ...site.back('screen_out'));
     return new Promise(() => {});
   }
   const clips = new Clips(session, encoding, onTrouble);
@@ -250,7 +256,7 @@ function offerDownload(content) {
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
-/** Saves when the participant says so, and tries until it is confirmed. Resolves to the code. */
+/** Saves when the participant says so, and tries until it is confirmed. Resolves to { code, completion }. */
 export function save(stage, texts, backend, freeText, onLeave) {
   return new Promise((resolve, reject) => {
     const status = make('div', { role: 'status' });
@@ -282,17 +288,17 @@ export function save(stage, texts, backend, freeText, onLeave) {
 }
 
 /** The end; `isShared`: another participant follows at this computer. */
-export function thanks(stage, texts, code, isShared = false) {
+export function thanks(stage, texts, { code, completion }, site, isShared = false) {
   const copy = make('button', {
     type: 'button', class: 'quiet',
     onclick: () => navigator.clipboard.writeText(code).then(() => { copy.textContent = texts.copied; }, console.warn),
   }, texts.copy);
   copy.hidden = !navigator.clipboard;  // as on pages without TLS
-  sheet(stage, texts.saved_heading, make('p', {}, texts.saved_body),
+  sheet(stage, texts.saved_heading, make('p', {}, completion?.url ? texts.recruiting_saved : texts.saved_body),
     ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []),
-    ...nextParticipant(texts, isShared));
+    ...site.completion(completion), ...nextParticipant(texts, isShared));
 }
 
-export function goodbye(stage, texts, isShared = false) {
-  sheet(stage, texts.left_heading, make('p', {}, texts.left_body), ...nextParticipant(texts, isShared));
+export function goodbye(stage, texts, site, isShared = false) {
+  sheet(stage, texts.left_heading, make('p', {}, texts.left_body), ...site.back('declined'), ...nextParticipant(texts, isShared));
 }

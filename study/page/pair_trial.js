@@ -2,6 +2,7 @@
 // A jsPsych plugin: two clips in one video, so that both are on the same frame always, and a forced
 // choice that can be made once the first loop has ended.
 
+import { askBesides, grade, inputOf } from './after_choice.js';
 import { make } from './make.js';
 
 const { ParameterType } = jsPsychModule;
@@ -17,6 +18,7 @@ export class PairTrial {
       texts: { type: ParameterType.COMPLEX },
       remaining: { type: ParameterType.INT },  // trials that count, with this one
       practice: { type: ParameterType.BOOL, default: false },
+      options: { type: ParameterType.OBJECT, default: {} },  // what is asked besides the choice
       exit: { type: ParameterType.FUNCTION },  // returns the exit button
       before: { type: ParameterType.FUNCTION },  // awaited before the clip plays
       after: { type: ParameterType.FUNCTION },  // gets the data; awaited before the trial ends
@@ -47,8 +49,9 @@ export class PairTrial {
     view.video.src = url;
     play(view, trial.texts, watch);
     await watch.firstLoop;
-    const { choice, input, seconds } = await choose(view, trial.texts);
-    const data = { choice, reaction_time_s: seconds, ...watch.stop(), input, ...sizes(view.video) };
+    const { seconds, ...decision } = await choose(view, trial.texts, trial.options.preference === 'graded');
+    const data = { ...decision, reaction_time_s: seconds, ...watch.stop(), ...sizes(view.video) };
+    Object.assign(data, await askBesides(view, trial.texts, trial.options));
     unfit();
     await trial.after(data);
     view.video.removeAttribute('src');
@@ -219,13 +222,19 @@ class Watch {
 
 const median = (sorted) => (sorted[(sorted.length - 1) >> 1] + sorted[sorted.length >> 1]) / 2;
 
-function choose({ choices, spoken }, texts) {
+async function choose({ choices, spoken }, texts, isGraded) {
+  const since = performance.now();  // ms
+  spoken.textContent = texts.choose_now;
+  const decision = await (isGraded ? grade(choices, texts) : side(choices, texts));
+  return { ...decision, seconds: (performance.now() - since) / 1000 };
+}
+
+function side(choices, texts) {
   return new Promise((resolve) => {
-    const since = performance.now();  // ms
     const decide = (choice, input) => {
       removeEventListener('keydown', onKey);
       buttons.forEach((button) => { button.disabled = true; });
-      resolve({ choice, input, seconds: (performance.now() - since) / 1000 });
+      resolve({ choice, input });
     };
     const onKey = (event) => {
       const choice = { ArrowLeft: 'left', ArrowRight: 'right' }[event.key];
@@ -234,13 +243,10 @@ function choose({ choices, spoken }, texts) {
       event.preventDefault();
       decide(choice, 'keyboard');
     };
-    // A click without a pointer came from Enter or the space bar.
-    const inputOf = (event) => (event.pointerType === 'touch' ? 'touch' : event.detail === 0 ? 'keyboard' : 'mouse');
-    const buttons = ['left', 'right'].map((side) => make('button', {
-      type: 'button', id: side, 'aria-label': texts[`${side}_label`], onclick: (event) => decide(side, inputOf(event)),
-    }, texts[side]));
+    const buttons = ['left', 'right'].map((choice) => make('button', {
+      type: 'button', id: choice, 'aria-label': texts[`${choice}_label`], onclick: (event) => decide(choice, inputOf(event)),
+    }, texts[choice]));
     choices.replaceChildren(buttons[0], make('p', { class: 'arrows hint' }, texts.arrow_hint), buttons[1]);
-    spoken.textContent = texts.choose_now;
     addEventListener('keydown', onKey);
   });
 }

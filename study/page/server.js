@@ -41,13 +41,17 @@ async function request(method, path, body) {
 }
 
 export function connect(onTrouble) {
+  let recruited = {};  // ids of the site that sent the participant
+  const withIds = () => (recruited.participant ? { recruited } : {});
   const confirmed = (method, path, body) => insist(() => request(method, path, body), onTrouble);
   return {
     study: () => confirmed('GET', 'api/study', null),
 
-    /** The session that was begun before, or null. */
-    async running() {
-      if (!stored.read()) return null;
+    /** The session that was begun before, with the same id of the site if there is one, or null. */
+    async running(ids = {}) {
+      recruited = ids;
+      const { participant } = stored.read()?.recruited ?? {};
+      if (!stored.read() || participant !== ids.participant) return null;
       try {
         return await confirmed('GET', 'api/session', null);
       } catch (error) {
@@ -59,8 +63,8 @@ export function connect(onTrouble) {
 
     async start() {
       const link = new URLSearchParams(location.search).get('link') ?? '';
-      const { token, ...session } = await request('POST', 'api/start', { consent: true, link });
-      stored.write({ token, answers: [] });
+      const { token, ...session } = await request('POST', 'api/start', { consent: true, link, ...withIds() });
+      stored.write({ token, answers: [], ...withIds() });
       return session;
     },
 
@@ -68,16 +72,23 @@ export function connect(onTrouble) {
     show: (index) => confirmed('POST', 'api/show', { index }),
 
     async answer(sent) {
-      const { token, answers } = stored.read();
-      stored.write({ token, answers: [...answers.filter(({ index }) => index !== sent.index), sent] });
+      const { answers, ...kept } = stored.read();
+      stored.write({ ...kept, answers: [...answers.filter(({ index }) => index !== sent.index), sent] });
       await confirmed('POST', 'api/answer', sent);
+    },
+
+    /** The answers of one part of the questionnaires. */
+    async questionnaire(part, answers) {
+      const kept = stored.read();
+      stored.write({ ...kept, questionnaires: { ...kept.questionnaires, [part]: answers } });
+      await confirmed('POST', 'api/questionnaire', { part, answers });
     },
 
     /** One attempt; what can be tried again is for the page to say. */
     async save(freeText) {
-      const { code } = await request('POST', 'api/save', { free_text: freeText });
+      const { code, completion = null } = await request('POST', 'api/save', { free_text: freeText });
       stored.write(null);
-      return code;
+      return { code, completion };
     },
 
     /** What this browser knows, for a participant whose answers the server does not take. */
@@ -87,12 +98,12 @@ export function connect(onTrouble) {
       await this.leave();
     },
 
-    /** Keeps nothing; what was saved before is kept, and then it resolves to its { code }. */
+    /** Keeps nothing; what was saved before is kept, and then it resolves to what save() does. */
     async leave() {
       try {
         await request('POST', 'api/leave', {});
       } catch (error) {
-        if (error instanceof Refused && error.status === 409) return { code: await this.save({}) };
+        if (error instanceof Refused && error.status === 409) return this.save({});
         // What is not saved is no answer, and is dropped when it is not seen for a while.
       }
       stored.write(null);

@@ -79,6 +79,8 @@ inline nlohmann::json answer_document(const std::string& participant = "p-1") {
              "both_orders": false, "training_trials": 1, "attention_checks": 1},
     "started_utc": "2026-11-20T12:00:00Z", "saved_utc": "2026-11-20T12:04:31.250Z",
     "software_version": "0.1.0", "language": "en", "user_agent": "Mozilla/5.0", "resumed_count": 0, "pilot": false,
+    "questionnaires": {"before": {"age": {"question": "How old are you?", "answer": 44}}},
+    "recruited": {"participant": "5f0abc", "study": "s-1", "session": "t-1"},
     "clips_sha256": {"01-roll-over": {}}, "trials": [],
     "free_text": {"common_details": "The cable, it \"clips\" <through>.", "thoughts": ""}
   })");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <set>
 
 #include "base/answer_file.h"
 #include "base/input_error.h"
@@ -53,10 +54,11 @@ TEST(AnswerFiles, SchemaAndReaderAgree) {
       EXPECT_TRUE(described["properties"].contains(key)) << key << " is not in the schema";
     }
     for (const auto& [key, unused] : described["properties"].items()) {
-      // Of attention trials only, and of other kinds of studies (test_comparisons.cpp).
-      if (key == "expected" || key == "methods" || key == "graded_hit" || key == "adaptive" ||
-          key == "level")
-        continue;
+      // Of attention trials only, and of other kinds of studies (test_comparisons.cpp, test_graded.cpp).
+      static const std::set<std::string> elsewhere = {
+          "expected",   "methods", "graded_hit", "adaptive", "level",   "preference",
+          "confidence", "reason",  "where_side", "where_x",  "where_y", "where_time_s"};
+      if (elsewhere.contains(key)) continue;
       EXPECT_TRUE(full.at(place).contains(key)) << key << " is not in the test document";
       json without = full;
       without.at(place).erase(key);

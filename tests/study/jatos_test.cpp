@@ -198,6 +198,64 @@ TEST(Jatos, ResultsBecomeAnswerFiles) {
       << "both have the code of this test; the first goes";
 }
 
+TEST(Jatos, OwnQuestionsComeBackChecked) {
+  const Config config = parse_config({{"format", "pinchlab-study 1"},
+                                      {"demonstrations", demonstrations},
+                                      {"questionnaire_after",
+                                       {{{"name", "age"},
+                                         {"kind", "number"},
+                                         {"text", "How old are you?"},
+                                         {"min", 18},
+                                         {"max", 120},
+                                         {"required", true}}}}},
+                                     "study.json");
+  const Exported study = exported(config);
+  EXPECT_EQ(study.input["questionnaires"]["after"][0]["name"], "age");
+  const auto bring = [&](const json& given) {
+    json one = result(study.input, 0, 3, "0123456789abcdef");
+    if (!given.is_null()) one["questionnaires"] = given;
+    write_text(study.folder / "results.txt", one.dump());
+    return import_jatos({study.folder / "results.txt"}, study.folder / "study.key.json",
+                        study.folder / "answers");
+  };
+  EXPECT_THROW(bring(nullptr), InputError) << "the answers are missing";
+  EXPECT_THROW(bring({{"after", {{"age", 17}}}}), InputError);
+  EXPECT_THROW(bring({{"after", {{"age", 44}}}, {"before", json::object()}}), InputError);
+  EXPECT_FALSE(fs::exists(study.folder / "answers"));
+  EXPECT_EQ(bring({{"after", {{"age", 44}}}}).added, 1);
+  const json file = json::parse(read_whole(study.folder / "answers" / "0123456789abcdef.json"));
+  EXPECT_EQ(file["questionnaires"]["after"]["age"]["answer"], 44);
+}
+
+TEST(Jatos, WhatWasAskedInTrialsComesBackChecked) {
+  const Config config = parse_config({{"format", "pinchlab-study 1"},
+                                      {"demonstrations", demonstrations},
+                                      {"preference", "graded"},
+                                      {"confidence", 3}},
+                                     "study.json");
+  const Exported study = exported(config);
+  EXPECT_EQ(study.input["trial_options"], (json{{"preference", "graded"}, {"confidence", 3}}));
+  const auto bring = [&](const json& more) {
+    json one = result(study.input, 0, 3, "0123456789abcdef");
+    for (json& answer : one["answers"]) answer.update(more);
+    write_text(study.folder / "results.txt", one.dump());
+    return import_jatos({study.folder / "results.txt"}, study.folder / "study.key.json",
+                        study.folder / "answers");
+  };
+  const json tie = {{"choice", "tie"}, {"preference", 0}};
+  EXPECT_THROW(bring(json::object()), InputError) << "nothing of it is there";
+  EXPECT_THROW(bring(tie), InputError) << "the confidence is missing";
+  json full = tie;
+  full["confidence"] = 4;
+  EXPECT_THROW(bring(full), InputError) << "beyond the scale";
+  full["confidence"] = 3;
+  full["reason"] = "none";
+  EXPECT_THROW(bring(full), InputError) << "was not asked";
+  EXPECT_FALSE(fs::exists(study.folder / "answers"));
+  full.erase("reason");
+  EXPECT_EQ(bring(full).added, 1);
+}
+
 TEST(Jatos, WhatCannotBeIsToldAndNothingIsWritten) {
   const Exported study = exported(small_config());
   const auto error = [&](const std::string& text) -> std::string {

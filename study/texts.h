@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// The words of the page: those that are delivered, and what a configuration makes of them.
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace pinchlab::study {
+
+/// What a study has that needs texts of its own.
+struct TextOptions {
+  bool recruiting = false, questionnaires = false, screen = false;
+  bool graded = false, confidence = false, click_where = false, reason = false;
+};
+
+/// All delivered texts of a language, or nothing if there are none.
+std::map<std::string, std::string> delivered_texts(const std::string& language);
+
+/// The texts of a study. `document` is the configuration, whose `texts` replace delivered ones;
+/// texts of options that are not used are left out, so that they change nothing. Throws InputError,
+/// also where a language that is not delivered lacks a text.
+std::map<std::string, std::string> read_texts(const nlohmann::json& document,
+                                              const std::string& file, const std::string& language,
+                                              const TextOptions& options);
+
+}  // namespace pinchlab::study

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Preferences in grades: Wilcoxon's test against its definition, ties in no count of choices.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/comparisons_table.h"
+#include "analysis/graded_preference.h"
+#include "analysis/report.h"
+#include "base/input_error.h"
+#include "tests/analysis/support.h"
+
+namespace pinchlab::analysis {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFolder;
+
+// By counting all ways to give the sizes their signs.
+double by_enumeration(const std::vector<double>& scores) {
+  std::vector<double> sizes;
+  for (const double score : scores) {
+    if (score != 0) sizes.push_back(std::abs(score));
+  }
+  std::vector<double> ranks;
+  for (const double size : sizes) {
+    double rank = 0.5;
+    for (const double other : sizes) rank += other < size ? 1 : other == size ? 0.5 : 0;
+    ranks.push_back(rank);
+  }
+  double observed = 0, middle = 0;
+  std::size_t i = 0;
+  for (const double score : scores) {
+    if (score == 0) continue;
+    observed += score > 0 ? ranks[i] : 0;
+    middle += ranks[i++] / 2;
+  }
+  long extreme = 0;
+  const long all = 1L << ranks.size();
+  for (long signs = 0; signs < all; ++signs) {
+    double sum = 0;
+    for (std::size_t k = 0; k < ranks.size(); ++k) sum += (signs >> k & 1) != 0 ? ranks[k] : 0;
+    extreme += std::abs(sum - middle) >= std::abs(observed - middle) - 1e-9 ? 1 : 0;
+  }
+  return static_cast<double>(extreme) / static_cast<double>(all);
+}
+
+TEST(SignedRank, AgreesWithItsDefinition) {
+  const std::vector<std::vector<double>> samples = {
+      {1},
+      {-1, 2, 3},
+      {0.5, -0.5, 1, 1, -2, 0, 0},
+      {1, 2, 3, 4, 5, 6},
+      {1.0 / 3, 2.0 / 6, -1.0 / 3, 2, 2, 2, -3, 0.25},
+      {1.83, 0.50, 1.62, 2.48, 1.68, -1.88, 1.55, 3.06, -1.30},
+      {-3, -3, -3, 1, 1, 1, 1, 1, 2, 2, 2, 2.5, -2.5, 0.1}};
+  for (const auto& sample : samples) {
+    const SignedRank result = signed_rank_test(sample);
+    ASSERT_TRUE(result.p);
+    EXPECT_TRUE(result.is_exact);
+    EXPECT_NEAR(result.p.value, by_enumeration(sample), 1e-12);
+  }
+  // Six of one sign: 2 / 2^6 in both tests.
+  EXPECT_DOUBLE_EQ(signed_rank_test({1, 2, 3, 4, 5, 6}).p.value, 0.03125);
+  EXPECT_DOUBLE_EQ(signed_rank_test({1, 2, 3, 4, 5, 6}).p_sign.value, 0.03125);
+  EXPECT_DOUBLE_EQ(signed_rank_test({1, 2, 3, 4, 5, 6}).w_plus, 21);
+}
+
+TEST(SignedRank, ManyScoresByTheNormal) {
+  std::vector<double> scores;
+  for (int i = 1; i <= 300; ++i) scores.push_back((i % 3 == 0 ? -1 : 1) * (i % 17 + 1));
+  const SignedRank exact = signed_rank_test(scores);
+  EXPECT_TRUE(exact.is_exact);
+  scores.push_back(0);
+  EXPECT_TRUE(signed_rank_test(scores).is_exact) << "zeros do not count";
+  scores.back() = 1e-9;
+  const SignedRank normal = signed_rank_test(scores);
+  EXPECT_FALSE(normal.is_exact);
+  EXPECT_NEAR(std::log(normal.p.value), std::log(exact.p.value), 0.5);
+}
+
+TEST(SignedRank, NothingToTestIsSaid) {
+  const SignedRank result = signed_rank_test({0, 0});
+  EXPECT_FALSE(result.p);
+  EXPECT_FALSE(result.p_sign);
+  EXPECT_EQ(result.zeros, 2U);
+  EXPECT_FALSE(signed_rank_test({}).p);
+}
+
+json graded_document(const std::string& participant, int first, int second) {
+  json document = test::answer_document(participant);
+  const int grades[] = {first, second};
+  std::size_t next = 0;
+  for (json& trial : document["trials"]) {
+    if (trial["kind"] != "main") continue;
+    const int grade = grades[next++];
+    trial["preference"] = grade;
+    trial["choice"] = grade < 0 ? "left" : grade > 0 ? "right" : "tie";
+  }
+  return document;
+}
+
+TEST(Graded, TiesAreInNoCount) {
+  const TemporaryFolder folder;
+  folder.write("a.json", graded_document("p-1", 0, -3).dump());
+  folder.write("b.json", graded_document("p-2", 0, 2).dump());
+  folder.write("c.json", graded_document("p-3", 0, 0).dump());
+  const AnswersTable table = read_answers({folder.path()}, {});
+  EXPECT_TRUE(table.incomplete.empty());
+  EXPECT_EQ(table.answers.size(), 2U);
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  EXPECT_EQ(report.all().row.counts.total(), 2);
+  ASSERT_FALSE(report.graded.empty());
+  EXPECT_EQ(report.graded.back().name, "all");
+  EXPECT_EQ(report.graded.back().answers, 6U);
+  EXPECT_EQ(report.graded.back().ties, 4U);
+  EXPECT_EQ(report.graded.back().participants, 3U);
+  EXPECT_EQ(report.graded.back().test.zeros, 1U);
+  const json rows = json::parse(report_json(report, table))["graded_preferences"]["rows"];
+  EXPECT_EQ(rows.back()["ties"], 4);
+  EXPECT_TRUE(rows[1]["p_signed_rank"].is_null()) << "only ties";
+}
+
+TEST(Graded, NothingChangesWithout) {
+  const TemporaryFolder folder;
+  folder.write("a.json", test::answer_document("p-1").dump());
+  const AnswersTable table = read_answers({folder.path()}, {});
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  EXPECT_TRUE(report.graded.empty());
+  EXPECT_EQ(report_json(report, table).find("graded"), std::string::npos);
+  EXPECT_EQ(report_markdown(report, table, {}).find("raded"), std::string::npos);
+}
+
+TEST(Graded, OnlyTiesAreNoAnswers) {
+  const TemporaryFolder folder;
+  folder.write("a.json", graded_document("p-1", 0, 0).dump());
+  EXPECT_THROW(read_answers({folder.path()}, {}), InputError);
+}
+
+TEST(Graded, TiesOfMethodsAreTies) {
+  const TemporaryFolder folder;
+  json document = graded_document("p-1", 0, -3);
+  document["plan"]["methods"] = {"pinch", "baseline"};
+  folder.write("a.json", document.dump());
+  const ComparisonsTable table = read_comparisons({folder.path()}, {});
+  EXPECT_EQ(table.answers, 2);
+  EXPECT_EQ(table.ties, 1);
+}
+
+}  // namespace
+}  // namespace pinchlab::analysis
