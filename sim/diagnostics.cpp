@@ -35,23 +35,28 @@ bool check_finite(const Scene& scene, World& world) {
 }
 
 bool check_positions(const Scene& scene, World& world) {
-  const auto fail = [&world](const std::string& what) {
-    world.failure = fmt::format("step {} (t = {} s): {} not finite; method {}", world.step,
-                                world.time(), what, to_string(world.configuration.method));
-    return false;
-  };
+  // Zero times what is finite is zero, and sums of that are.
+  double sum = 0.0;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    if (world.position[b].allFinite() && std::isfinite(world.angle[b])) continue;
-    return fail(fmt::format("position of body '{}' is", scene.bodies[b].name));
+    sum += 0.0 * (world.position[b].x() + world.position[b].y() + world.angle[b]);
   }
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    double sum = 0.0;  // zeros, but for what is not finite
+  const bool bodies = sum == 0.0;
+  std::size_t c = 0;
+  for (; c < world.cables.size() && sum == 0.0; ++c) {
     for (const Segment& s : world.cables[c].segments) {
-      sum += 0.0 * (s.length + s.rest_length) + 0.0 * s.tension;
+      sum += 0.0 * (s.length + s.rest_length + s.tension);
     }
-    if (sum != 0.0) return fail(fmt::format("spans of cable '{}' are", scene.cables[c].name));
   }
-  return true;
+  if (sum == 0.0) return true;
+  std::string what = "a position";
+  for (std::size_t b = 0; !bodies && b < world.bodies.size(); ++b) {
+    if (world.position[b].allFinite() && std::isfinite(world.angle[b])) continue;
+    what = fmt::format("position of body '{}'", scene.bodies[b].name);
+  }
+  if (bodies) what = fmt::format("a span of cable '{}'", scene.cables[c - 1].name);
+  world.failure = fmt::format("step {} (t = {} s): {} is not finite; method {}", world.step,
+                              world.time(), what, to_string(world.configuration.method));
+  return false;
 }
 
 double potential_energy(const Scene& scene, const World& world) {
