@@ -123,7 +123,9 @@ bool change_motors(const World& world, const Parts& parts, const Part& part, Par
     changed = changed || next != motor.state;
     motor.state = next;
   }
-  return stall(world, parts, part, s, set) || changed;
+  // What sweeps leave of a row is no contradiction.
+  const bool direct = world.configuration.solver == Solver::direct;
+  return (direct && stall(world, parts, part, s, set)) || changed;
 }
 
 }  // namespace pinchlab

@@ -180,6 +180,20 @@ TEST(MotorLimits, StallOverAPulley) {
   }
 }
 
+// Sweeps know neither groups of sliding segments nor what contradicts a motor: they hold it.
+TEST(MotorLimits, SweepsHoldWhatHasNoLimit) {
+  for (const double limit : {infinity, 30.0}) {
+    Scene scene = winch(1.0, 2.0, limit);
+    for (Body& body : scene.bodies) body.cable_friction = 0.3;
+    Configuration sweeps = Method::pinch;
+    sweeps.solver = Solver::iterative;
+    World world = make_world(scene, sweeps);
+    Workspace work;
+    for (int i = 0; i < 240; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    EXPECT_NEAR(world.angular_velocity[0], 2.0, 1e-9) << limit;
+  }
+}
+
 TEST(MotorLimits, MustBePositive) {
   for (const double limit : {0.0, -1.0, std::nan("")}) {
     EXPECT_THROW(make_world(winch(1.0, 1.0, limit), Method::pinch), SceneError) << limit;
