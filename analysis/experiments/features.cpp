@@ -109,8 +109,12 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
           find_runs(world, work.parts, part, at(work.systems, part.system), work.solve);
         }
       }));
-  add("pinch", "`pinch` less `cable`",
-      difference(scene, ours, configured(Method::cable, false), effort));
+  Configuration at_steps = ours;
+  at_steps.events = Events::at_steps;
+  add("pinch", "`pinch` less `cable`, both with events at the steps",
+      difference(scene, at_steps, configured(Method::cable, false), effort));
+  add("events", "at their time, with exact lengths, less at the steps",
+      difference(scene, ours, at_steps, effort));
   add("contacts", "`make_contact_rows`, `find_contacts`, `configure_pinches`", call([&] {
         for (const Part& part : work.parts.list) {
           make_contact_rows(scene, world, work.parts, part, TimeSpan{},

@@ -29,6 +29,8 @@ set ylabel 'error / the farthest that the roller gets from its start'
 set yrange [1e-09:1]
 set key outside right center invert reverse Left spacing 1.3
 plot 2.4048366163012994e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \
@@ -67,6 +69,8 @@ set ylabel 'error / the farthest that the roller gets from its start'
 set yrange [1e-09:1]
 set key outside right center invert reverse Left spacing 1.3
 plot 2.4048366163012994e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'roller-on-drum' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \
