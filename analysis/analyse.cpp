@@ -139,9 +139,9 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   report.side_bias = side_bias(table, options.seed);
   report.order_effect = order_effect(table, options.seed);
   report.reaction_times = reaction_times(table, options.pinch_label, options.cable_label);
-  report.attention = attention_checks(table);
-  report.playback = playback(table);
+  report.circumstances = circumstances(named_sessions(table), table.has_session_records);
   report.graded = graded_preferences(table);
+  report.besides = analyse_besides(table.besides, options.alpha, options.seed);
   return report;
 }
 

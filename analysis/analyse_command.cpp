@@ -16,6 +16,7 @@
 #include "analysis/scale_report.h"
 #include "analysis/threshold_report.h"
 #include "base/input_error.h"
+#include "base/number_option.h"
 #include "base/text_checks.h"
 
 namespace pinchlab::analysis {
@@ -67,9 +68,9 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
   return columns;
 }
 
-// "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
 constexpr double most_guessed = 0.9, most_lapsed = 0.5;  // of fixed rates
 
+// "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
 Rate rate_of(const char* flag, const std::string& text, double most_fixed, double most_free) {
   if (text == "free") return {true, 0.0, most_free};
   const auto value = parse_number(text);
@@ -78,16 +79,6 @@ Rate rate_of(const char* flag, const std::string& text, double most_fixed, doubl
         flag, fmt::format("`{}` is neither `free` nor a number from 0 to {}", text, most_fixed));
   }
   return {false, *value, most_free};
-}
-
-/// As CLI::Range, which lets NaN through.
-CLI::Validator number_in(double low, double high) {
-  return {[low, high](const std::string& text) {
-            const auto value = parse_number(text);
-            if (value && low <= *value && *value <= high) return std::string();
-            return fmt::format("{} is not a number from {} to {}", text, low, high);
-          },
-          fmt::format("{} to {}", low, high)};
 }
 
 /// What rate_of takes.

@@ -42,10 +42,12 @@ struct Session {
   int attention_passed = 0;
   int attention_failed = 0;
   std::int64_t focus_lost_count = 0;
-  std::int64_t dropped_frames = 0;
+  std::int64_t frames = 0, dropped_frames = 0;
   std::int64_t playback_errors = 0;
-  double refresh_rate_hz = 0;                    ///< of the screen; 0: not measured
-  std::map<std::string, std::string> free_text;  ///< question -> what was written
+  int screen_width_px = 0, screen_height_px = 0;    ///< CSS px, of the last trial; 0: not recorded
+  int narrowest_clips_px = 0, widest_clips_px = 0;  ///< both clips together; 0: not recorded
+  double refresh_rate_hz = 0;                       ///< of the screen; 0: not measured
+  std::map<std::string, std::string> free_text;     ///< question -> what was written
 };
 
 /// A participant who was left out, and the reason that was given.
@@ -58,6 +60,25 @@ struct Exclusion {
 struct GradedAnswer {
   std::string participant, demonstration;
   int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
+};
+
+/// A click on where it looks wrong.
+struct ClickedPlace {
+  std::string clip;     ///< what the clip showed: a method, or "reference" or "graded"
+  double x = 0, y = 0;  ///< shares of its width and height, from its upper left corner
+  double time_s = 0;    ///< of the clip
+};
+
+/// One main trial of which more is known than the choice.
+struct BesidesAnswer {
+  std::string participant;
+  std::string demonstration;
+  std::optional<double> level;  ///< in studies of levels
+  std::string first, second;    ///< what was compared, in order of their names
+  std::string chosen;           ///< one of them; empty: a tie
+  std::optional<bool> is_hit;   ///< in studies of levels
+  std::optional<int> confidence;
+  std::optional<ClickedPlace> place;
 };
 
 /// What holding answers against the frozen design of their study showed (design_check.h).
@@ -78,6 +99,7 @@ struct AnswersTable {
   std::string groups_from;                    ///< in words: where the groups come from
   std::vector<Answer> answers;                ///< without ties; empty if only counts are known
   std::vector<GradedAnswer> graded;           ///< all, ties among them, where they were graded
+  std::vector<BesidesAnswer> besides;         ///< of answer files
   std::vector<Counts> counts;                 ///< one a demonstration
   std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
   bool is_pilot = false;                      ///< answers of a trial run

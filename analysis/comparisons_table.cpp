@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/besides.h"
+#include "analysis/circumstances.h"
 #include "analysis/csv_columns.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
@@ -78,21 +80,6 @@ void read_file(const AnswerFile& file, std::vector<Row>& rows) {
   }
 }
 
-// What went on around the answers, for those with something to tell.
-void note_session(const AnswerFile& file, std::map<std::string, Session>& sessions) {
-  Session session;
-  for (const Trial& trial : file.trials) {
-    if (trial.kind == TrialKind::attention) {
-      ++(trial.choice == trial.expected ? session.attention_passed : session.attention_failed);
-    }
-    session.focus_lost_count += trial.focus_lost_count;
-    session.dropped_frames += trial.dropped_frames;
-    session.playback_errors += trial.playback_errors;
-  }
-  session.free_text = file.free_text;
-  sessions[file.participant] = std::move(session);
-}
-
 // Names in natural order, and where each is.
 std::vector<std::string> sorted(const std::set<std::string>& names,
                                 std::map<std::string, std::size_t>& place) {
@@ -158,7 +145,6 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
   Exclusions exclusions(options);
   const auto excluded = [&](const std::string& name) { return exclusions.excluded(name); };
   std::vector<Row> rows;
-  std::map<std::string, Session> sessions;
   std::set<fs::path> seen;
   SameStudy same_study;
   for (const fs::path& input : inputs) {
@@ -179,17 +165,14 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
          read_answer_files(input, options.allow_missing, same_study, excluded)) {
       table.is_pilot = named.file.is_pilot;
       read_file(named.file, rows);
-      note_session(named.file, sessions);
+      note(named.file, table.sessions[named.file.participant]);
+      std::ranges::move(besides_of(named.file), std::back_inserter(table.besides));
     }
   }
   table.exclusions = exclusions.finish();
   fill(rows, table);
   if (table.answers == 0)
     throw InputError(table.sources.front(), "no answers; a report needs some");
-  for (std::uint32_t i = 0; i < table.participants.size(); ++i) {
-    const auto found = sessions.find(table.participants[i]);
-    if (found != sessions.end()) table.sessions.emplace(i, std::move(found->second));
-  }
   return table;
 }
 

@@ -18,8 +18,9 @@ struct ComparisonsTable {
   std::vector<std::string> demonstrations;  ///< in natural order; one without a name if not known
   std::vector<PairChoices> choices;         ///< by participant, demonstration, methods
   std::vector<Exclusion> exclusions;
-  std::map<std::uint32_t, Session> sessions;  ///< by participant; only those with something to tell
-  bool is_pilot = false;                      ///< answers of a trial run
+  std::map<std::string, Session> sessions;  ///< by participant; of answer files
+  std::vector<BesidesAnswer> besides;       ///< of answer files
+  bool is_pilot = false;                    ///< answers of a trial run
   bool has_session_records = false;
   std::int64_t answers = 0, ties = 0;
   std::optional<DesignCheck> design;  ///< if the study has a frozen one

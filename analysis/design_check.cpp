@@ -101,6 +101,7 @@ void check_shown(const AnswerFile& file, const Design& design, Deviations& devia
       {"language", "another language"},
       {"question", "another question"},
       {"consent_sha256", "another consent text"},
+      {"consent_version", "another version of the information"},
       {"texts_sha256", "another text of the page"},
       {"options_sha256", "other questions or options"},
       {"clips_sha256", "other clips"}};

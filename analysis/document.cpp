@@ -10,17 +10,6 @@ namespace pinchlab::analysis {
 
 namespace {
 
-constexpr const char* dash = "–";
-
-std::string number(double value, int decimals) {
-  const std::string text = fmt::format("{:.{}f}", value, decimals);
-  // A value that rounds to zero has no sign.
-  return text.find_first_not_of("-0.") == std::string::npos ? fmt::format("{:.{}f}", 0.0, decimals)
-                                                            : text;
-}
-std::string number(const Estimate& value, int decimals) {
-  return value ? number(value.value, decimals) : dash;
-}
 std::string percent_interval(double low, double high) {
   return fmt::format("{:.1f} to {:.1f}", 100.0 * low, 100.0 * high);
 }
@@ -46,11 +35,10 @@ class Writer {
     groups();
     pooled();
     differences();
-    effects();
-    for (Block& block : graded_blocks(report_)) add(std::move(block));
-    input();
-    free_texts();
-    methods();
+    document_.add(effect_blocks(report_));
+    document_.add(graded_blocks(report_));
+    document_.add(besides_blocks(report_.besides, alpha()));
+    document_.add(input_blocks(report_, table_));
     return std::move(document_);
   }
 
@@ -59,10 +47,8 @@ class Writer {
   [[nodiscard]] const std::string& pinch() const { return report_.options.pinch_label; }
   [[nodiscard]] const std::string& cable() const { return report_.options.cable_label; }
   [[nodiscard]] double alpha() const { return report_.options.alpha; }
-  [[nodiscard]] std::string level() const { return fmt::format("{:g} %", 100.0 * (1.0 - alpha())); }
-  [[nodiscard]] TextCell p_cell(const Estimate& p) const {
-    return {p_text(p), p && p.value < alpha()};
-  }
+  [[nodiscard]] std::string level() const { return confidence_level(alpha()); }
+  [[nodiscard]] TextCell p_cell(const Estimate& p) const { return analysis::p_cell(p, alpha()); }
 
   // The layout of the thesis' Tables 5.3 and 5.4: one column a test, at most ten side by side.
   void thesis_table(const std::string& caption, const std::vector<const Row*>& rows, int decimals) {
@@ -119,17 +105,17 @@ class Writer {
       block.rows.push_back({{row.name},
                             {fmt::format("{}", row.counts.pinch)},
                             {fmt::format("{}", row.counts.cable)},
-                            {number(100.0 * row.share, 1)},
-                            {number(row.chi_square, 3)},
+                            {fixed(100.0 * row.share, 1)},
+                            {fixed(row.chi_square, 3)},
                             p_cell(row.p_chi_square),
                             p_cell(row.p_exact),
                             {percent_interval(row.wilson.low, row.wilson.high)},
                             {percent_interval(row.clopper_pearson.low, row.clopper_pearson.high)},
-                            {number(row.cohens_h, 3)},
+                            {fixed(row.cohens_h, 3)},
                             p_cell(by_holm[i]),
                             p_cell(by_bh[i]),
                             {bayes_factor(row.log_bayes_factor)},
-                            {number(scales[i]->jod, 2)}});
+                            {fixed(scales[i]->jod, 2)}});
     }
     add(std::move(block));
   }
@@ -150,13 +136,13 @@ class Writer {
       block.rows.push_back({{row.name},
                             {fmt::format("{}", row.counts.pinch)},
                             {fmt::format("{}", row.counts.cable)},
-                            {number(100.0 * row.share, 1)},
+                            {fixed(100.0 * row.share, 1)},
                             p_cell(row.read.p),
                             {percent_interval(row.read.low, row.read.high)},
-                            {number(row.cohens_h, 3)},
+                            {fixed(row.cohens_h, 3)},
                             p_cell(row.read.p_holm),
                             p_cell(row.read.p_bh),
-                            {number(scales[i]->jod, 2)}});
+                            {fixed(scales[i]->jod, 2)}});
     }
     add(std::move(block));
     add(Paragraph{fmt::format(
@@ -239,10 +225,10 @@ class Writer {
       block.rows.push_back(
           {{result.row.name},
            {pooled.participants > 0 ? fmt::format("{}", pooled.participants) : dash},
-           {number(pooled.chi_square, 3)},
+           {fixed(pooled.chi_square, 3)},
            p_cell(pooled.p_naive),
-           {number(pooled.rao_scott.design_effect, 3)},
-           {number(pooled.rao_scott.chi_square, 3)},
+           {fixed(pooled.rao_scott.design_effect, 3)},
+           {fixed(pooled.rao_scott.chi_square, 3)},
            p_cell(pooled.rao_scott.p),
            p_cell(pooled.rao_scott.p_f),
            p_cell(pooled.sign_flip.p),
@@ -251,14 +237,10 @@ class Writer {
            {percent_interval(pooled.bootstrap.low, pooled.bootstrap.high)}});
     }
     add(std::move(block));
-    why_missing("Rao–Scott", report_.all().pooled.rao_scott.chi_square);
-    why_missing("The sign-flip test", report_.all().pooled.sign_flip.p);
-    why_missing("The cluster bootstrap", report_.all().pooled.bootstrap.p);
+    document_.add(why_missing("Rao–Scott", report_.all().pooled.rao_scott.chi_square));
+    document_.add(why_missing("The sign-flip test", report_.all().pooled.sign_flip.p));
+    document_.add(why_missing("The cluster bootstrap", report_.all().pooled.bootstrap.p));
     mixed_models();
-  }
-
-  void why_missing(const std::string& what, const Estimate& estimate) {
-    if (!estimate) add(Paragraph{fmt::format("{} is not given: {}.", what, estimate.why_not)});
   }
 
   void mixed_models() {
@@ -277,16 +259,16 @@ class Writer {
         continue;
       }
       const auto sd = [](const Estimate& value) {
-        return value && value.value == 0.0 ? "0 (boundary)" : number(value, 3);
+        return value && value.value == 0.0 ? "0 (boundary)" : fixed(value, 3);
       };
-      block.rows.push_back({{result.row.name},
-                            {number(model.intercept, 3)},
-                            {fmt::format("{} to {}", number(model.intercept_low, 3),
-                                         number(model.intercept_high, 3))},
-                            p_cell(model.p),
-                            {sd(model.sd_participant)},
-                            {sd(model.sd_demonstration)},
-                            {model.mean_share ? number(100.0 * model.mean_share.value, 1) : dash}});
+      block.rows.push_back(
+          {{result.row.name},
+           {fixed(model.intercept, 3)},
+           {fmt::format("{} to {}", fixed(model.intercept_low, 3), fixed(model.intercept_high, 3))},
+           p_cell(model.p),
+           {sd(model.sd_participant)},
+           {sd(model.sd_demonstration)},
+           {model.mean_share ? fixed(100.0 * model.mean_share.value, 1) : dash}});
     }
     if (!block.rows.empty()) add(std::move(block));
   }
@@ -298,11 +280,11 @@ class Writer {
     block.header = {"", "X² (heterogeneity)", "df", "p", "Cochran's Q", "df", "p"};
     for (const GroupResult& result : report_.groups) {
       block.rows.push_back({{result.row.name},
-                            {number(result.heterogeneity.chi_square, 3)},
-                            {number(result.heterogeneity.df, 0)},
+                            {fixed(result.heterogeneity.chi_square, 3)},
+                            {fixed(result.heterogeneity.df, 0)},
                             p_cell(result.heterogeneity.p),
-                            {number(result.cochran_q.q, 3)},
-                            {number(result.cochran_q.df, 0)},
+                            {fixed(result.cochran_q.q, 3)},
+                            {fixed(result.cochran_q.df, 0)},
                             p_cell(result.cochran_q.p)});
     }
     add(std::move(block));
@@ -313,155 +295,9 @@ class Writer {
                     "single one; read the "
                     "groups and the demonstrations first."});
     }
-    why_missing("X² over all demonstrations", report_.all().heterogeneity.chi_square);
-    why_missing("Cochran's Q over all demonstrations", report_.all().cochran_q.q);
-  }
-
-  void effects() {
-    add(Heading{"Side, order, time and attention"});
-    const SideBias& side = report_.side_bias;
-    if (side.chosen.total() > 0) {
-      add(Paragraph{fmt::format(
-          "The left clip was chosen {} times and the right one {} times. The clip of {} was chosen "
-          "in {} of {} answers when it was on the left and in {} of {} when it was on the right.",
-          side.chosen.pinch, side.chosen.cable, pinch(), side.shown_left.pinch,
-          side.shown_left.total(), side.shown_right.pinch, side.shown_right.total())});
-    }
-    if (side.p) {
-      add(Paragraph{fmt::format(
-          "With demonstrations as strata and {} on either side equally often, the left clip "
-          "would be chosen in {} % of the answers (Mantel–Haenszel X² = {}, p = {}; by sign flips "
-          "over participants p = {}).",
-          pinch(), number(50.0 + 100.0 * side.bias.value, 1), number(side.chi_square, 3),
-          p_text(side.p), p_text(side.p_sign_flip))});
-    }
-    why_missing("A side bias", side.p);
-    const OrderEffect& order = report_.order_effect;
-    if (order.p_trend) {
-      add(Paragraph{fmt::format(
-          "Over the course of a session the choice of {} shows a trend of X² = {} (p = {}; by "
-          "sign flips over participants p = {}).",
-          pinch(), number(order.chi_square, 3), p_text(order.p_trend), p_text(order.p_sign_flip))});
-    }
-    why_missing("An order effect", order.p_trend);
-    if (side.chosen.total() > 0 || !order.by_position.empty()) add(FigureBlock{"effects"});
-    reaction_table();
-    const AttentionChecks& attention = report_.attention;
-    if (attention.passed + attention.failed > 0) {
-      std::string text = fmt::format("Attention checks: {} passed, {} failed.", attention.passed,
-                                     attention.failed);
-      if (attention.failed > 0) {
-        text += fmt::format(
-            " Failed by {}; their answers are in the figures above unless they are left out with "
-            "--exclude.",
-            fmt::join(attention.failed_by, ", "));
-      }
-      add(Paragraph{text});
-    }
-    const Playback& playback = report_.playback;
-    if (playback.recorded) {
-      std::string text =
-          fmt::format("Playback: {} dropped frames, {} losses of focus, {} playback errors",
-                      playback.dropped_frames, playback.focus_lost_count, playback.playback_errors);
-      if (!playback.errors_for.empty())
-        text += fmt::format(" ({})", fmt::join(playback.errors_for, ", "));
-      add(Paragraph{text + "."});
-      if (playback.screens_measured > 0) {
-        add(Paragraph{
-            fmt::format("{} of {} measured screens do not show 60 frames a second evenly{}{}.",
-                        playback.uneven_screens.size(), playback.screens_measured,
-                        playback.uneven_screens.empty() ? "" : ": ",
-                        fmt::join(playback.uneven_screens, ", "))});
-      }
-    }
-  }
-
-  void reaction_table() {
-    if (!report_.reaction_times.front().median_s) {
-      why_missing("A table of reaction times", report_.reaction_times.front().median_s);
-      return;
-    }
-    TableBlock block;
-    block.caption = "Reaction times in seconds, from the moment the buttons appear";
-    block.header = {"",         "answers", "median", "lower quartile", "upper quartile",
-                    "shortest", "longest"};
-    for (const ReactionTimes& row : report_.reaction_times) {
-      block.rows.push_back({{row.name},
-                            {fmt::format("{}", row.answers)},
-                            {number(row.median_s, 2)},
-                            {number(row.lower_quartile_s, 2)},
-                            {number(row.upper_quartile_s, 2)},
-                            {number(row.shortest_s, 2)},
-                            {number(row.longest_s, 2)}});
-    }
-    add(std::move(block));
-  }
-
-  void input() {
-    add(Heading{"What went in"});
-    const std::int64_t answers = report_.all().row.counts.total();
-    std::string text =
-        table_.participants.empty()
-            ? fmt::format(
-                  "A table of counts with {} answers to {} demonstrations; who gave which is not "
-                  "known.",
-                  answers, table_.demonstrations.size())
-            : fmt::format(
-                  "{} answers of {} participants to {} demonstrations, read from {} file{}.",
-                  answers, table_.participants.size(), table_.demonstrations.size(),
-                  table_.sources.size(), table_.sources.size() == 1 ? "" : "s");
-    if (!table_.incomplete.empty()) {
-      const size_t shown = std::min<size_t>(table_.incomplete.size(), 20);
-      const std::vector<std::string> names(
-          table_.incomplete.begin(),
-          table_.incomplete.begin() + static_cast<std::ptrdiff_t>(shown));
-      text += fmt::format(" Answers are missing from {} participant{}: {}{}.",
-                          table_.incomplete.size(), table_.incomplete.size() == 1 ? "" : "s",
-                          fmt::join(names, ", "), shown < table_.incomplete.size() ? ", ..." : "");
-    }
-    add(Paragraph{text});
-    if (table_.exclusions.empty()) return;
-    TableBlock block;
-    block.caption = "Participants left out of everything above";
-    block.header = {"participant", "reason"};
-    for (const Exclusion& exclusion : table_.exclusions) {
-      block.rows.push_back({{exclusion.participant}, {exclusion.reason}});
-    }
-    add(std::move(block));
-  }
-
-  void free_texts() {
-    TableBlock block;
-    block.caption = "What participants wrote";
-    block.header = {"participant", "question", "text"};
-    for (const auto& [participant, session] : table_.sessions) {
-      for (const auto& [question, text] : session.free_text) {
-        const bool blank = text.find_first_not_of(" \t\r\n") == std::string::npos;
-        if (!blank) block.rows.push_back({{table_.participants[participant]}, {question}, {text}});
-      }
-    }
-    if (block.rows.empty()) return;
-    add(Heading{"Free texts"});
-    add(std::move(block));
-  }
-
-  void methods() {
-    add(Heading{"Methods"});
-    const SignFlip& flip = report_.all().pooled.sign_flip;
-    add(Paragraph{
-        fmt::format("Chi-square tests against one half, df 1, without continuity correction; exact "
-                    "binomial tests two-sided; "
-                    "Holm and Benjamini–Hochberg over the demonstrations, and over the groups; the "
-                    "Bayes factor compares a share "
-                    "with the prior Beta(1, 1) (uniform) to a share of 1/2; Rao–Scott first-order "
-                    "correction with participants as "
-                    "clusters, against chi-square (df 1) and against F(1, participants − 1); "
-                    "sign-flip tests {}; studentised "
-                    "cluster bootstrap with {} resamples; 1 JOD is the difference at which 3 of 4 "
-                    "people choose the better clip. "
-                    "alpha = {}, seed = {}, Pinchlab {}.",
-                    flip.exact ? "exact" : "by 99999 random flips", report_.options.bootstrap,
-                    alpha(), report_.options.seed, PINCHLAB_VERSION)});
+    document_.add(
+        why_missing("X² over all demonstrations", report_.all().heterogeneity.chi_square));
+    document_.add(why_missing("Cochran's Q over all demonstrations", report_.all().cochran_q.q));
   }
 
   const Report& report_;
@@ -471,24 +307,9 @@ class Writer {
 
 }  // namespace
 
-std::string p_text(double p) {
-  if (p >= 0.99995) return "1";
-  if (p == 0.0) return "<1e-300";
-  return p >= 0.001 ? fmt::format("{:.4f}", p) : fmt::format("{:.1e}", p);
-}
-
-std::string p_text(const Estimate& p) {
-  return p ? p_text(p.value) : dash;
-}
-
-std::string p_rounded(double p, int decimals) {
-  const double last_digit = std::pow(10.0, -decimals);
-  if (p < last_digit) return fmt::format("<{:.{}f}", last_digit, decimals);
-  return p > 1.0 - 0.5 * last_digit ? "1" : fmt::format("{:.{}f}", p, decimals);
-}
-
-std::string percent(double share) {
-  return fmt::format("{:.1f} %", 100.0 * share);
+std::vector<Block> why_missing(const std::string& what, const Estimate& estimate) {
+  if (estimate) return {};
+  return {Paragraph{fmt::format("{} is not given: {}.", what, estimate.why_not)}};
 }
 
 Document make_document(const Report& report, const AnswersTable& table) {

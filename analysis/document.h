@@ -1,59 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A report as a list of blocks, so that the HTML page and the Markdown appendix say the same.
+// The report of a study of two methods as a document.
 
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "analysis/blocks.h"
 #include "analysis/report.h"
 
 namespace pinchlab::analysis {
 
-struct Heading {
-  std::string text;
-};
-
-struct Paragraph {
-  std::string text;
-};
-
-struct TextCell {
-  std::string text;
-  bool bold = false;
-};
-
-/// A table whose first column names the rows.
-struct TableBlock {
-  std::string caption;
-  std::vector<std::string> header;
-  std::vector<std::vector<TextCell>> rows;
-};
-
-/// The place of a figure, by its name.
-struct FigureBlock {
-  std::string name;
-};
-
-using Block = std::variant<Heading, Paragraph, TableBlock, FigureBlock>;
-
-struct Document {
-  std::string title;
-  std::vector<Block> blocks;
-};
-
 Document make_document(const Report& report, const AnswersTable& table);
 
+// Its parts that have files of their own.
+/// Side, order, time and attention.
+std::vector<Block> effect_blocks(const Report& report);
 /// What there is to say of graded preferences; nothing where there are none.
 std::vector<Block> graded_blocks(const Report& report);
+/// What went in, what participants wrote, and the methods.
+std::vector<Block> input_blocks(const Report& report, const AnswersTable& table);
 
-/// "0.0455", "4.7e-04", "1": for tables that readers look numbers up in.
-std::string p_text(double p);
-/// Thesis style: rounded to `decimals`, "<0.001" below the last digit, "1" at one.
-std::string p_rounded(double p, int decimals);
-/// `p_text`, or a dash where there is no value.
-std::string p_text(const Estimate& p);
-/// "83.3 %".
-std::string percent(double share);
+/// Why an estimate is not given; nothing where it is.
+std::vector<Block> why_missing(const std::string& what, const Estimate& estimate);
 
 }  // namespace pinchlab::analysis

@@ -222,33 +222,6 @@ std::vector<ReactionTimes> reaction_times(const AnswersTable& table, const std::
   return rows;
 }
 
-AttentionChecks attention_checks(const AnswersTable& table) {
-  AttentionChecks result;
-  for (const auto& [participant, session] : table.sessions) {
-    result.passed += session.attention_passed;
-    result.failed += session.attention_failed;
-    if (session.attention_failed > 0) result.failed_by.push_back(table.participants[participant]);
-  }
-  return result;
-}
-
-Playback playback(const AnswersTable& table) {
-  Playback result;
-  result.recorded = table.has_session_records;
-  for (const auto& [participant, session] : table.sessions) {
-    result.focus_lost_count += session.focus_lost_count;
-    result.dropped_frames += session.dropped_frames;
-    result.playback_errors += session.playback_errors;
-    if (session.playback_errors > 0) result.errors_for.push_back(table.participants[participant]);
-    if (session.refresh_rate_hz <= 0) continue;
-    ++result.screens_measured;
-    if (shows_60_evenly(session.refresh_rate_hz)) continue;
-    result.uneven_screens.push_back(
-        fmt::format("{} ({:.0f} Hz)", table.participants[participant], session.refresh_rate_hz));
-  }
-  return result;
-}
-
 ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) {
   const auto z = [](double p) {
     return p > 0.0 && p < 1.0 ? Estimate(gsl_cdf_ugaussian_Pinv(p))

@@ -48,26 +48,6 @@ struct ReactionTimes {
 std::vector<ReactionTimes> reaction_times(const AnswersTable& table, const std::string& pinch_label,
                                           const std::string& cable_label);
 
-struct AttentionChecks {
-  int passed = 0;
-  int failed = 0;
-  std::vector<std::string> failed_by;  ///< participants with at least one failed check
-};
-AttentionChecks attention_checks(const AnswersTable& table);
-
-/// What the page noted about playback, summed over participants.
-struct Playback {
-  bool recorded = false;
-  std::int64_t focus_lost_count = 0;
-  std::int64_t dropped_frames = 0;
-  std::int64_t playback_errors = 0;
-  std::vector<std::string> errors_for;  ///< participants with playback errors
-  int screens_measured = 0;
-  /// participants whose screens do not show 60 frames a second evenly, with the rate: "p (75 Hz)"
-  std::vector<std::string> uneven_screens;
-};
-Playback playback(const AnswersTable& table);
-
 /// The share of pinch as a distance on a scale of perceived quality.
 struct ScaleValue {
   Estimate bradley_terry_log_odds;  ///< ln(share / (1 - share))

@@ -197,6 +197,7 @@ std::vector<Figure> make_figures(const Report& report) {
   if (!report.order_effect.by_position.empty() || report.side_bias.chosen.total() > 0) {
     figures.push_back(effects_figure(report));
   }
+  for (Figure& figure : besides_figures(report.besides)) figures.push_back(std::move(figure));
   return figures;
 }
 

@@ -31,7 +31,7 @@ std::vector<Block> graded_blocks(const Report& report) {
                           {fmt::format("{:.2f}", row.mean)},
                           {fmt::format("{} : {} : {}", test.positive, test.negative, test.zeros)},
                           {fmt::format("{:g}", test.w_plus)},
-                          {p_text(test.p), test.p && test.p.value < options.alpha},
+                          p_cell(test.p, options.alpha),
                           {p_text(row.p_holm)},
                           {p_text(test.p_sign)}});
   }

@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
+#include "analysis/besides.h"
+#include "analysis/circumstances.h"
 #include "analysis/csv_columns.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/groups.h"
@@ -119,7 +123,10 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
       for (const NamedAnswerFile& named :
            read_answer_files(input, options.allow_missing, same_study, excluded)) {
         table.is_pilot = named.file.is_pilot;
+        table.has_session_records = true;
         read_file(named.file, cells);
+        note(named.file, table.sessions[named.file.participant]);
+        std::ranges::move(besides_of(named.file), std::back_inserter(table.besides));
       }
     }
     if (!table.sources.empty() && is_correct != table.correct) {

@@ -21,6 +21,9 @@ struct LevelsTable {
   std::vector<std::string> sources;
   std::vector<Series> series;  ///< in natural order
   std::vector<Exclusion> exclusions;
+  std::map<std::string, Session> sessions;  ///< by participant; of answer files
+  std::vector<BesidesAnswer> besides;       ///< of answer files
+  bool has_session_records = false;
   bool is_pilot = false;              ///< answers of a trial run
   std::optional<DesignCheck> design;  ///< if the study has a frozen one
   bool correct = false;  ///< hits are correct answers; otherwise choices of the method under test

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include "analysis/besides.h"
+#include "analysis/circumstances.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/groups.h"
 #include "analysis/table_builder.h"
@@ -38,44 +40,43 @@ class AnswerFiles {
       builder_.expect_answers_per_demonstration(file.answers_per_demonstration, named.name);
       builder_.note_session_records(file.is_pilot);
       for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
-      if (file.refresh_rate_hz > 0) {
-        builder_.session(file.participant).refresh_rate_hz = file.refresh_rate_hz;
-      }
-      if (!file.free_text.empty()) builder_.session(file.participant).free_text = file.free_text;
+      note(file, builder_.session(file.participant));
+      builder_.add_besides(besides_of(file));
     }
   }
 
  private:
   void add_trial(const AnswerFile& file, const Trial& trial, size_t index) {
-    if (trial.kind == TrialKind::attention) {
-      builder_.add_attention_check(file.participant, trial.choice == trial.expected);
+    if (trial.kind != TrialKind::main) return;
+    RawAnswer answer;
+    answer.participant = file.participant;
+    answer.demonstration = trial.demonstration;
+    answer.pinch_side = trial.left == "pinch" ? Side::left : Side::right;
+    answer.chose_pinch = trial.choice == answer.pinch_side;
+    answer.position = trial.position;
+    answer.reaction_time_s = trial.reaction_time_s;
+    if (trial.preference) {
+      const int sign = answer.pinch_side == Side::left ? -1 : 1;
+      builder_.add_graded({file.participant, trial.demonstration, sign * *trial.preference});
     }
-    if (trial.kind == TrialKind::main) {
-      RawAnswer answer;
-      answer.participant = file.participant;
-      answer.demonstration = trial.demonstration;
-      answer.pinch_side = trial.left == "pinch" ? Side::left : Side::right;
-      answer.chose_pinch = trial.choice == answer.pinch_side;
-      answer.position = trial.position;
-      answer.reaction_time_s = trial.reaction_time_s;
-      if (trial.preference) {
-        const int sign = answer.pinch_side == Side::left ? -1 : 1;
-        builder_.add_graded({file.participant, trial.demonstration, sign * *trial.preference});
-      }
-      if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
-    }
-    if (trial.focus_lost_count + trial.dropped_frames + trial.playback_errors > 0) {
-      Session& session = builder_.session(file.participant);
-      session.focus_lost_count += trial.focus_lost_count;
-      session.dropped_frames += trial.dropped_frames;
-      session.playback_errors += trial.playback_errors;
-    }
+    if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
   }
 
   TableBuilder& builder_;
   bool allow_missing_;
   SameStudy same_study_;
 };
+
+// Answer files call the methods pinch and baseline, reports what the options say.
+void name_methods(BesidesAnswer& answer, const ReadOptions& options) {
+  const auto named = [&](std::string& method) {
+    if (!method.empty()) method = method == "pinch" ? options.pinch_value : options.cable_value;
+  };
+  answer.first = options.pinch_value;
+  answer.second = options.cable_value;
+  named(answer.chosen);
+  if (answer.place) named(answer.place->clip);
+}
 
 void check_no_input_twice(const std::vector<fs::path>& inputs) {
   std::set<fs::path> seen;
@@ -108,6 +109,7 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
     }
   }
   AnswersTable table = builder.finish();
+  for (BesidesAnswer& answer : table.besides) name_methods(answer, options);
   assign_groups(table, options.groups_file, builder.column_groups());
   return table;
 }

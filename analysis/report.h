@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "analysis/answers_table.h"
+#include "analysis/besides.h"
+#include "analysis/circumstances.h"
 #include "analysis/clustered.h"
 #include "analysis/effects.h"
 #include "analysis/graded_preference.h"
@@ -57,9 +59,9 @@ struct Report {
   SideBias side_bias;
   OrderEffect order_effect;
   std::vector<ReactionTimes> reaction_times;
-  AttentionChecks attention;
-  Playback playback;
+  Circumstances circumstances;
   std::vector<GradedPreference> graded;  ///< empty where preferences were not graded
+  Besides besides;
 
   [[nodiscard]] const GroupResult& all() const { return groups.back(); }
 };

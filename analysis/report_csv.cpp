@@ -182,6 +182,7 @@ std::vector<CsvTable> report_csv(const Report& report, const AnswersTable& table
   if (report.reaction_times.front().median_s) tables.push_back(times_csv(report));
   CsvTable texts = texts_csv(table);
   if (texts.content.find('\n') + 1 < texts.content.size()) tables.push_back(std::move(texts));
+  for (CsvTable& csv : besides_csv(report.besides)) tables.push_back(std::move(csv));
   return tables;
 }
 

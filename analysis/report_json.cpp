@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/design_check.h"
+#include "analysis/json_estimate.h"
 #include "analysis/report.h"
 
 namespace pinchlab::analysis {
@@ -10,16 +11,6 @@ namespace pinchlab::analysis {
 namespace {
 
 using nlohmann::ordered_json;
-
-// What cannot be computed is null, with the reason beside it under "<key>_reason".
-void put(ordered_json& object, const std::string& key, const Estimate& estimate) {
-  if (estimate) {
-    object[key] = estimate.value;
-  } else {
-    object[key] = nullptr;
-    object[key + "_reason"] = estimate.why_not;
-  }
-}
 
 ordered_json graded_json(const std::vector<GradedPreference>& graded) {
   ordered_json rows = ordered_json::array();
@@ -246,19 +237,9 @@ std::string report_json(const Report& report, const AnswersTable& table) {
   document["side_bias"] = side_json(report.side_bias);
   document["order_effect"] = order_json(report.order_effect);
   document["reaction_times"] = times_json(report.reaction_times);
-  document["attention_checks"] = {{"passed", report.attention.passed},
-                                  {"failed", report.attention.failed},
-                                  {"failed_by", report.attention.failed_by}};
-  document["playback"] = {{"recorded", report.playback.recorded},
-                          {"focus_lost_count", report.playback.focus_lost_count},
-                          {"dropped_frames", report.playback.dropped_frames},
-                          {"playback_errors", report.playback.playback_errors},
-                          {"errors_for", report.playback.errors_for}};
-  if (report.playback.screens_measured > 0) {
-    document["playback"]["screens_measured"] = report.playback.screens_measured;
-    document["playback"]["uneven_screens"] = report.playback.uneven_screens;
-  }
+  put_circumstances(document, report.circumstances);
   if (!report.graded.empty()) document["graded_preferences"] = graded_json(report.graded);
+  put_besides(document, report.besides);
   return document.dump(2) + "\n";
 }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/blocks.h"
 #include "analysis/design_check.h"
-#include "analysis/document.h"
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "analysis/scale_report.h"
@@ -18,17 +18,16 @@ namespace {
 using Cells = std::vector<TextCell>;
 
 std::string number(double value) {
-  const std::string text = fmt::format("{:.2f}", value);
-  return text == "-0.00" ? "0.00" : text;
+  return fixed(value, 2);
 }
 std::string number(const Estimate& value) {
-  return value ? number(value.value) : "–";
+  return fixed(value, 2);
 }
 std::string interval(const Estimate& low, const Estimate& high) {
   return low && high ? fmt::format("{} to {}", number(low), number(high)) : "–";
 }
 std::string level_text(const ScaleReport& report) {
-  return fmt::format("{:g} %", 100.0 * (1.0 - report.options.alpha));
+  return confidence_level(report.options.alpha);
 }
 const char* model_name(ScaleModel model) {
   return model == ScaleModel::bradley_terry ? "Bradley–Terry" : "Thurstone case V";
@@ -57,6 +56,7 @@ class Writer {
     add(Heading{"Do demonstrations, sides and participants agree?"});
     agreement();
     observers();
+    document_.add(besides_blocks(report_.besides, report_.options.alpha));
     add(Heading{"What went in"});
     input();
     add(Heading{"Methods"});
@@ -67,7 +67,7 @@ class Writer {
  private:
   void add(Block block) { document_.blocks.push_back(std::move(block)); }
   [[nodiscard]] TextCell p_cell(const Estimate& p) const {
-    return {p_text(p), p && p.value < report_.options.alpha};
+    return analysis::p_cell(p, report_.options.alpha);
   }
 
   void scale() {
@@ -230,19 +230,7 @@ class Writer {
     for (const Exclusion& exclusion : table_.exclusions) {
       add(Paragraph{fmt::format("{} was left out: {}.", exclusion.participant, exclusion.reason)});
     }
-    if (!table_.has_session_records) return;
-    AnswersTable sessions;
-    sessions.participants = table_.participants;
-    sessions.sessions = table_.sessions;
-    sessions.has_session_records = true;
-    const AttentionChecks checks = attention_checks(sessions);
-    const Playback played = playback(sessions);
-    add(Paragraph{fmt::format(
-        "Attention checks: {} passed, {} failed{}. Windows lost the focus {} times; {} frames were "
-        "dropped; {} messages of the player.",
-        checks.passed, checks.failed,
-        checks.failed_by.empty() ? "" : fmt::format(" (by {})", fmt::join(checks.failed_by, ", ")),
-        played.focus_lost_count, played.dropped_frames, played.playback_errors)});
+    document_.add(circumstance_blocks(report_.circumstances));
   }
 
   void methods() {
@@ -319,6 +307,7 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
                                : "score test that takes all answers as independent";
   const bool differ = p.value < report.options.alpha;
   std::string text =
+      (table.is_pilot ? "Answers of a pilot. " : "") +
       fmt::format("The methods {} ({}, p = {}). ",
                   differ ? "are not chosen equally often" : "cannot be told apart by these answers",
                   test, p_text(p));
@@ -358,6 +347,7 @@ std::vector<std::string> write_scale_report(const ScaleReport& report,
   StagingFolder staging(folder);
   std::vector<Figure> figures;
   if (with_figures && report.fit().why_not.empty()) figures.push_back(scale_figure(report, table));
+  if (with_figures) std::ranges::move(besides_figures(report.besides), std::back_inserter(figures));
   write_pages(Writer(report, table).write(), std::move(figures), staging);
   staging.write("report.json", scale_json(report, table));
   for (const CsvTable& csv : scale_csv(report, table)) staging.write(csv.name, csv.content);

@@ -131,6 +131,8 @@ ScaleReport analyse_scale(const ComparisonsTable& table, const ScaleOptions& opt
                           : Estimate::none(side.why_not);
     }
   }
+  report.circumstances = circumstances(table.sessions, table.has_session_records);
+  report.besides = analyse_besides(table.besides, options.alpha, options.seed);
   std::vector<double> p;
   for (std::size_t i = 0; i < methods; ++i) {
     for (std::size_t j = i + 1; j < methods; ++j) {

@@ -55,6 +55,8 @@ struct ScaleReport {
   Estimate p_side;
   Transitivity transitivity;
   std::vector<ObserverFit> observers;
+  Circumstances circumstances;
+  Besides besides;
   [[nodiscard]] const ScaleFit& fit() const {
     return options.model == ScaleModel::bradley_terry ? all.bradley_terry : all.thurstone;
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/design_check.h"
+#include "analysis/json_estimate.h"
 #include "analysis/scale_report.h"
 #include "base/csv.h"
 
@@ -13,15 +14,6 @@ namespace pinchlab::analysis {
 namespace {
 
 using nlohmann::ordered_json;
-
-void put(ordered_json& object, const std::string& key, const Estimate& value) {
-  if (value) {
-    object[key] = value.value;
-  } else {
-    object[key] = nullptr;
-    object[key + "_reason"] = value.why_not;
-  }
-}
 
 ordered_json scale_object(const Scale& scale, const ComparisonsTable& table) {
   ordered_json object = {{"name", scale.name}, {"answers", scale.answers}};
@@ -180,6 +172,8 @@ std::string scale_json(const ScaleReport& report, const ComparisonsTable& table)
     if (observer.is_far_out)
       document["far_out"].push_back(table.participants[observer.participant]);
   }
+  put_circumstances(document, report.circumstances);
+  put_besides(document, report.besides);
   return document.dump(2) + "\n";
 }
 
@@ -188,6 +182,7 @@ std::vector<CsvTable> scale_csv(const ScaleReport& report, const ComparisonsTabl
                                   {"pairs.csv", pairs_csv(report, table)}};
   if (!report.observers.empty())
     tables.push_back({"participants.csv", participants_csv(report, table)});
+  for (CsvTable& csv : besides_csv(report.besides)) tables.push_back(std::move(csv));
   return tables;
 }
 

@@ -12,9 +12,11 @@
 #include "analysis/gnuplot.h"
 #include "analysis/result_main.h"
 #include "analysis/size_study.h"
+#include "base/number_option.h"
 #include "base/partial_file.h"
 
 using namespace pinchlab::analysis;
+using pinchlab::number_in;
 using pinchlab::StagingFolder;
 
 namespace {
@@ -168,7 +170,7 @@ int main(int argc, char** argv) {
             ->check(CLI::Range(99, 100000));
         app.add_option("--alpha", settings.alpha, "Level at which each test rejects")
             ->capture_default_str()
-            ->check(CLI::Range(0.001, 0.5));
+            ->check(number_in(0.001, 0.5));
       },
       [&] { run(settings); });
 }

@@ -2,6 +2,8 @@
 #pragma once
 // Collects answers from any number of inputs and turns them into a checked AnswersTable.
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <unordered_map>
 
@@ -34,6 +36,9 @@ class TableBuilder {
   void add_answer(const RawAnswer& answer, size_t line);
   /// A grade; one that is a tie is no answer besides.
   void add_graded(const GradedAnswer& answer);
+  void add_besides(std::vector<BesidesAnswer> answers) {
+    std::ranges::move(answers, std::back_inserter(table_.besides));
+  }
   void add_counts(std::string_view demonstration, std::string_view group, Counts counts,
                   size_t line);
   void add_attention_check(std::string_view participant, bool passed);

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "analysis/design_check.h"
 #include "analysis/gnuplot.h"
+#include "analysis/json_estimate.h"
 #include "analysis/pages.h"
 #include "base/csv.h"
 #include "base/input_error.h"
@@ -78,7 +80,7 @@ double share_at_threshold(const ThresholdReport& report, const PsychometricFit& 
 }
 
 std::string level_text(const ThresholdReport& report) {
-  return fmt::format("{:g} %", 100.0 * (1.0 - report.options.alpha));
+  return confidence_level(report.options.alpha);
 }
 
 void fit_tables(const ThresholdReport& report, const LevelsTable& table, Document& document) {
@@ -111,18 +113,30 @@ void fit_tables(const ThresholdReport& report, const LevelsTable& table, Documen
          {interval(fit.slope_low, fit.slope_high)},
          {interval(fit.bootstrap_slope_low, fit.bootstrap_slope_high)},
          {number(fit.spread)}});
-    fits.rows.push_back(
-        {{name_of(series)},
-         {fmt::format("{:.3f}", fit.guess.value)},
-         {fmt::format("{:.3f}", fit.lapse.value)},
-         {number(fit.width)},
-         {fmt::format("{:.2f}", fit.deviance.value)},
-         {p_text(fit.p_deviance), fit.p_deviance && fit.p_deviance.value < report.options.alpha}});
+    fits.rows.push_back({{name_of(series)},
+                         {fmt::format("{:.3f}", fit.guess.value)},
+                         {fmt::format("{:.3f}", fit.lapse.value)},
+                         {number(fit.width)},
+                         {fmt::format("{:.2f}", fit.deviance.value)},
+                         p_cell(fit.p_deviance, report.options.alpha)});
   }
   if (thresholds.rows.empty()) return;
   document.blocks.push_back(std::move(thresholds));
   document.blocks.push_back(FigureBlock{"psychometric"});
   document.blocks.push_back(std::move(fits));
+}
+
+std::string input_words(const LevelsTable& table) {
+  std::int64_t answers = 0;
+  std::set<std::string> people;
+  for (const Series& series : table.series) {
+    answers += answers_of(series);
+    for (const Observer& observer : series.observers) people.insert(observer.name);
+  }
+  people.erase("");
+  return fmt::format("{} answers{} to {} graded series.", answers,
+                     people.empty() ? "" : fmt::format(" of {} participants", people.size()),
+                     table.series.size());
 }
 
 Document threshold_document(const ThresholdReport& report, const LevelsTable& table) {
@@ -131,7 +145,10 @@ Document threshold_document(const ThresholdReport& report, const LevelsTable& ta
   document.blocks.push_back(Paragraph{threshold_words(report, table)});
   document.blocks.push_back(Heading{"Thresholds"});
   fit_tables(report, table, document);
+  document.add(besides_blocks(report.besides, report.options.alpha));
   document.blocks.push_back(Heading{"What went in"});
+  document.blocks.push_back(Paragraph{input_words(table)});
+  document.add(circumstance_blocks(report.circumstances));
   for (const Exclusion& exclusion : table.exclusions) {
     document.blocks.push_back(
         Paragraph{fmt::format("{} was left out: {}.", exclusion.participant, exclusion.reason)});
@@ -305,7 +322,9 @@ std::string participants_csv(const ThresholdReport& report, const LevelsTable& t
 
 ThresholdReport analyse_thresholds(const LevelsTable& table, const PsychometricModel& model,
                                    const PsychometricOptions& options) {
-  ThresholdReport report{model, options, {}};
+  ThresholdReport report{
+      model, options, {}, circumstances(table.sessions, table.has_session_records), {}};
+  report.besides = analyse_besides(table.besides, options.alpha, options.seed);
   for (const Series& series : table.series) {
     for (const LevelCell& cell : totals_of(series)) {
       if (model.shape == Shape::weibull && cell.level <= 0.0) {
@@ -378,12 +397,7 @@ std::string threshold_json(const ThresholdReport& report, const LevelsTable& tab
     object["answers"] = answers_of(series);
     for (const NamedEstimate& estimate : estimates) {
       const Estimate& value = report.fits[i].*estimate.value;
-      if (value) {
-        object[estimate.name] = value.value;
-      } else {
-        object[estimate.name] = nullptr;
-        object[std::string(estimate.name) + "_reason"] = value.why_not;
-      }
+      put(object, estimate.name, value);
     }
     object["levels"] = ordered_json::array();
     for (const LevelCell& cell : totals_of(series)) {
@@ -392,6 +406,8 @@ std::string threshold_json(const ThresholdReport& report, const LevelsTable& tab
     }
     document["series"].push_back(std::move(object));
   }
+  put_circumstances(document, report.circumstances);
+  put_besides(document, report.besides);
   return document.dump(2) + "\n";
 }
 
@@ -401,11 +417,15 @@ std::vector<std::string> write_threshold_report(const ThresholdReport& report,
                                                 bool with_figures) {
   StagingFolder staging(folder);
   std::vector<Figure> figures;
-  if (with_figures) figures.push_back(threshold_figure(report, table));
+  if (with_figures) {
+    figures.push_back(threshold_figure(report, table));
+    std::ranges::move(besides_figures(report.besides), std::back_inserter(figures));
+  }
   write_pages(threshold_document(report, table), std::move(figures), staging);
   staging.write("report.json", threshold_json(report, table));
   staging.write("thresholds.csv", thresholds_csv(report, table));
   staging.write("participants.csv", participants_csv(report, table));
+  for (const CsvTable& csv : besides_csv(report.besides)) staging.write(csv.name, csv.content);
   return staging.keep();
 }
 

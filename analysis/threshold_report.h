@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/besides.h"
+#include "analysis/circumstances.h"
 #include "analysis/levels_table.h"
 
 namespace pinchlab::analysis {
@@ -14,6 +16,8 @@ struct ThresholdReport {
   PsychometricModel model;
   PsychometricOptions options;
   std::vector<PsychometricFit> fits;  ///< one a series
+  Circumstances circumstances;
+  Besides besides;
 };
 
 /// Fits every series. Throws InputError where the model cannot take the levels (Weibull's function

@@ -44,17 +44,20 @@ void read_circumstances(JsonObject& object, Trial& trial) {
     trial.playback_errors = static_cast<long>(errors.size());
   }
   optional_count(object, "loops_watched");
-  optional_count(object, "frame_count");
+  trial.frame_count = optional_count(object, "frame_count");
   for (const char* key : {"loop_gap_median_s", "loop_gap_max_s"}) {
     if (object.has(key)) object.number(key, -1.0, 86400.0);
   }
   if (object.has("clip")) object.text("clip", 1024);
   if (object.has("shown_utc")) object.utc("shown_utc");
   if (object.has("input")) object.choice("input", {"mouse", "keyboard", "touch"});
-  for (const char* key : {"window_width_px", "window_height_px", "clip_width_px", "clip_height_px",
-                          "screen_width_px", "screen_height_px"}) {
-    if (object.has(key)) object.whole(key, 0, 100000);
-  }
+  const auto size = [&](const char* key) {
+    return object.has(key) ? static_cast<int>(object.whole(key, 0, 100000)) : 0;
+  };
+  for (const char* key : {"window_width_px", "window_height_px", "clip_height_px"}) size(key);
+  trial.clip_width_px = size("clip_width_px");
+  trial.screen_width_px = size("screen_width_px");
+  trial.screen_height_px = size("screen_height_px");
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
 }
 
@@ -74,14 +77,15 @@ void read_choice(JsonObject& object, const AnswerFile& file, Trial& trial) {
 }
 
 // What a study can ask in each trial besides.
-void check_besides(JsonObject& object) {
-  if (object.has("confidence")) object.whole("confidence", 1, 9);
+void read_besides(JsonObject& object, Trial& trial) {
+  if (object.has("confidence")) {
+    trial.confidence = static_cast<int>(object.whole("confidence", 1, 9));
+  }
   if (object.has("reason")) object.text("reason", 8000);
   if (!object.has("where_side")) return;  // then the rest of a place is unknown too
-  object.choice("where_side", {"left", "right"});
-  object.number("where_x", 0, 1);
-  object.number("where_y", 0, 1);
-  object.number("where_time_s", 0, 86400);
+  trial.where = {side_of(object.choice("where_side", {"left", "right"})),
+                 object.number("where_x", 0, 1), object.number("where_y", 0, 1),
+                 object.number("where_time_s", 0, 86400)};
 }
 
 // What the sides can show.
@@ -108,7 +112,7 @@ Trial read_trial(JsonObject object, const AnswerFile& file) {
                 fmt::format("`{}` on both sides; a pair shows each method once", trial.right));
   }
   read_choice(object, file, trial);
-  check_besides(object);
+  read_besides(object, trial);
   if (trial.kind == TrialKind::attention) {
     trial.expected = side_of(object.choice("expected", {"left", "right"}));
   }
@@ -168,6 +172,9 @@ void read_study(JsonObject study, AnswerFile& file) {
   file.study["question"] = study.text("question", 10000);
   for (const char* key : {"consent_sha256", "texts_sha256", "clips_sha256"}) {
     file.study[key] = study.sha256(key);
+  }
+  if (study.has("consent_version")) {
+    file.study["consent_version"] = study.text("consent_version", 1000);
   }
   if (study.has("options_sha256")) file.study["options_sha256"] = study.sha256("options_sha256");
   study.finish();
@@ -323,7 +330,7 @@ AnswersKind kind_of_answers(const fs::path& path) {
   }
 }
 
-std::vector<fs::path> files_of_folder(const fs::path& folder) {
+std::vector<fs::path> answer_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
@@ -332,6 +339,11 @@ std::vector<fs::path> files_of_folder(const fs::path& folder) {
     if (name != "dataset_description.json") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> files_of_folder(const fs::path& folder) {
+  std::vector<fs::path> files = answer_files(folder);
   if (files.empty()) {
     throw InputError(folder.string(),
                      "no answer files (*.json) in this folder; name the folder that the study "
@@ -382,10 +394,13 @@ void SameStudy::check(const AnswerFile& file, const std::string& name) {
                                        study_of_));
   }
   if (file.study != study_) {
-    const std::map<std::string, std::string> words = {
-        {"language", "the language"},           {"question", "the question"},
-        {"consent_sha256", "the consent text"}, {"texts_sha256", "the texts of the page"},
-        {"clips_sha256", "the clips"},          {"options_sha256", "what is asked besides"}};
+    const std::map<std::string, std::string> words = {{"language", "the language"},
+                                                      {"question", "the question"},
+                                                      {"consent_sha256", "the consent text"},
+                                                      {"texts_sha256", "the texts of the page"},
+                                                      {"clips_sha256", "the clips"},
+                                                      {"options_sha256", "what is asked besides"},
+                                                      {"consent_version", "the consent's version"}};
     std::string what;
     const auto value = [](const std::map<std::string, std::string>& study, const std::string& key) {
       const auto found = study.find(key);

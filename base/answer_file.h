@@ -19,6 +19,13 @@ enum class Side : std::uint8_t { unknown, left, right };
 
 enum class TrialKind { main, training, attention };
 
+/// A click on where it looks wrong.
+struct WherePlace {
+  Side side = Side::left;  ///< whose clip
+  double x = 0, y = 0;     ///< shares of that clip's width and height, from its upper left corner
+  double time_s = 0;       ///< of the clip
+};
+
 /// One pair of clips that was shown, and what the participant did.
 struct Trial {
   int position = 0;  ///< place in the session, from 1; training and attention trials count
@@ -34,7 +41,12 @@ struct Trial {
   double reaction_time_s = 0.0;   ///< s, from the moment the buttons appear to the choice
   long focus_lost_count = 0;
   long dropped_frames = 0;
+  long frame_count = 0;      ///< that the browser decoded, dropped ones among them
   long playback_errors = 0;  ///< how many messages the player gave
+  int clip_width_px = 0;     ///< both clips together, CSS px; 0: not recorded
+  int screen_width_px = 0, screen_height_px = 0;  ///< CSS px; 0: not recorded
+  std::optional<int> confidence;                  ///< from 1, where it is asked
+  std::optional<WherePlace> where;
 };
 
 struct AnswerFile {
@@ -69,8 +81,11 @@ enum class AnswersKind { none, two_methods, comparisons, graded };
 /// one (which whoever reads it then tells).
 AnswersKind kind_of_answers(const std::filesystem::path& path);
 
-/// The answer files of a folder: every *.json but hidden ones and the description that the Psych-DS
-/// layout puts there. Throws InputError if there are none.
+/// The answer files of a folder, in order of their names: every *.json but hidden ones and the
+/// description that the Psych-DS layout puts there.
+std::vector<std::filesystem::path> answer_files(const std::filesystem::path& folder);
+
+/// The same. Throws InputError if there are none.
 std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder);
 
 class SameStudy;

@@ -268,6 +268,7 @@ ClipPlan plan_one(const SceneFile& source, const Scene& scene, const BatchOption
   clip.video.width = options.width * (clip.product == Product::clip ? panels : 1);
   clip.video.height = options.height;
   clip.video.frames_per_second = scene.frames_per_second;
+  if (clip.product == Product::clip) check_video(clip.file, clip.video);
   return clip;
 }
 

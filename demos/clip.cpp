@@ -68,7 +68,8 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
   std::vector<Picture> pictures(players.size());
   std::vector<const Picture*> panels(pictures.size());
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
-  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme);
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme,
+                                      pinchlab::time_limit(*plan.source, time_limit));
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   FrameHash frames;
@@ -103,7 +104,8 @@ Made write_poster(const ClipPlan& plan, const std::string& path, const std::func
                   std::optional<double> time_limit) {
   const int width = panel_width(plan);
   const std::size_t bytes = frame_bytes(width, plan.video.height);
-  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme);
+  const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme,
+                                      pinchlab::time_limit(*plan.source, time_limit));
   Canvas canvas(width, plan.video.height);
   Picture picture;
   FrameHash frames;

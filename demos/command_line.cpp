@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "base/did_you_mean.h"
-#include "base/text_checks.h"
 #include "render/canvas.h"
 
 namespace pinchlab {
@@ -43,15 +42,6 @@ void add_option_names(const CLI::App& command, std::vector<std::string>& names) 
 }
 
 }  // namespace
-
-CLI::Validator number_in(double low, double high) {
-  return {[low, high](const std::string& text) {
-            const std::optional<double> value = parse_number(text);
-            if (value && low <= *value && *value <= high) return std::string();
-            return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
-          },
-          fmt::format("{:g} to {:g}", low, high)};
-}
 
 void add_size(CLI::App& command, Size& size, const std::string& help) {
   command

@@ -7,10 +7,9 @@
 #include <optional>
 #include <string>
 
-namespace pinchlab {
+#include "base/number_option.h"
 
-/// A finite number from low to high, ends included. CLI11's own Range lets NaN pass.
-CLI::Validator number_in(double low, double high);
+namespace pinchlab {
 
 struct Size {
   int width = 0, height = 0;  // px

@@ -137,6 +137,9 @@ struct Canvas::State {
         case Picture::Kind::strip:
           mesh.add(picture.strips[item.index], picture.points, fit);
           break;
+        case Picture::Kind::patch:
+          mesh.add(picture.patches[item.index], picture.corners, fit);
+          break;
         case Picture::Kind::label: {
           const Label& label = picture.labels[item.index];
           mesh.add(label, image_of(label.text, fit.scale * label.height), fit);
@@ -190,35 +193,35 @@ struct Canvas::State {
     std::size_t first, count;
   };
 
-  /// Cuts the drawing into the parts of the frame that have changed. What a quad gives a pixel does
-  /// not depend on them.
+  /// Cuts the drawing into the parts of the frame that have changed, batch by batch: a change of
+  /// program costs more than one of part. What a quad gives a pixel does not depend on them.
   void cut(std::vector<Piece>& pieces) {
     quads.clear();
     for (std::size_t i = 0; i < mesh.vertices().size(); i += quad_corners) {
       quads.push_back(quad_bounds(mesh.vertices().data() + i, width, height));
     }
     indices.clear();
-    for (const PixelRect& r : changed) {
-      std::size_t next = 0;
-      for (const Sheet& sheet : mesh.sheets()) {
-        const int left = std::max(r.left, sheet.left);
-        const int right = std::min(r.left + r.width, sheet.left + sheet.width);
-        const PixelRect part{left, r.top, std::max(0, right - left), r.height};
-        for (; next < sheet.end; ++next) {
-          const Batch& batch = mesh.batches()[next];
-          const std::size_t first = indices.size();
-          for (std::size_t q = batch.first; q < batch.first + batch.count; ++q) {
-            if (!overlap(quads[q], part)) continue;
-            for (const std::uint32_t corner : quad_triangles) {
-              indices.push_back(static_cast<std::uint32_t>(q * quad_corners) + corner);
-            }
-          }
-          if (indices.size() > first) {
-            pieces.push_back({&batch, part, first, indices.size() - first});
-          }
+    std::size_t next = 0;
+    for (const Sheet& sheet : mesh.sheets()) {
+      for (; next < sheet.end; ++next) {
+        for (const PixelRect& r : changed) {
+          const int left = std::max(r.left, sheet.left);
+          const int right = std::min(r.left + r.width, sheet.left + sheet.width);
+          cut(mesh.batches()[next], {left, r.top, std::max(0, right - left), r.height}, pieces);
         }
       }
     }
+  }
+
+  void cut(const Batch& batch, const PixelRect& part, std::vector<Piece>& pieces) {
+    const std::size_t first = indices.size();
+    for (std::size_t q = batch.first; q < batch.first + batch.count; ++q) {
+      if (!overlap(quads[q], part)) continue;
+      for (const std::uint32_t corner : quad_triangles) {
+        indices.push_back(static_cast<std::uint32_t>(q * quad_corners) + corner);
+      }
+    }
+    if (indices.size() > first) pieces.push_back({&batch, part, first, indices.size() - first});
   }
 
   /// All vertices go up at once.
@@ -227,10 +230,14 @@ struct Canvas::State {
     cut(pieces);
     upload(GL_ARRAY_BUFFER, mesh.vertices());
     upload(GL_ELEMENT_ARRAY_BUFFER, indices);
+    const Batch* batch = nullptr;
     for (const Piece& piece : pieces) {
+      if (piece.batch != batch) {
+        batch = piece.batch;
+        gl.UseProgram(programs[batch->program]);
+        if (batch->texture != 0) gl.BindTexture(GL_TEXTURE_2D, batch->texture);
+      }
       gl.Scissor(piece.part.left, piece.part.top, piece.part.width, piece.part.height);
-      gl.UseProgram(programs[piece.batch->program]);
-      if (piece.batch->texture != 0) gl.BindTexture(GL_TEXTURE_2D, piece.batch->texture);
       gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.count), GL_UNSIGNED_INT,
                       buffer_place(piece.first * sizeof(GLuint)));
     }

@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #if defined(__SANITIZE_ADDRESS__)
 // Mesa keeps a few bytes a context for ever.
@@ -35,6 +38,13 @@ std::unique_ptr<GlContext> make_context() {
 }  // namespace
 
 std::unique_ptr<GlContext> make_gl_context() {
+#if defined(__GLIBC__)
+  // The driver takes and frees some 256 KB with each call that draws. Giving them back to the system
+  // each time, page by page, would cost as much as drawing a small part of a frame.
+  constexpr int enough = 64 << 20;  // bytes
+  mallopt(M_TRIM_THRESHOLD, enough);
+  mallopt(M_MMAP_THRESHOLD, enough / 2);
+#endif
   // The driver's own threads cost more than they give at these sizes: whole clips run side by side
   // instead.
   setenv("LP_NUM_THREADS", "0", 0);

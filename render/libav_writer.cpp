@@ -113,30 +113,6 @@ class Options {
   AVDictionary* dictionary_ = nullptr;
 };
 
-void check_settings(const std::string& path, const VideoSettings& settings) {
-  const int w = settings.width, h = settings.height;
-  if (w < smallest_frame || h < smallest_frame || w > largest_frame || h > largest_frame) {
-    throw std::invalid_argument(
-        fmt::format("{}: a video of {} x {} px cannot be made: each side must be {} to {} px", path,
-                    w, h, smallest_frame, largest_frame));
-  }
-  if (needs_even_sides(settings.codec) && (w % 2 != 0 || h % 2 != 0)) {
-    throw std::invalid_argument(fmt::format(
-        "{}: {} stores colour for 2 x 2 px, so {} x {} px cannot be made: use even sides, or ffv1",
-        path, to_string(settings.codec), w, h));
-  }
-  if (settings.codec == Codec::gif && 100 % settings.frames_per_second != 0) {
-    throw std::invalid_argument(
-        fmt::format("{}: a GIF counts hundredths of a second, so it cannot have {} frames in one: "
-                    "say --fps 50 (or 25, 20, 10), or use apng or webp",
-                    path, settings.frames_per_second));
-  }
-  if (settings.frames_per_second < 1 || settings.frames_per_second > 1000) {
-    throw std::invalid_argument(fmt::format("{}: {} frames a second cannot be made: 1 to 1000",
-                                            path, settings.frames_per_second));
-  }
-}
-
 /// RGBA to packed bytes in another order, without loss: `order` says which byte of RGBA comes
 /// where, or 3 for `last`.
 template <std::size_t Bytes>
@@ -164,6 +140,30 @@ Codec codec_from_string(const std::string& name) {
   }
   throw std::invalid_argument(
       fmt::format("unknown codec \"{}\": one of h264, vp9, ffv1, apng, webp, gif", name));
+}
+
+void check_video(const std::string& path, const VideoSettings& settings) {
+  const int w = settings.width, h = settings.height;
+  if (w < smallest_frame || h < smallest_frame || w > largest_frame || h > largest_frame) {
+    throw std::invalid_argument(
+        fmt::format("{}: a video of {} x {} px cannot be made: each side must be {} to {} px", path,
+                    w, h, smallest_frame, largest_frame));
+  }
+  if (needs_even_sides(settings.codec) && (w % 2 != 0 || h % 2 != 0)) {
+    throw std::invalid_argument(fmt::format(
+        "{}: {} stores colour for 2 x 2 px, so {} x {} px cannot be made: use even sides, or ffv1",
+        path, to_string(settings.codec), w, h));
+  }
+  if (settings.frames_per_second < 1 || settings.frames_per_second > 1000) {
+    throw std::invalid_argument(fmt::format("{}: {} frames a second cannot be made: 1 to 1000",
+                                            path, settings.frames_per_second));
+  }
+  if (settings.codec == Codec::gif && 100 % settings.frames_per_second != 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: a GIF counts hundredths of a second, so it cannot have {} frames in one: "
+                    "say --fps 50 (or 25, 20, 10), or use apng or webp",
+                    path, settings.frames_per_second));
+  }
 }
 
 bool needs_even_sides(Codec codec) {
@@ -333,7 +333,7 @@ struct VideoWriter::State {
 };
 
 VideoWriter::VideoWriter(const std::string& path, const VideoSettings& settings) {
-  check_settings(path, settings);
+  check_video(path, settings);
   state_ = std::make_unique<State>(path, settings);
 }
 

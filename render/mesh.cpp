@@ -43,6 +43,7 @@ void Mesh::clear() {
   vertices_.clear();
   batches_.clear();
   sheets_.clear();
+  shapes_.clear();
   open_ = false;
 }
 
@@ -52,14 +53,15 @@ void Mesh::end_sheet(int left, int width, Colour background) {
 }
 
 void Mesh::begin(Program program, std::uint32_t texture) {
+  shapes_.push_back({program, texture, quad_count()});
   if (!open_ || batches_.back().program != program || batches_.back().texture != texture) {
     batches_.push_back({program, texture, vertices_.size() / quad_corners, 0});
     open_ = true;
   }
 }
 
-void Mesh::quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
-                const Vertex& common) {
+void Mesh::add_quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
+                    const Vertex& common) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Vertex& v = vertices_.emplace_back(common);
     v.position = {narrow(positions[i].x()), narrow(positions[i].y())};
@@ -84,7 +86,7 @@ void Mesh::add(const Stroke& stroke, const Fit& fit) {
     places[i] = {i < 2 ? -reach : length + reach, i % 2 == 0 ? -reach : reach};
     positions[i] = a + places[i].x() * along + places[i].y() * across;
   }
-  quad(positions, places, common);
+  add_quad(positions, places, common);
 }
 
 // Neighbouring pieces share the corners between them, so that no pixel is missed or drawn twice. On
@@ -149,7 +151,22 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
     const double length = piece.radius > 0.0 ? piece.radius * std::abs(piece.turn) : piece.length;
     common.curve = {narrow(piece.radius), narrow(middle - std::floor(middle)),
                     length > 0.0 ? narrow((to - from) / length) : 0.0f};
-    quad(positions, places, common);
+    add_quad(positions, places, common);
+  }
+}
+
+// A fan of triangles, each a quad whose last corner counts twice. To the stroke program every pixel of
+// theirs is on the middle line of a wide stroke, which is no disc.
+void Mesh::add(const Patch& patch, const std::vector<Vec2>& corners, const Fit& fit) {
+  begin(Program::stroke);
+  Vertex common{};
+  common.shape = {1.0f, 1e3f, 1e3f, 0.0f};
+  common.fill = patch.fill;
+  const Vec2* const first = corners.data() + patch.first;
+  for (std::size_t i = 1; i + 1 < patch.count; ++i) {
+    const Vec2 last = fit.point(first[i + 1]);
+    add_quad({fit.point(first[0]), fit.point(first[i]), last, last},
+             {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}, common);
   }
 }
 
@@ -163,7 +180,7 @@ void Mesh::add(const Label& label, const LabelImage& image, const Fit& fit) {
     places[i] = {i < 2 ? 0.0 : 1.0, i % 2 == 0 ? 0.0 : 1.0};
     positions[i] = corner + Vec2(places[i].x() * image.width, places[i].y() * image.height);
   }
-  quad(positions, places, common);
+  add_quad(positions, places, common);
 }
 
 }  // namespace pinchlab

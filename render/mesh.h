@@ -51,6 +51,13 @@ struct Batch {
   bool operator==(const Batch&) const = default;
 };
 
+/// The quads of one shape of a picture, from `first` on.
+struct Shape {
+  Program program;
+  std::uint32_t texture;
+  std::size_t first;
+};
+
 constexpr std::size_t quad_corners = 4;
 /// The two triangles of a quad, by its corners.
 constexpr std::array<std::uint32_t, 6> quad_triangles = {0, 1, 2, 2, 1, 3};
@@ -79,6 +86,7 @@ class Mesh {
  public:
   void add(const Stroke& stroke, const Fit& fit);
   void add(const Strip& strip, const std::vector<StripPoint>& points, const Fit& fit);
+  void add(const Patch& patch, const std::vector<Vec2>& corners, const Fit& fit);
   void add(const Label& label, const LabelImage& image, const Fit& fit);
   /// Ends a picture that was drawn into the given columns, px.
   void end_sheet(int left, int width, Colour background);
@@ -87,12 +95,15 @@ class Mesh {
   const std::vector<Vertex>& vertices() const { return vertices_; }
   const std::vector<Batch>& batches() const { return batches_; }
   const std::vector<Sheet>& sheets() const { return sheets_; }
+  const std::vector<Shape>& shapes() const { return shapes_; }
+  std::size_t quad_count() const { return vertices_.size() / quad_corners; }
+  const Vertex* quad(std::size_t index) const { return vertices_.data() + index * quad_corners; }
 
  private:
   void find_sides(double reach);
   void begin(Program program, std::uint32_t texture = 0);
-  void quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
-            const Vertex& common);
+  void add_quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
+                const Vertex& common);
 
   struct Side {  // of a strip's point: how far its triangles reach across, px
     double left, right;
@@ -101,6 +112,7 @@ class Mesh {
   std::vector<Vertex> vertices_;
   std::vector<Batch> batches_;
   std::vector<Sheet> sheets_;
+  std::vector<Shape> shapes_;
   std::vector<Piece> pieces_;  // of the strip being added
   std::vector<Side> sides_;    // of its points
   bool open_ = false;

@@ -67,6 +67,9 @@ class Pen {
         case Picture::Kind::strip:
           draw(picture.strips[item.index], picture.points);
           break;
+        case Picture::Kind::patch:
+          draw(picture.patches[item.index], picture.corners);
+          break;
         case Picture::Kind::label:
           draw(picture.labels[item.index]);
           break;
@@ -182,6 +185,16 @@ class Pen {
         cairo_stroke(cairo_);
       }
     }
+  }
+
+  void draw(const Patch& patch, const std::vector<Vec2>& corners) {
+    set(patch.fill);
+    cairo_new_path(cairo_);
+    for (std::size_t i = 0; i < patch.count; ++i) {
+      const Vec2 corner = fit_.point(corners[patch.first + i]);
+      cairo_line_to(cairo_, corner.x(), corner.y());
+    }
+    cairo_fill(cairo_);
   }
 
   void draw(const Label& label) {

@@ -41,6 +41,9 @@ struct VideoSettings {
   std::string encoder_options;
 };
 
+/// Throws std::invalid_argument for settings that cannot be, with what to do; `path` is the file's.
+void check_video(const std::string& path, const VideoSettings& settings);
+
 /// One line for a manifest: codec, pixel format, colour and every encoder option.
 std::string describe(const VideoSettings& settings);
 
@@ -48,8 +51,7 @@ std::string describe(const VideoSettings& settings);
 /// in every run on any processor. The file appears under its name only when finish() returns; until
 /// then it is `path` + ".partial", which is removed if the writer is destroyed unfinished.
 ///
-/// Throws std::invalid_argument for settings that cannot be (with what to do), std::runtime_error
-/// where the file cannot be written.
+/// Throws as check_video does, and std::runtime_error where the file cannot be written.
 class VideoWriter {
  public:
   VideoWriter(const std::string& path, const VideoSettings& settings);

@@ -10,11 +10,22 @@ namespace pinchlab {
 
 enum class Slip : std::int8_t { stick = 0, forward = 1, backward = -1 };
 
-/// Two bodies, or a body and a wall, that touch or may touch within the next step.
+/// Which points of two bodies meet: touch.h.
+enum class Touch : std::int8_t {
+  circles,     // two discs, or a disc and a wall
+  point_of_a,  // a corner of a, or a itself where it is a disc, meets the outline of b, or the wall
+  point_of_b,  // likewise
+  end_of_wall,  // meets the outline of a
+};
+
+/// Two bodies, or a body and a wall, that touch or may touch within the next step. Where one of them
+/// is a polygon there may be several of a pair.
 struct Contact {
-  int a = -1;                  // body index
-  int b = -1;                  // body index > a, or -1: a wall
-  int wall = -1;               // index into Scene::walls, or -1
+  int a = -1;     // body index
+  int b = -1;     // body index > a, or -1: a wall
+  int wall = -1;  // index into Scene::walls, or -1
+  Touch touch = Touch::circles;
+  std::int8_t point = 0;       // corner of the polygon, or end of the wall; 0 of a disc
   Vec2 normal = Vec2::Zero();  // unit, from a towards b
   double gap = 0.0;            // m, between the surfaces
   double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0

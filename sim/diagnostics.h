@@ -10,7 +10,8 @@ struct Workspace;
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
 
-/// The same of positions, angles, and spans' lengths and tensions.
+/// The same of positions, angles, and spans' lengths and tensions; and that no cable
+/// bends round absurdly many corners.
 bool check_positions(const Scene& scene, World& world);
 
 /// Energy of gravity and of stretched cables at the present positions (J).

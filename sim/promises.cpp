@@ -47,7 +47,7 @@ Promises::Promises(const Scene& scene, const World& world)
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
-    kinetic += 0.5 * disc_inertia(body) * angular_[b] * angular_[b];
+    kinetic += 0.5 * inertia_of(body) * angular_[b] * angular_[b];
     if (!can_move(body)) continue;
     kinetic += 0.5 * body.mass * velocity_[b].squaredNorm();
     at_play_ += body.mass * scene.gravity.norm() * body.radius;
@@ -69,7 +69,7 @@ void Promises::note_cables(const Scene& scene, const World& world) {
     const CableState& cable = world.cables[c];
     double length = 0.0, excess = 0.0;
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
-      length += cable.links[i].radius * cable.links[i].wrap;
+      length += stored_length(cable.links[i]);
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
       length += segment.rest_length;
@@ -107,7 +107,7 @@ void Promises::note_energy(const Scene& scene, const World& world) {
     const Body& body = scene.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
     const double omega = (1.0 - after) * angular_[b] + after * world.angular_velocity[b];
-    kinetic += 0.5 * disc_inertia(body) * omega * omega;
+    kinetic += 0.5 * inertia_of(body) * omega * omega;
     if (!can_move(body)) continue;
     const Vec2 v = (1.0 - after) * velocity_[b] + after * world.velocity[b];
     kinetic += 0.5 * body.mass * v.squaredNorm();

@@ -29,16 +29,21 @@ enum class BodyKind {
   fixed,       ///< neither moves nor turns
 };
 
-/// What a circular body is, for all time.
+/// What a body is, for all time: a disc, or a convex polygon.
 struct BodyProperties {
   BodyKind kind = BodyKind::free;
-  double radius = 0.5;                            ///< m, > 0
-  double mass = 1.0;                              ///< kg, > 0; unused for fixed bodies
-  std::optional<double> inertia;                  ///< kg m^2, > 0; default: disc, m r^2 / 2
-  Vec2 rail_axis = Vec2(0.0, 1.0);                ///< unit vector; rail bodies only
+  double radius = 0.5;  ///< m, > 0; of a polygon that of the circle about its centre that holds it
+  /// m, in the body's frame, whose origin is the centre of mass: 3 to 64 corners of a convex polygon,
+  /// counter-clockwise. Empty: a disc.
+  std::vector<Vec2> corners;
+  double corner_radius = 0.0;       ///< m, >= 0: the polygon's outline is that far off
+  double mass = 1.0;                ///< kg, > 0; unused for fixed bodies
+  std::optional<double> inertia;    ///< kg m^2, > 0; default: disc, m r^2 / 2
+  Vec2 rail_axis = Vec2(0.0, 1.0);  ///< unit vector; rail bodies only
   std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
   double torque_limit = infinity;    ///< N m, > 0: the most that holds the driven velocity
   double torque = 0.0;               ///< N m, constant
+  bool node = false;                 ///< of a cable with mass, by spread_nodes: part of the cable
   double linear_drag = 0.0;          ///< 1/s: dv/dt = -drag v
   double angular_drag = 0.0;         ///< 1/s
   double cable_friction = infinity;  ///< capstan coefficient mu >= 0; infinity: no slip
@@ -52,14 +57,13 @@ struct MotorPoint {
   double value = 0.0;  ///< rad/s of a driven body, N m of any other
 };
 
-/// A circular body and its state at time 0.
+/// A body and its state at time 0.
 struct Body : BodyProperties {
-  std::string name;              ///< unique in the scene
-  Vec2 position = Vec2::Zero();  ///< m
-  double angle = 0.0;            ///< rad, counter-clockwise
-  Vec2 velocity = Vec2::Zero();  ///< m/s
-  double angular_velocity =
-      0.0;  ///< rad/s; without a torque limit a driven body has its driven one
+  std::string name;               ///< unique in the scene
+  Vec2 position = Vec2::Zero();   ///< m
+  double angle = 0.0;             ///< rad, counter-clockwise
+  Vec2 velocity = Vec2::Zero();   ///< m/s
+  double angular_velocity = 0.0;  ///< rad/s; a motor without a torque limit has its own
   /// What stands in place of `driven_angular_velocity`, where that is given, or of `torque`:
   /// straight lines between these points, of ascending times, and constant before the first and
   /// after the last.
@@ -70,6 +74,7 @@ struct Body : BodyProperties {
 struct Attachment {
   int body = -1;              ///< index into Scene::bodies, or -1: the world
   Vec2 point = Vec2::Zero();  ///< m, in the body's frame (origin at its centre), or in the world
+  bool layers = false;        ///< on a disc's rim: what winds up there lies in layers
 };
 
 /// One body that a cable runs round.
@@ -85,7 +90,7 @@ struct Wrap {
 // friction of a pinch is at most grip * mu * N of either body. Arcs keep their capstan law, spans
 // their length, and a body without slip that lies on the pinched cable's way does not slip.
 
-/// A massless cable, from `start` over `wraps` to `end`; a closed one has wraps only (at least
+/// A cable, massless but for its nodes (nodes.h), from `start` over `wraps` to `end`; a closed one has wraps only (at least
 /// two).
 struct Cable {
   std::string name;          ///< unique in the scene
@@ -98,6 +103,11 @@ struct Cable {
   double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
+  bool rod = false;      ///< between nodes: keeps its length both ways, and nothing hits it
+  double mass_per_metre = 0.0;    ///< kg/m; above 0 only until spread_nodes (nodes.h)
+  int nodes = 0;                  ///< of a cable with mass; 0: as spread_nodes chooses
+  double contact_friction = 0.5;  ///< Coulomb coefficient of a cable with mass on bodies and walls
+  double linear_drag = 0.0;       ///< 1/s, of its nodes
 };
 
 /// A static straight wall: bodies cannot pass it from either side. Cables ignore walls.
@@ -151,7 +161,8 @@ inline bool can_move(const BodyProperties& body) {
   return body.kind == BodyKind::free || body.kind == BodyKind::rail;
 }
 
-inline double disc_inertia(const BodyProperties& body) {  // kg m^2
+/// Moment of inertia (kg m^2), of an even plate if none is given.
+inline double inertia_of(const BodyProperties& body) {
   return body.inertia.value_or(0.5 * body.mass * body.radius * body.radius);
 }
 

@@ -31,6 +31,7 @@ struct Happening {
   int cable = -1;       // link_gone, hit
   int item = -1;        // link; or span
   int body = -1;        // hit
+  int corner = -1;      // hit: of the body, if it is a polygon
   int orientation = 0;  // hit
   double clearance =
       0.0;             // m, that was left of it at the end of the last trial; negative: too late

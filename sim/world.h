@@ -15,17 +15,32 @@
 
 namespace pinchlab {
 
+/// How a cable lies in layers on the drum that holds its end, by the area that it takes: wound by the
+/// angle th it has the length l = inner th + w th^2 / 2 pi (w the half width), and its centre line there
+/// the radius sqrt(inner^2 + 2 w l / pi) = inner + w th / pi, which is dl/dth and lever arm alike.
+struct Layers {
+  int way = 0;          // +1: the drum holds the cable's start, -1: its end; 0: there are none
+  double inner = 0.0;   // m, radius of the centre line where the first layer begins
+  double growth = 0.0;  // m/rad, w / pi
+  double begins = 0.0;  // rad, orientation * (alpha - body's angle) where it begins
+
+  double radius(double turned) const { return inner + growth * turned; }
+  double length(double turned) const { return (inner + 0.5 * growth * turned) * turned; }
+};
+
 /// A circle fixed to a body, which a cable touches: rolling round it, or (of radius 0) attached to
-/// it at an end of the cable.
+/// it at an end of the cable. On a polygon a cable has a link at each corner that it bends round;
+/// the segments between them are its sides, and rigid.
 ///
 /// The material at the link's tail tangent has the coordinate material + p (alpha_tail - angle),
 /// that at its head tangent material + p (alpha_head - angle), where p = orientation * radius,
 /// alpha is the direction of the segment before or after, and angle is the body's. Without slip
 /// `material` is constant, so the cable's total length is conserved by construction.
 struct Link {
-  int body = -1;               // index, or -1: attached to the world
-  int orientation = 0;         // +1 counter-clockwise, -1 clockwise, 0 attachment
-  double radius = 0.0;         // m, body radius + cable half width; 0 at an attachment
+  int body = -1;        // index, or -1: attached to the world
+  int orientation = 0;  // +1 counter-clockwise, -1 clockwise, 0 attachment
+  int corner = -1;      // of a polygon, that the circle is about; or -1
+  double radius = 0.0;  // m, of the body or its corner, + cable half width; 0 at an attachment
   Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
   double material = 0.0;       // m along the cable; changed by slip only
   double wrap = 0.0;           // rad, angle of cable stored on the body, may exceed 2 pi
@@ -34,6 +49,8 @@ struct Link {
   Slip slip = Slip::stick;     // by the active set
   double slip_speed = 0.0;     // m/s of material over the body's surface, forward positive
   int contact = -1;            // pinch_middle: the contact that presses it, by confirm_pinches
+  Layers layers;               // of a drum that fills; `radius` is then that of the outermost turn,
+                               // by update_tangent
 
   double signed_radius() const { return orientation * radius; }
 };
@@ -64,6 +81,8 @@ struct CableState {
   double grip = 1.0;        // factor on the friction of its pinches
   double length = 0.0;      // m of material, constant
   bool closed = false;
+  bool rod = false;      // a piece between nodes, that keeps its length both ways
+  bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far
   std::vector<Link> links;
@@ -78,6 +97,16 @@ double alpha_head(const CableState& cable, std::size_t link);
 /// leaves.
 double tail_material(const CableState& cable, std::size_t link, double body_angle);
 double head_material(const CableState& cable, std::size_t link, double body_angle);
+
+/// How far a link's outermost layer is off its first (m); 0 where there are none.
+inline double thickness_of_layers(const Link& link) {
+  return link.layers.way != 0 ? link.radius - link.layers.inner : 0.0;
+}
+
+/// m of cable on a link, the wraps being up to date.
+inline double stored_length(const Link& link) {
+  return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
+}
 
 enum class StepStatus { ok, not_finite };
 

@@ -133,20 +133,6 @@ void save_answers(const fs::path& path, const ordered_json& file) {
   }
 }
 
-std::vector<fs::path> answer_files(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path& path = entry.path();
-    const std::string name = path.filename().string();
-    if (entry.is_regular_file() && path.extension() == ".json" && !name.starts_with(".") &&
-        name != "dataset_description.json") {
-      files.push_back(path);
-    }
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 std::string withdraw(const fs::path& folder, const std::string& code) {
   const std::string hash = withdrawal_hash(code);
   if (hash.empty()) {

@@ -46,9 +46,6 @@ std::filesystem::path answer_path(const std::filesystem::path& folder, const std
 /// again. When it returns, the answers are safe. Throws std::runtime_error; then there is no file.
 void save_answers(const std::filesystem::path& path, const nlohmann::ordered_json& file);
 
-/// The answer files of a folder, in order of their names. Partial files are none.
-std::vector<std::filesystem::path> answer_files(const std::filesystem::path& folder);
-
 /// Removes the answers that belong to a code and returns the participant's id; empty if there are
 /// none. Throws std::invalid_argument if it cannot be a code.
 std::string withdraw(const std::filesystem::path& folder, const std::string& code);

@@ -14,11 +14,13 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/answer_file.h"
 #include "base/design_file.h"
 #include "base/durable_file.h"
 #include "study/answers.h"
 #include "study/command_options.h"
 #include "study/config.h"
+#include "study/crate.h"
 #include "study/desk.h"
 #include "study/freeze_command.h"
 #include "study/jatos.h"
@@ -234,25 +236,44 @@ fs::path existing_folder(const fs::path& folder) {
   return folder;
 }
 
+// An export of nothing would be taken for one of something.
+fs::path folder_with_answers(const fs::path& folder) {
+  if (answer_files(existing_folder(folder)).empty()) {
+    throw std::runtime_error(folder.string() +
+                             ": there is nothing to export; nobody has saved answers here");
+  }
+  return folder;
+}
+
 struct ExportOptions {
-  fs::path answers, csv, participants_csv, psych_ds, bids;
+  fs::path answers, csv, participants_csv, psych_ds, bids, ro_crate;
   fs::path jatos, clips, config;
   std::uint64_t participants = 0, seed = 0;
   bool has_seed = false, no_webm = false;
 };
 
 void export_study(const ExportOptions& options, const Stimuli& stimuli) {
+  if (!options.ro_crate.empty() && options.clips.empty()) {
+    throw CLI::ValidationError("--ro-crate", "holds the clips too: name their folder with --clips");
+  }
+  if (!options.clips.empty() && options.ro_crate.empty() && options.jatos.empty()) {
+    throw CLI::ValidationError("--clips", "goes with --ro-crate or --jatos");
+  }
   if (!options.csv.empty()) {
-    write_text(options.csv, answers_csv(existing_folder(options.answers)));
+    write_text(options.csv, answers_csv(folder_with_answers(options.answers)));
   }
   if (!options.participants_csv.empty()) {
-    write_text(options.participants_csv, participants_csv(existing_folder(options.answers)));
+    write_text(options.participants_csv, participants_csv(folder_with_answers(options.answers)));
   }
   if (!options.bids.empty()) {
-    write_bids(existing_folder(options.answers), options.bids);
+    write_bids(folder_with_answers(options.answers), options.bids);
   }
   if (!options.psych_ds.empty()) {
-    write_psych_ds(existing_folder(options.answers), options.psych_ds);
+    write_psych_ds(folder_with_answers(options.answers), options.psych_ds);
+  }
+  if (!options.ro_crate.empty()) {
+    write_ro_crate(folder_with_answers(options.answers), existing_folder(options.clips),
+                   options.ro_crate);
   }
   if (!options.jatos.empty()) {
     Config config = read_or_default(options.config);
@@ -284,15 +305,19 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
   what->add_option("--psych-ds", options->psych_ds, "Psych-DS dataset; a new folder")
       ->type_name("DIR")
       ->needs(answers);
+  what->add_option("--ro-crate", options->ro_crate,
+                   "Research crate (RO-Crate) with the clips that were shown; a new folder")
+      ->type_name("DIR")
+      ->needs(answers);
   CLI::Option* jatos =
       what->add_option("--jatos", options->jatos, "Study archive; its key goes to FILE.key.json")
           ->type_name("FILE.jzip");
   what->require_option(1);
   CLI::Option* clips =
       command
-          ->add_option("--clips", options->clips, "Folder of the clips; missing ones are rendered")
-          ->type_name("DIR")
-          ->needs(jatos);
+          ->add_option("--clips", options->clips,
+                       "Folder of the clips; for --jatos missing ones are rendered")
+          ->type_name("DIR");
   CLI::Option* participants =
       command->add_option("--participants", options->participants, "For how many to plan")
           ->type_name("N")
@@ -306,6 +331,7 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
       "Examples:\n"
       "  pinchlab study export --answers answers --csv answers.csv\n"
       "  pinchlab study export --answers answers --psych-ds dataset\n"
+      "  pinchlab study export --answers answers --ro-crate crate --clips clips\n"
       "  pinchlab study export --jatos study.jzip --clips clips --participants 40");
   command->callback([options, command, stimuli] {
     options->has_seed = command->count("--seed") > 0;

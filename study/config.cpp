@@ -184,18 +184,53 @@ TextOptions text_options(const Config& config) {
   options.confidence = config.trial.confidence > 0;
   options.click_where = config.trial.click_where;
   options.reason = config.trial.reason > 0;
+  options.controller = config.controller;
+  options.contact = config.contact;
+  options.consent_version = config.consent_version;
   return options;
 }
 
-std::string read_language(JsonObject& object) {
-  std::string language = object.name("language");
+void check_language(JsonObject& object, const char* key, const std::string& language) {
   const auto is_tag = [](char c) {
     return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '-';
   };
   if (language.size() > 35 || !std::ranges::all_of(language, is_tag)) {
-    object.fail("language", "must be a language tag such as en, sv or pt-BR");
+    object.fail(key, "must be a language tag such as en, sv or pt-BR");
   }
-  return language;
+}
+
+// The language, or the languages that participants choose from, and their texts.
+void read_all_texts(JsonObject& object, const json& document, const std::string& file,
+                    Config& config) {
+  TextOptions options = text_options(config);
+  const json own = document.value("texts", json::object());
+  if (!object.has("languages")) {
+    if (object.has("language")) {
+      config.language = object.name("language");
+      check_language(object, "language", config.language);
+    }
+    config.texts = read_texts(own, file, "/texts", config.language, options);
+    return;
+  }
+  const std::vector<std::string> languages = read_names(object, "languages");
+  if (languages.size() < 2) object.fail("languages", "must name two or more; or give `language`");
+  if (object.has("language")) object.fail("language", "stands in `languages`, as the first");
+  if (!config.questionnaires.before.empty() || !config.questionnaires.after.empty()) {
+    object.fail("languages",
+                "questions of your own are in one language; leave them out, or run a "
+                "study of its own in each language");
+  }
+  options.languages = true;
+  JsonObject by_language(own, file, "/texts");
+  by_language.expect_only(languages, "; with `languages`, texts stand under their language");
+  for (const std::string& language : languages) {
+    check_language(object, "languages", language);
+    config.translations[language] = read_texts(own.value(language, json::object()), file,
+                                               "/texts/" + language, language, options);
+  }
+  config.language = languages.front();
+  config.texts = config.translations.at(config.language);
+  config.translations.erase(config.language);
 }
 
 void check_number_of_trials(const Config& config, const std::string& file) {
@@ -209,44 +244,60 @@ void check_number_of_trials(const Config& config, const std::string& file) {
   }
 }
 
+const std::vector<std::string> known_keys = {"format",
+                                             "language",
+                                             "languages",
+                                             "controller",
+                                             "contact",
+                                             "consent_version",
+                                             "demonstrations",
+                                             "training",
+                                             "attention_checks",
+                                             "repetitions",
+                                             "both_orders",
+                                             "participant_limit",
+                                             "one_time_links",
+                                             "texts",
+                                             "methods",
+                                             "pairs_per_demonstration",
+                                             "series",
+                                             "graded_hit",
+                                             "adaptive_trials",
+                                             "shared_computer",
+                                             "recruiting",
+                                             "measure_screen",
+                                             "questionnaire_before",
+                                             "questionnaire_after",
+                                             "confidence",
+                                             "preference",
+                                             "reason",
+                                             "click_where"};
+
+// What the information names.
+void read_responsible(JsonObject& object, Config& config) {
+  for (const auto& [key, text] : {std::pair{"controller", &config.controller},
+                                  {"contact", &config.contact},
+                                  {"consent_version", &config.consent_version}}) {
+    if (!object.has(key)) continue;
+    *text = object.text(key, 1000);
+    if (text->find_first_not_of(" \n") == std::string::npos) object.fail(key, "is empty");
+  }
+}
+
 }  // namespace
 
 Config default_config() {
   Config config;
-  config.texts = read_texts(json::object(), "", config.language, {});
+  config.texts = read_texts(json::object(), "", "/texts", config.language, {});
   return config;
 }
 
 Config parse_config(const json& document, const std::string& file) {
   JsonObject object(document, file, "");
-  object.expect_only({"format",
-                      "language",
-                      "demonstrations",
-                      "training",
-                      "attention_checks",
-                      "repetitions",
-                      "both_orders",
-                      "participant_limit",
-                      "one_time_links",
-                      "texts",
-                      "methods",
-                      "pairs_per_demonstration",
-                      "series",
-                      "graded_hit",
-                      "adaptive_trials",
-                      "shared_computer",
-                      "recruiting",
-                      "measure_screen",
-                      "questionnaire_before",
-                      "questionnaire_after",
-                      "confidence",
-                      "preference",
-                      "reason",
-                      "click_where"},
-                     key_cure);
+  object.expect_only(known_keys, key_cure);
   object.choice("format", {"pinchlab-study 1"});
   Config config;
-  if (object.has("language")) config.language = read_language(object);
+  read_responsible(object, config);
   if (object.has("demonstrations")) {
     config.demonstrations = read_names(object, "demonstrations");
     if (config.demonstrations.empty()) {
@@ -282,7 +333,7 @@ Config parse_config(const json& document, const std::string& file) {
   }
   config.trial = read_trial_options(object);
   config.questionnaires = read_questionnaires(object, file);
-  config.texts = read_texts(document, file, config.language, text_options(config));
+  read_all_texts(object, document, file, config);
   check_number_of_trials(config, file);
   return config;
 }

@@ -47,10 +47,13 @@ struct Config {
   bool one_time_links = false;
   std::optional<Recruiting> recruiting;  ///< participants who are sent by a site
   TrialOptions trial;
-  Questionnaires questionnaires;             ///< around the trials
-  bool is_pilot = false;                     ///< a trial run; of the command line, not of the file
-  std::string language = "en";               ///< of the texts, a BCP 47 tag
+  Questionnaires questionnaires;  ///< around the trials
+  bool is_pilot = false;          ///< a trial run; of the command line, not of the file
+  std::string controller, contact, consent_version;  ///< what the information names; or nothing
+  std::string language = "en";                       ///< of the texts, a BCP 47 tag
   std::map<std::string, std::string> texts;  ///< every text of the page that is used, by its key
+  /// Other languages that a participant can choose, and their texts.
+  std::map<std::string, std::map<std::string, std::string>> translations;
 };
 
 /// What a study is without a file: every pair once, in English.

@@ -78,7 +78,12 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
 }
 
 std::string Desk::start(const std::string& link, const std::string& user_agent,
-                        const std::string& address, const Recruited& recruited) {
+                        const std::string& address, const Recruited& recruited,
+                        const std::string& language) {
+  const Config& config = options_.config;
+  if (!language.empty() && language != config.language && !config.translations.contains(language)) {
+    throw Refused(422, "the study is not in this language");
+  }
   if (options_.config.recruiting && recruited.participant.empty()) {
     throw Refused(403, "this study needs the id of the site that it recruits by");
   }
@@ -98,7 +103,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   session.secret_sha256 = sha256(secret);
   session.seed = study_.seed;
   if (options_.config.recruiting) session.recruited = recruited;
-  session.language = options_.config.language;
+  session.language = language.empty() ? config.language : language;
   session.user_agent = printable(user_agent);
   session.started_utc = session.last_seen_utc = options_.utc_now();
   {
@@ -190,6 +195,7 @@ Progress Desk::progress_of(const Session& session) const {
     return options_.clips.at(any_clip_key(options_.config, trial, 0)).webm.has_value();
   });
   progress.is_adaptive = options_.config.adaptive_trials > 0;
+  progress.language = session.language;
   progress.next = session.answers.size();
   progress.questionnaires = open_questionnaires(session, options_.config.questionnaires);
   return progress;

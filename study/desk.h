@@ -50,6 +50,7 @@ struct Progress {
   std::vector<Trial> trials;
   bool has_webm = false;     ///< all of them do: one without would stand out
   bool is_adaptive = false;  ///< the clip of a trial can be had once those before are answered
+  std::string language;      ///< of the page
   std::size_t next = 0;      ///< trial to show; trials.size(): all are answered
   std::vector<std::string> questionnaires;  ///< parts that are still to be answered
 };
@@ -78,7 +79,8 @@ class Desk {
   [[nodiscard]] std::vector<std::string> links() const;
 
   /// A new participant's token. Refused: 403 for a link that is unknown or used, or without the id
-  /// of the site that the study recruits by; 410 where that id has a place already; 409 where the
+  /// of the site that the study recruits by; 422 for a language that the study is not in (none: its
+  /// first); 410 where that id has a place already; 409 where the
   /// study is full; 503 where too many are running or the disk does not take it.
   ///
   /// A link is used up when its first clip is shown: until then opening it again begins anew, so
@@ -89,7 +91,8 @@ class Desk {
   /// oldest one of the address that has most of them and more than the newcomer's own will have, or
   /// else one that was not seen for five minutes. So many starts from one address fill no study.
   std::string start(const std::string& link, const std::string& user_agent,
-                    const std::string& address = "", const Recruited& recruited = {});
+                    const std::string& address = "", const Recruited& recruited = {},
+                    const std::string& language = "");
 
   // All of these refuse (401) a token that is not one of a running session.
   Progress progress(const std::string& token);

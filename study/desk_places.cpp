@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/input_error.h"
 #include "base/json_object.h"

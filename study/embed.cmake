@@ -1,24 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # cmake -DPAGE=study/page -DOUT=embedded_page.cpp -P embed.cmake
-# Turns the files of the page, and jsPsych if npm has installed it, into C++.
-set(files index.html researcher.html style.css icon.svg after_choice.js main.js make.js pages.js pair_trial.js recruiting.js
-  questionnaire.js screen.js errors.js  server.js jatos_server.js researcher.js texts/en.json texts/sv.json
-  texts/researcher.en.json texts/researcher.sv.json)
-set(jspsych node_modules/jspsych/dist/index.browser.min.js)
+# Turns the files of the page, and jsPsych's if npm has installed them, into C++.
+file(GLOB files RELATIVE ${PAGE} ${PAGE}/*.html ${PAGE}/*.css ${PAGE}/*.svg ${PAGE}/*.js ${PAGE}/texts/*.json)
+# What npm installs, and the names under which the page asks for it.
+set(installed node_modules/jspsych/dist/index.browser.min.js
+  node_modules/@jspsych/plugin-survey-html-form/dist/index.browser.min.js)
+set(names jspsych.js jspsych-survey-html-form.js)
 set(types "html=text/html" "css=text/css" "js=text/javascript"
   "svg=image/svg+xml" "json=application/json")
 set(arrays "")
 set(table "")
 set(index 0)
-foreach(file IN LISTS files jspsych)
-  if(file STREQUAL "${jspsych}" AND NOT EXISTS "${PAGE}/${file}")
+foreach(file IN LISTS files installed)
+  list(FIND installed "${file}" place)
+  if(place GREATER -1 AND NOT EXISTS "${PAGE}/${file}")
     continue()
   endif()
   file(READ "${PAGE}/${file}" hex HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
   set(path "${file}")
-  if(file STREQUAL "${jspsych}")
-    set(path "jspsych.js")
+  if(place GREATER -1)
+    list(GET names ${place} path)
   endif()
   string(REGEX MATCH "[a-z]+$" ending "${path}")
   foreach(entry IN LISTS types)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/folder_lock.h"
 #include "base/strict_json.h"

@@ -319,8 +319,11 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
   }
   if (config.recruiting) {
     throw std::runtime_error(
-        "recruiting is for study serve; on a JATOS server, leave it out of the configuration: "
-        "JATOS' own study links and End Redirect URL do this");
+        "recruiting is for study serve, which tells nobody the way back before the answers are "
+        "saved, and lets an id take part once; files on a JATOS server can do neither. Leave it "
+        "out "
+        "of the configuration: JATOS has study links and an End Redirect URL of its own, and keeps "
+        "the address' parameters with each result");
   }
   const std::string uuid = random_uuid();
   MediaNames names;
@@ -341,6 +344,7 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                 {"participants", participants},
                 {"language", config.language},
                 {"texts", config.texts}};
+  if (!config.translations.empty()) input["translations"] = config.translations;
   if (config.trial != TrialOptions()) input["trial_options"] = to_json(config.trial);
   if (!config.questionnaires.empty()) input["questionnaires"] = to_json(config.questionnaires);
   zip.add(std::string(folder_name) + ".jas", study_properties(config, uuid, input).dump());

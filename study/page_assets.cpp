@@ -12,7 +12,8 @@ const PageAsset* find_asset(std::string_view path) {
 }
 
 bool has_page() {
-  return find_asset("jspsych.js") != nullptr;
+  return find_asset("jspsych.js") != nullptr &&
+         find_asset("jspsych-survey-html-form.js") != nullptr;
 }
 
 }  // namespace pinchlab::study

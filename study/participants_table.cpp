@@ -51,6 +51,13 @@ const std::vector<ParticipantColumn> participant_columns = {
     {"started_utc", "When the participant began"},
     {"saved_utc", "When the answers were saved"},
     {"resumed_count", "Times that the page was loaded again"},
+    {"software_version", "Of the program that served the study"},
+    {"seed", "Of the plan"},
+    {"pilot", "true: an answer of a trial run"},
+    {"consent_version", "Of the information that the participant agreed to",
+     [](const json& file) {
+       return file.contains("study") ? value_of(file["study"], "consent_version") : "";
+     }},
     {"answers", "Main trials",
      [](const json& file) {
        return std::to_string(std::ranges::count(file["trials"], json("main"),

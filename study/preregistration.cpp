@@ -132,8 +132,9 @@ std::string procedure(const json& design, const Config& config) {
       design.at("seed").get<std::uint64_t>());
   text += asked_besides(config);
   text += fmt::format(
-      "The page is in the language `{}`. SHA-256 of the consent text: `{}`; of all texts: `{}`.\n",
-      config.language, design.at("study").at("consent_sha256").get<std::string>(),
+      "Language of the page: `{}`. SHA-256 of the consent text: `{}`; of all texts: `{}`.\n",
+      design.at("study").at("language").get<std::string>(),
+      design.at("study").at("consent_sha256").get<std::string>(),
       design.at("study").at("texts_sha256").get<std::string>());
   return text;
 }

@@ -6,7 +6,6 @@
 
 #include "base/answer_file.h"
 #include "base/strict_json.h"
-#include "study/answers.h"
 
 namespace pinchlab::study {
 namespace {

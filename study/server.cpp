@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/answer_file.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -97,7 +98,7 @@ json progress_json(const Progress& progress) {
     }
     trials.push_back(entry);
   }
-  json object = {{"trials", trials}, {"next", progress.next}};
+  json object = {{"trials", trials}, {"next", progress.next}, {"language", progress.language}};
   if (progress.is_adaptive) object["ahead"] = 1;
   if (!progress.questionnaires.empty()) object["questionnaires"] = progress.questionnaires;
   return object;
@@ -216,20 +217,25 @@ struct Server::Implementation {
     return result;
   }
 
+  // What the page needs to know of the study.
+  [[nodiscard]] json study_json() const {
+    const Config& config = desk.config();
+    json study = {{"language", config.language},
+                  {"texts", config.texts},
+                  {"needs_link", config.one_time_links},
+                  {"shared_computer", config.shared_computer}};
+    if (!config.translations.empty()) study["translations"] = config.translations;
+    if (config.is_pilot) study["pilot"] = true;
+    if (config.trial != TrialOptions()) study["trial_options"] = to_json(config.trial);
+    if (!config.questionnaires.empty()) {
+      study["questionnaires"] = to_json(config.questionnaires);
+    }
+    if (config.recruiting) study["recruiting"] = for_page(*config.recruiting);
+    return study;
+  }
+
   void add_interface() {
-    routes[{"GET", "/api/study"}] = [this](const HttpRequest&) {
-      const Config& config = desk.config();
-      json study = {{"language", config.language},
-                    {"texts", config.texts},
-                    {"needs_link", config.one_time_links},
-                    {"shared_computer", config.shared_computer}};
-      if (config.trial != TrialOptions()) study["trial_options"] = to_json(config.trial);
-      if (!config.questionnaires.empty()) {
-        study["questionnaires"] = to_json(config.questionnaires);
-      }
-      if (config.recruiting) study["recruiting"] = for_page(*config.recruiting);
-      return reply(study);
-    };
+    routes[{"GET", "/api/study"}] = [this](const HttpRequest&) { return reply(study_json()); };
     routes[{"POST", "/api/start"}] = [this](const HttpRequest& request) { return start(request); };
     routes[{"GET", "/api/session"}] = [this](const HttpRequest& request) {
       return reply(progress_json(desk.progress(token_of(request))));
@@ -364,16 +370,18 @@ struct Server::Implementation {
 
   HttpReply start(const HttpRequest& request) {
     const json body = parse_body(request);
-    check_keys(body, {"consent", "link", "recruited"});
+    check_keys(body, {"consent", "link", "recruited", "language"});
     if (body.value("consent", json()) != true) {
       throw Refused(422, "without consent nothing begins");
     }
     const json link = body.value("link", json(""));
-    if (!link.is_string()) {
-      throw Refused(422, "the link must be a string");
+    const json language = body.value("language", json(""));
+    if (!link.is_string() || !language.is_string()) {
+      throw Refused(422, "link and language must be strings");
     }
-    const std::string token = desk.start(link.get<std::string>(), request.header("user-agent"),
-                                         request.address, parse_recruited(body));
+    const std::string token =
+        desk.start(link.get<std::string>(), request.header("user-agent"), request.address,
+                   parse_recruited(body), language.get<std::string>());
     json started = progress_json(desk.progress(token));
     started["token"] = token;
     return reply(started);

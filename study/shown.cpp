@@ -17,23 +17,40 @@ json options_of(const Config& config) {
   return options;
 }
 
-}  // namespace
-
-json what_is_shown(const Config& config, const Clips& clips) {
+json consent_of(const std::map<std::string, std::string>& texts) {
   json consent = json::object();
   for (const char* key : {"information_heading", "information_body", "information_rights",
                           "information_questions", "consent"}) {
-    consent[key] = config.texts.at(key);
+    consent[key] = texts.at(key);
+  }
+  return consent;
+}
+
+}  // namespace
+
+json what_is_shown(const Config& config, const Clips& clips) {
+  std::string languages = config.language, questions = config.texts.at("question");
+  json consent = consent_of(config.texts), texts = config.texts;
+  if (!config.translations.empty()) {
+    consent = {{config.language, consent}};
+    texts = {{config.language, texts}};
+  }
+  for (const auto& [language, translated] : config.translations) {
+    languages += ", " + language;
+    questions += " / " + translated.at("question");
+    consent[language] = consent_of(translated);
+    texts[language] = translated;
   }
   json files = json::object();
   for (const auto& [name, pair] : clips) {
     files[name] = {pair.mp4.left->sha256(), pair.mp4.right->sha256()};
   }
-  json shown = {{"language", config.language},
-                {"question", config.texts.at("question")},
+  json shown = {{"language", languages},
+                {"question", questions},
                 {"consent_sha256", sha256(consent.dump())},
-                {"texts_sha256", sha256(json(config.texts).dump())},
+                {"texts_sha256", sha256(texts.dump())},
                 {"clips_sha256", sha256(files.dump())}};
+  if (!config.consent_version.empty()) shown["consent_version"] = config.consent_version;
   if (const json options = options_of(config); !options.empty()) {
     shown["options_sha256"] = sha256(options.dump());
   }
@@ -43,6 +60,7 @@ json what_is_shown(const Config& config, const Clips& clips) {
 std::string difference(const json& one, const json& other) {
   const std::pair<const char*, const char*> parts[] = {{"language", "the language"},
                                                        {"question", "the question"},
+                                                       {"consent_version", "the consent's version"},
                                                        {"consent_sha256", "the consent text"},
                                                        {"clips_sha256", "the clips"},
                                                        {"options_sha256", "what is asked besides"},

@@ -98,6 +98,8 @@ const std::vector<Column> columns = {
      [](const json&, const json& trial) { return choice(trial); }, two_methods | several_methods},
     {"chosen_side", "Side that was chosen",
      [](const json&, const json& trial) { return value_of(trial, "choice"); }},
+    {"expected", "Side that attention trials should have been answered with", nullptr, every_kind,
+     true},
     {"reaction_time_s", "Seconds from the moment the buttons appeared to the choice"},
     {"loops_watched", "Whole loops of the clip before the choice"},
     {"focus_lost_count", "Times the window lost the focus or was hidden"},
@@ -109,6 +111,14 @@ const std::vector<Column> columns = {
      [](const json&, const json& trial) {
        return trial.contains("playback_errors") ? std::to_string(trial["playback_errors"].size())
                                                 : "";
+     }},
+    {"playback_errors", "What the player said, one after the other",
+     [](const json&, const json& trial) {
+       std::string all;
+       for (const json& one : trial.value("playback_errors", json::array())) {
+         all += (all.empty() ? "" : " | ") + one.get<std::string>();
+       }
+       return all;
      }},
     {"clip", "File that was played"},
     {"shown_utc", "When the clip began"},
@@ -277,6 +287,12 @@ std::string csv_of(const Answers& answers) {
   return csv;
 }
 
+std::string csv_of(const ParticipantsTable& table) {
+  std::string csv = row(table.names);
+  for (const Cells& cells : table.rows) csv += row(cells);
+  return csv;
+}
+
 // BIDS writes what is not there as n/a, and has no quotes for tabs and ends of lines.
 std::string tsv_row(const Cells& cells) {
   std::string line;
@@ -289,7 +305,21 @@ std::string tsv_row(const Cells& cells) {
   return line + "\n";
 }
 
-void write_files(const std::map<std::string, std::string>& files, const fs::path& out) {
+}  // namespace
+
+std::string answers_csv(const fs::path& folder) {
+  return csv_of(read_folder(folder));
+}
+
+std::string participants_csv(const fs::path& folder) {
+  return csv_of(participants_table(files_of(read_folder(folder)), true));
+}
+
+std::string shared_csv(const fs::path& folder) {
+  return csv_of(participants_table(files_of(read_folder(folder)), false));
+}
+
+void write_new_folder(const std::map<std::string, std::string>& files, const fs::path& out) {
   if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
     throw std::runtime_error(
         fmt::format("{}: is there already; name a new folder, or empty it", out.string()));
@@ -298,19 +328,6 @@ void write_files(const std::map<std::string, std::string>& files, const fs::path
     fs::create_directories((out / name).parent_path());
     write_durably(out / name, bytes);
   }
-}
-
-}  // namespace
-
-std::string answers_csv(const fs::path& folder) {
-  return csv_of(read_folder(folder));
-}
-
-std::string participants_csv(const fs::path& folder) {
-  const ParticipantsTable table = participants_table(files_of(read_folder(folder)), true);
-  std::string csv = row(table.names);
-  for (const Cells& cells : table.rows) csv += row(cells);
-  return csv;
 }
 
 std::map<std::string, std::string> bids_files(const fs::path& folder) {
@@ -354,7 +371,7 @@ std::map<std::string, std::string> bids_files(const fs::path& folder) {
 }
 
 void write_bids(const fs::path& folder, const fs::path& out) {
-  write_files(bids_files(folder), out);
+  write_new_folder(bids_files(folder), out);
 }
 
 std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
@@ -365,7 +382,7 @@ std::map<std::string, std::string> psych_ds_files(const fs::path& folder) {
 }
 
 void write_psych_ds(const fs::path& folder, const fs::path& out) {
-  write_files(psych_ds_files(folder), out);
+  write_new_folder(psych_ds_files(folder), out);
 }
 
 }  // namespace pinchlab::study

@@ -25,6 +25,14 @@ std::string answers_csv(const std::filesystem::path& folder);
 /// The same as one row a participant: times, measures that exclusion rules are about, screen, texts.
 std::string participants_csv(const std::filesystem::path& folder);
 
+/// The same without ids of a recruiting site, for data that are shared.
+std::string shared_csv(const std::filesystem::path& folder);
+
+/// Writes files, by their paths in it, to a folder that must not exist, or be empty. Throws
+/// std::runtime_error.
+void write_new_folder(const std::map<std::string, std::string>& files,
+                      const std::filesystem::path& out);
+
 /// The files of a BIDS dataset (1.9.0, behaviour) of a folder's answers, by their paths:
 /// participants.tsv and sub-<participant>/beh/sub-<participant>_task-cables_beh.tsv with their
 /// descriptions.

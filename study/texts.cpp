@@ -26,10 +26,18 @@ bool collects_more(const TextOptions& options) {
 // Texts that only studies with an option have, by how their keys begin.
 bool is_used(const std::string& key, const TextOptions& options) {
   const std::pair<const char*, bool> parts[] = {
-      {"recruiting_", options.recruiting}, {"questionnaire_", options.questionnaires},
-      {"screen_", options.screen},         {"graded_", options.graded},
-      {"confidence_", options.confidence}, {"click_", options.click_where},
-      {"reason_", options.reason},         {"collected_", collects_more(options)}};
+      {"recruiting_", options.recruiting},
+      {"questionnaire_", options.questionnaires},
+      {"screen_", options.screen},
+      {"graded_", options.graded},
+      {"confidence_", options.confidence},
+      {"click_", options.click_where},
+      {"reason_", options.reason},
+      {"collected_", collects_more(options)},
+      {"language_", options.languages},
+      {"responsible_controller", !options.controller.empty()},
+      {"responsible_contact", !options.contact.empty()},
+      {"responsible_version", !options.consent_version.empty()}};
   for (const auto& [beginning, is_on] : parts) {
     if (key.starts_with(beginning)) return is_on;
   }
@@ -43,6 +51,17 @@ void tell_what_is_kept(const json& own, const TextOptions& options, Texts& texts
   }
   if (options.screen) texts["information_rights"] += "\n\n" + texts.at("screen_rights");
   if (options.recruiting) texts["information_rights"] += "\n\n" + texts.at("recruiting_rights");
+  const std::pair<const char*, std::string> responsible[] = {
+      {"responsible_controller", options.controller},
+      {"responsible_contact", options.contact},
+      {"responsible_version", options.consent_version}};
+  for (const auto& [key, name] : responsible) {
+    if (name.empty()) continue;
+    std::string text = texts.at(key);
+    const std::size_t slot = text.find("{name}");
+    text = slot == std::string::npos ? text + " " + name : text.replace(slot, 6, name);
+    texts["information_rights"] += "\n\n" + text;
+  }
 }
 
 }  // namespace
@@ -54,8 +73,8 @@ Texts delivered_texts(const std::string& language) {
 
 // Texts of a language that is not delivered must be complete: half a translation is worse than
 // none.
-Texts read_texts(const json& document, const std::string& file, const std::string& language,
-                 const TextOptions& options) {
+Texts read_texts(const json& own, const std::string& file, const std::string& pointer,
+                 const std::string& language, const TextOptions& options) {
   Texts texts = delivered_texts(language);
   const Texts english = delivered_texts("en");
   std::vector<std::string> known;
@@ -63,8 +82,7 @@ Texts read_texts(const json& document, const std::string& file, const std::strin
   for (const auto& [key, text] : english) {
     known.push_back(key);
   }
-  const json own = document.contains("texts") ? document["texts"] : json::object();
-  JsonObject object(own, file, "/texts");
+  JsonObject object(own, file, pointer);
   object.expect_only(known, key_cure);
   for (const std::string& key : object.all_keys()) {
     texts[key] = object.text(key, longest_text);
@@ -75,7 +93,7 @@ Texts read_texts(const json& document, const std::string& file, const std::strin
   std::erase_if(texts, [&](const auto& text) { return !is_used(text.first, options); });
   for (const std::string& key : known) {
     if (is_used(key, options) && !texts.contains(key)) {
-      throw InputError(file + ": /texts",
+      throw InputError(file + ": " + pointer,
                        fmt::format("no texts are delivered in the language `{}`, so all must be "
                                    "given; `{}` is missing (English: \"{}\")",
                                    language, key, english.at(key)));

@@ -12,16 +12,19 @@ namespace pinchlab::study {
 struct TextOptions {
   bool recruiting = false, questionnaires = false, screen = false;
   bool graded = false, confidence = false, click_where = false, reason = false;
+  bool languages = false;                            ///< that participants choose from
+  std::string controller, contact, consent_version;  ///< what the information names; or nothing
 };
 
 /// All delivered texts of a language, or nothing if there are none.
 std::map<std::string, std::string> delivered_texts(const std::string& language);
 
-/// The texts of a study. `document` is the configuration, whose `texts` replace delivered ones;
-/// texts of options that are not used are left out, so that they change nothing. Throws InputError,
-/// also where a language that is not delivered lacks a text.
-std::map<std::string, std::string> read_texts(const nlohmann::json& document,
-                                              const std::string& file, const std::string& language,
+/// The texts of a study. `own` are the configuration's, from `pointer` in `file`, which replace
+/// delivered ones; texts of options that are not used are left out, so that they change nothing.
+/// Throws InputError, also where a language that is not delivered lacks a text.
+std::map<std::string, std::string> read_texts(const nlohmann::json& own, const std::string& file,
+                                              const std::string& pointer,
+                                              const std::string& language,
                                               const TextOptions& options);
 
 }  // namespace pinchlab::study

@@ -25,7 +25,7 @@ constexpr double R = pulley_radius + half_width;        // m, to the cable's cen
 
 /// I/R^2 (kg) of a disc that carries a cable.
 double pulley_share(const Body& pulley) {
-  return disc_inertia(pulley) / (R * R);
+  return inertia_of(pulley) / (R * R);
 }
 
 /// Fills `exact` with what `place` says of the time (s) and the body's index.

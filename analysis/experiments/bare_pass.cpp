@@ -18,7 +18,7 @@ BarePass::BarePass(const Scene& scene, const World& world) : step_length(world.s
       body.position = world.position[b];
       body.velocity = world.velocity[b];
       body.angular_velocity = world.angular_velocity[b];
-      body.inverse_inertia = 1.0 / disc_inertia(given);
+      body.inverse_inertia = 1.0 / inertia_of(given);
       if (given.kind == BodyKind::free) body.inverse_mass = 1.0 / given.mass;
     }
     bodies.push_back(body);

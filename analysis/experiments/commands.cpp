@@ -15,6 +15,7 @@
 #include "analysis/experiments/pinch_detection.h"
 #include "analysis/experiments/population.h"
 #include "analysis/experiments/render_cost.h"
+#include "analysis/experiments/shapes.h"
 #include "analysis/experiments/stability/stability.h"
 #include "analysis/experiments/stress.h"
 #include "demos/command_line.h"
@@ -40,6 +41,7 @@ constexpr Experiment experiments[] = {
     {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
     {"convergence", "How motion through events converges, with events at their time and without",
      run_convergence},
+    {"shapes", "Corners, drums that fill and cables with mass against known solutions", run_shapes},
     {"stability", "How far each method holds, and how it fails beyond", run_stability},
 };
 

@@ -29,7 +29,7 @@ double kinetic_energy(const Scene& scene, const World& world) {  // J
     const Body& body = scene.bodies[b];
     if (body.kind == BodyKind::fixed) continue;
     const double spin = world.angular_velocity[b];
-    energy += 0.5 * disc_inertia(body) * spin * spin;
+    energy += 0.5 * inertia_of(body) * spin * spin;
     if (can_move(body)) energy += 0.5 * body.mass * world.velocity[b].squaredNorm();
   }
   return energy;

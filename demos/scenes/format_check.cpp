@@ -81,6 +81,30 @@ void check_vector(const json& value, const KeyFormat& key, const std::string& pl
   }
 }
 
+bool has_wanted_size(const json& value, const KeyFormat& key, const std::string& place,
+                     Problems& problems) {
+  if (!value.is_array()) {
+    problems.push_back({place, fmt::format("must be a list, not {}", type_name(value))});
+    return false;
+  }
+  const auto size = static_cast<double>(value.size());
+  if (size >= key.low && size <= key.high) return true;
+  problems.push_back(
+      {place, fmt::format("must have {} to {} entries, not {}", key.low, key.high, value.size())});
+  return false;
+}
+
+void check_points(const json& value, const KeyFormat& key, const std::string& place,
+                  Problems& problems) {
+  if (!has_wanted_size(value, key, place, problems)) return;
+  KeyFormat point;
+  point.low = -most_coordinate;
+  point.high = most_coordinate;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    check_vector(value[i], point, fmt::format("{}/{}", place, i), problems);
+  }
+}
+
 void check_text(const json& value, const KeyFormat& key, const std::string& place,
                 Problems& problems) {
   if (!value.is_string()) {
@@ -119,15 +143,7 @@ void check_choice(const json& value, const KeyFormat& key, const std::string& pl
 
 void check_list(const json& value, const KeyFormat& key, const std::string& place,
                 Problems& problems) {
-  if (!value.is_array()) {
-    problems.push_back({place, fmt::format("must be a list, not {}", type_name(value))});
-    return;
-  }
-  if (static_cast<double>(value.size()) < key.low || static_cast<double>(value.size()) > key.high) {
-    problems.push_back({place, fmt::format("must have {} to {} entries, not {}", key.low, key.high,
-                                           value.size())});
-    return;
-  }
+  if (!has_wanted_size(value, key, place, problems)) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
     check_format(value[i], *key.child, fmt::format("{}/{}", place, i), problems);
   }
@@ -143,6 +159,8 @@ void check_value(const json& value, const KeyFormat& key, const std::string& pla
       return value == "no_slip" ? void() : check_number(value, key, place, problems);
     case KeyType::vector:
       return check_vector(value, key, place, problems);
+    case KeyType::points:
+      return check_points(value, key, place, problems);
     case KeyType::text:
     case KeyType::name:
       return check_text(value, key, place, problems);

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 #include "demos/scenes/scene_format.h"
 
@@ -87,13 +89,23 @@ Player::Player(const SceneFile& file, const Scene& scene, const Configuration& c
       world_(start_world(scene, file.path, configuration)),
       promises_(scene_, world_) {}
 
-void Player::give_up_after(std::optional<double> seconds) {
+std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds) {
   using std::chrono::steady_clock;
-  deadline_.reset();
-  if (!seconds) return;
-  time_limit_ = *seconds;
-  deadline_ = steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
-                                        std::chrono::duration<double>(*seconds));
+  if (!seconds) return [](const World&) {};
+  return [path = file.path.string(), limit = *seconds, start = steady_clock::now(),
+          known = false](const World& world) mutable {
+    const auto now = steady_clock::now();
+    if (std::exchange(known, true) && world.step == 1) start = now;
+    if (std::chrono::duration<double>(now - start).count() <= limit) return;
+    throw std::runtime_error(fmt::format(
+        "{}: method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
+        "steps a frame or fewer bodies are faster",
+        path, to_string(world.configuration), world.time(), world.step, limit));
+  };
+}
+
+void Player::give_up_after(std::optional<double> seconds) {
+  check_time_ = time_limit(file_, seconds);
 }
 
 void Player::advance_to(int frame) {
@@ -107,13 +119,7 @@ void Player::advance_to_step(std::int64_t wanted) {
     }
     promises_.note(scene_, world_);
     if (on_step_) on_step_();
-    if (deadline_ && std::chrono::steady_clock::now() > *deadline_) {
-      throw std::runtime_error(fmt::format(
-          "{}: method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
-          "steps a frame or fewer bodies are faster",
-          file_.path.string(), to_string(world_.configuration), world_.time(), world_.step,
-          time_limit_));
-    }
+    if (check_time_) check_time_(world_);
   }
 }
 

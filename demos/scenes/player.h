@@ -2,7 +2,6 @@
 #pragma once
 // A scene under one method, frame by frame: frame i is step i * steps_per_frame, frame 0 the start.
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -38,6 +37,11 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
 void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines);
 /// What people call a way of simulating: "pinch joints", "cable joints".
 const char* in_words(const Configuration& configuration);
+
+/// What, called after each step of a simulation of `file`, throws std::runtime_error once its steps
+/// have taken more than `seconds`, from now on or from another simulation's first step; without
+/// `seconds` nothing.
+std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds);
 
 class Player {
  public:
@@ -79,8 +83,7 @@ class Player {
   Promises promises_;
   std::int64_t step_ = 0;
   std::function<void()> on_step_;
-  std::optional<std::chrono::steady_clock::time_point> deadline_;
-  double time_limit_ = infinity;  // s, what the deadline came from
+  std::function<void(const World&)> check_time_;
 };
 
 }  // namespace pinchlab

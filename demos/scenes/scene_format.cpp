@@ -27,8 +27,11 @@ const ObjectFormat body_format = {
     "body",
     {{"name", name, required, 1, 64},
      {"kind", choice, required, 0, 0, {"free", "rail", "fixed_axle", "fixed"}},
-     {"radius_m", number, required, 1e-6, 1e4},
+     {"radius_m", number, optional, 1e-6, 1e4},
+     {"corners_m", points, optional, 3, 64},
+     {"corner_radius_m", number, optional, 0, 1e4},
      {"mass_kg", number, optional, 1e-9, 1e12},
+     {"density_kg_m2", number, optional, 1e-12, 1e12},
      {"inertia_kg_m2", number, optional, 1e-18, 1e20},
      {"position_m", vector, required, -1e6, 1e6},
      {"angle_rad", number, optional, -1e6, 1e6},
@@ -50,7 +53,8 @@ const ObjectFormat attachment_format = {"attachment",
                                         {{"world_m", vector, optional, -1e6, 1e6},
                                          {"body", name, optional, 1, 64},
                                          {"point_m", vector, optional, -1e4, 1e4},
-                                         {"rim_angle_rad", number, optional, -1e6, 1e6}}};
+                                         {"rim_angle_rad", number, optional, -1e6, 1e6},
+                                         {"layers", boolean, optional}}};
 
 const ObjectFormat wrap_format = {
     "wrap",
@@ -69,6 +73,10 @@ const ObjectFormat cable_format = {"cable",
                                     {"axial_stiffness_n", number, optional, 1e-3, 1e15},
                                     {"squeeze", number, optional, 0, 1},
                                     {"grip", number, optional, 0, 1},
+                                    {"mass_per_metre_kg", number, optional, 1e-9, 1e9},
+                                    {"nodes", integer, optional, 1, 1000},
+                                    {"contact_friction", number, optional, 0, 100},
+                                    {"linear_drag_per_s", number, optional, 0, 1e4},
                                     {"look", object, optional, 0, 0, {}, &cable_look_format}}};
 
 const ObjectFormat wall_format = {"wall",

@@ -12,6 +12,7 @@ enum class KeyType {
   number,   // low..high
   integer,  // low..high
   vector,   // [x, y], each low..high
+  points,   // low..high entries, each [x, y] of -most_coordinate..most_coordinate
   text,     // low..high characters
   name,     // text that can stand in a CSV cell and be referred to
   boolean,
@@ -22,6 +23,8 @@ enum class KeyType {
   object_or_word,  // `child`, or one of `choices`
   list,            // low..high entries, each a `child`
 };
+
+constexpr double most_coordinate = 1e4;  // m, of KeyType::points
 
 struct ObjectFormat;
 

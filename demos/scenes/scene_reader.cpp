@@ -10,39 +10,19 @@
 
 #include "base/at.h"
 #include "base/did_you_mean.h"
-#include "demos/scenes/format_check.h"
+#include "demos/scenes/body_reader.h"
+#include "demos/scenes/json_values.h"
+#include "demos/scenes/look_reader.h"
+#include "demos/scenes/scene_format.h"
 #include "sim/configuration.h"
+#include "sim/nodes.h"
+#include "sim/outline.h"
+#include "sim/scene_error.h"
 
 namespace pinchlab {
 namespace {
 
 using nlohmann::json;
-
-Vec2 vector_of(const json& value) {
-  return {value[0].get<double>(), value[1].get<double>()};
-}
-
-// Optional keys: what the file does not say keeps the default that the structure has.
-void take(const json& from, const char* key, double& to) {
-  if (from.contains(key)) {
-    to = from[key].get<double>();
-  }
-}
-void take(const json& from, const char* key, std::optional<double>& to) {
-  if (from.contains(key)) {
-    to = from[key].get<double>();
-  }
-}
-void take(const json& from, const char* key, int& to) {
-  if (from.contains(key)) {
-    to = static_cast<int>(from[key].get<double>());  // 60.0 is a whole number too
-  }
-}
-void take(const json& from, const char* key, Vec2& to) {
-  if (from.contains(key)) {
-    to = vector_of(from[key]);
-  }
-}
 
 // Turns JSON of the right form into a Scene and collects what does not go together.
 class Reader {
@@ -55,15 +35,13 @@ class Reader {
     problems_.push_back({place, std::move(message)});
   }
   void refuse_keys(const json& from, const std::string& place,
-                   std::initializer_list<const char*> keys, const std::string& why);
+                   std::initializer_list<const char*> keys, const std::string& why) {
+    pinchlab::refuse_keys(from, place, keys, why, problems_);
+  }
   void claim_name(std::map<std::string, int>& names, const std::string& name, int index,
                   const char* list);
   int body_index(const json& name, const std::string& place);
 
-  Body read_body(const json& from, const std::string& place);
-  void check_kind(const json& from, const std::string& place);
-  void read_rail(const json& from, Body& body, const std::string& place);
-  void read_motor(const json& from, Body& body, const std::string& place);
   void check_grip(const json& cables, const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
                              double half_width);
@@ -72,19 +50,11 @@ class Reader {
   Wall read_wall(const json& from, const std::string& place);
   View read_view(const json& from);
   void read_timing(const json& from, SceneContent& to);
+  void spread(SceneContent& to);
 
   std::vector<SceneProblem>& problems_;
   std::map<std::string, int> body_names_, cable_names_;
 };
-
-void Reader::refuse_keys(const json& from, const std::string& place,
-                         std::initializer_list<const char*> keys, const std::string& why) {
-  for (const char* key : keys) {
-    if (from.contains(key)) {
-      problem(place + "/" + key, fmt::format("has no effect on {}; leave it out", why));
-    }
-  }
-}
 
 void Reader::claim_name(std::map<std::string, int>& names, const std::string& name, int index,
                         const char* list) {
@@ -110,124 +80,6 @@ int Reader::body_index(const json& name, const std::string& place) {
   return 0;
 }
 
-// A key that would be read and then ignored is a mistake of the author's.
-void Reader::check_kind(const json& from, const std::string& place) {
-  const std::string& kind = from["kind"].get_ref<const std::string&>();
-  if (kind == "fixed") {
-    refuse_keys(from, place,
-                {"mass_kg", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s",
-                 "driven_angular_velocity_rad_s", "torque_n_m", "motor", "torque_limit_n_m",
-                 "linear_drag_per_s", "angular_drag_per_s"},
-                "a fixed body");
-  } else if (!from.contains("mass_kg")) {
-    problem(place, fmt::format("mass_kg is missing (a {} body needs one)", kind));
-  }
-  if (kind == "fixed_axle") {
-    refuse_keys(from, place, {"velocity_m_s", "linear_drag_per_s"}, "a fixed_axle body");
-  }
-  if (kind != "rail") {
-    refuse_keys(from, place, {"rail_axis"}, "a body that is not on a rail");
-  }
-  if (kind != "fixed" && from.contains("driven_angular_velocity_rad_s")) {
-    refuse_keys(from, place, {"torque_n_m", "motor", "angular_drag_per_s"},
-                "a body whose angular velocity is driven");
-  }
-}
-
-void Reader::read_rail(const json& from, Body& body, const std::string& place) {
-  if (!from.contains("rail_axis")) {
-    problem(place, "rail_axis is missing (a rail body moves along it: [0, 1] is up and down)");
-    return;
-  }
-  const Vec2 axis = vector_of(from["rail_axis"]);
-  if (axis.norm() < 1e-6) {
-    problem(place + "/rail_axis", "must have a direction: its length is zero or nearly so");
-    return;
-  }
-  body.rail_axis = axis.normalized();
-  const double across =
-      body.rail_axis.x() * body.velocity.y() - body.rail_axis.y() * body.velocity.x();
-  if (std::abs(across) > 1e-9 * body.velocity.norm()) {
-    problem(place + "/velocity_m_s", "must point along rail_axis");
-  }
-}
-
-// A table of angular velocities makes the body a driven one, a table of torques does not.
-void Reader::read_motor(const json& from, Body& body, const std::string& place) {
-  const json& points = from["motor"];
-  const bool is_speed = points[0].contains("angular_velocity_rad_s");
-  const char* wanted = is_speed ? "angular_velocity_rad_s" : "torque_n_m";
-  const char* other = is_speed ? "torque_n_m" : "angular_velocity_rad_s";
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const json& point = points[i];
-    const std::string at = fmt::format("{}/motor/{}", place, i);
-    if (point.contains(other) || !point.contains(wanted)) {
-      problem(at, "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all");
-      return;
-    }
-    body.motor.push_back({point["time_s"].get<double>(), point[wanted].get<double>()});
-    if (i > 0 && body.motor[i].time <= body.motor[i - 1].time) {
-      problem(at + "/time_s", fmt::format("must be after the one before, {}; a jump takes two "
-                                          "points a little apart",
-                                          body.motor[i - 1].time));
-      return;
-    }
-  }
-  if (is_speed) {
-    refuse_keys(from, place, {"torque_n_m", "angular_drag_per_s"},
-                "a body whose angular velocity is driven");
-    body.driven_angular_velocity = body.motor.front().value;
-  } else {
-    refuse_keys(from, place, {"torque_n_m"}, "a body whose motor has a table of torques");
-  }
-}
-
-Body Reader::read_body(const json& from, const std::string& place) {
-  Body body;
-  body.name = from["name"].get<std::string>();
-  if (body.name == "world") {
-    problem(place + "/name",
-            "\"world\" is what tables call the fixed surroundings; choose another name");
-  }
-  const std::map<std::string, BodyKind> kinds = {{"free", BodyKind::free},
-                                                 {"rail", BodyKind::rail},
-                                                 {"fixed_axle", BodyKind::fixed_axle},
-                                                 {"fixed", BodyKind::fixed}};
-  body.kind = kinds.at(from["kind"].get<std::string>());
-  take(from, "radius_m", body.radius);
-  take(from, "mass_kg", body.mass);
-  take(from, "inertia_kg_m2", body.inertia);
-  take(from, "position_m", body.position);
-  take(from, "angle_rad", body.angle);
-  take(from, "velocity_m_s", body.velocity);
-  take(from, "angular_velocity_rad_s", body.angular_velocity);
-  take(from, "driven_angular_velocity_rad_s", body.driven_angular_velocity);
-  take(from, "torque_limit_n_m", body.torque_limit);
-  take(from, "torque_n_m", body.torque);
-  take(from, "linear_drag_per_s", body.linear_drag);
-  take(from, "angular_drag_per_s", body.angular_drag);
-  if (from.contains("cable_friction") && from["cable_friction"].is_number()) {
-    body.cable_friction = from["cable_friction"].get<double>();
-  }
-  take(from, "contact_friction", body.contact_friction);
-  take(from, "restitution", body.restitution);
-  check_kind(from, place);
-  if (body.kind == BodyKind::rail) {
-    read_rail(from, body, place);
-  }
-  if (from.contains("motor") && body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
-    read_motor(from, body, place);
-  }
-  if (body.driven_angular_velocity && !from.contains("torque_limit_n_m")) {
-    refuse_keys(from, place, {"inertia_kg_m2", "angular_velocity_rad_s"},
-                "a motor without torque_limit_n_m");
-  } else if (!body.driven_angular_velocity && body.kind != BodyKind::fixed) {
-    refuse_keys(from, place, {"torque_limit_n_m"},
-                "a body without driven_angular_velocity_rad_s or a motor of angular velocities");
-  }
-  return body;
-}
-
 Attachment Reader::read_attachment(const json& from, const std::string& place, const Scene& scene,
                                    double half_width) {
   Attachment attachment;
@@ -237,7 +89,7 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
   }
   if (from.contains("world_m")) {
     attachment.point = vector_of(from["world_m"]);
-    for (const char* key : {"point_m", "rim_angle_rad"}) {
+    for (const char* key : {"point_m", "rim_angle_rad", "layers"}) {
       if (from.contains(key)) {
         problem(place + "/" + key, "belongs to body, not to world_m; leave one out");
       }
@@ -245,10 +97,17 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
     return attachment;
   }
   attachment.body = body_index(from["body"], place + "/body");
+  attachment.layers = from.value("layers", false);
+  if (from.contains("layers") && !from.contains("rim_angle_rad")) {
+    problem(place + "/layers", "belongs to an end on a disc's rim; give rim_angle_rad too");
+  }
   take(from, "point_m", attachment.point);
-  const double radius = scene.bodies[static_cast<std::size_t>(attachment.body)].radius;
+  const Body& body = at(scene.bodies, attachment.body);
+  const double radius = body.radius;
   if (from.contains("rim_angle_rad")) {
-    if (from.contains("point_m")) {
+    if (is_polygon(body)) {
+      problem(place + "/rim_angle_rad", "belongs to a disc; say where on the polygon with point_m");
+    } else if (from.contains("point_m")) {
       problem(place + "/rim_angle_rad",
               "and point_m both say where the end is fixed; leave one out");
     }
@@ -256,7 +115,16 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
     attachment.point = (radius + half_width) * Vec2(std::cos(angle), std::sin(angle));
     return attachment;
   }
-  if (attachment.point.norm() > radius * (1.0 + 1e-9)) {
+  if (is_polygon(body)) {
+    // On its surface a cable lies half its width off, so that it can wind up there.
+    const double distance =
+        outside_of(body.corners, attachment.point).distance - body.corner_radius;
+    if (distance > half_width * (1.0 + 1e-9)) {
+      problem(place + "/point_m",
+              fmt::format("lies {} m outside of the body; at most half_width_m, {}, is possible",
+                          distance, half_width));
+    }
+  } else if (attachment.point.norm() > radius * (1.0 + 1e-9)) {
     problem(place + "/point_m",
             fmt::format("lies {} m from the body's centre, outside of its radius of {} m",
                         attachment.point.norm(), radius));
@@ -299,6 +167,16 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "axial_stiffness_n", cable.axial_stiffness);
   take(from, "squeeze", cable.squeeze);
   take(from, "grip", cable.grip);
+  take(from, "mass_per_metre_kg", cable.mass_per_metre);
+  take(from, "nodes", cable.nodes);
+  take(from, "contact_friction", cable.contact_friction);
+  take(from, "linear_drag_per_s", cable.linear_drag);
+  if (!from.contains("mass_per_metre_kg")) {
+    refuse_keys(from, place, {"nodes", "contact_friction", "linear_drag_per_s"},
+                "a cable without mass_per_metre_kg");
+  } else {
+    refuse_keys(from, place, {"squeeze", "grip"}, "a cable with mass_per_metre_kg");
+  }
   cable.closed = from.value("closed", false);
   for (const char* end : {"start", "end"}) {
     if (cable.closed && from.contains(end)) {
@@ -354,31 +232,6 @@ Wall Reader::read_wall(const json& from, const std::string& place) {
   return wall;
 }
 
-BodyLook read_body_look(const json& body) {
-  BodyLook look;
-  if (!body.contains("look")) return look;
-  const json& from = body["look"];
-  if (from.contains("colour")) look.colour = colour_from(from["colour"].get<std::string>());
-  if (from.contains("label")) look.label = from["label"].get<std::string>();
-  const std::map<std::string, LabelSide> sides = {{"automatic", LabelSide::automatic},
-                                                  {"below", LabelSide::below},
-                                                  {"above", LabelSide::above},
-                                                  {"left", LabelSide::left},
-                                                  {"right", LabelSide::right}};
-  look.side = sides.at(from.value("label_side", "automatic"));
-  look.marks = from.value("marks", true);
-  return look;
-}
-
-CableLook read_cable_look(const json& cable) {
-  CableLook look;
-  if (!cable.contains("look")) return look;
-  const json& from = cable["look"];
-  if (from.contains("colour")) look.colour = colour_from(from["colour"].get<std::string>());
-  look.marks = from.value("marks", true);
-  return look;
-}
-
 View Reader::read_view(const json& from) {
   View view;
   take(from, "low_m", view.low);
@@ -422,13 +275,50 @@ void Reader::read_timing(const json& from, SceneContent& to) {
   }
 }
 
+// Nodes have no names in the file, and look like their cable.
+void Reader::spread(SceneContent& to) {
+  if (!problems_.empty()) return;
+  constexpr int most_nodes = 10'000;
+  int nodes = 0;
+  for (std::size_t c = 0; c < to.scene.cables.size(); ++c) {
+    const Cable& cable = to.scene.cables[c];
+    if (cable.mass_per_metre > 0.0) nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
+    if (nodes <= most_nodes) continue;
+    problem(
+        fmt::format("/cables/{}", c),
+        fmt::format("cables with mass up to this one may have more than {} nodes; give them fewer "
+                    "with nodes",
+                    most_nodes));
+    return;
+  }
+  try {
+    for (const NodedCable& made : spread_nodes(to.scene)) {
+      for (int i = 0; i < made.bodies; ++i) {
+        const std::string& name = at(to.scene.bodies, made.first_body + i).name;
+        if (body_names_.contains(name)) {
+          problem(fmt::format("/bodies/{}/name", body_names_.at(name)),
+                  fmt::format("\"{}\" is the name of a node of a cable; choose another", name));
+        }
+        BodyLook look;
+        look.label = "";
+        look.marks = false;
+        to.look.bodies.push_back(look);
+      }
+      to.look.cables.insert(to.look.cables.end(), index(made.pieces),
+                            at(to.look.cables, made.cable));
+    }
+  } catch (const SceneError& error) {
+    problem(error.place, std::string(error.what()).substr(error.place.size() + 2));
+  }
+}
+
 SceneContent Reader::read(const json& file) {
   SceneContent to;
   Scene& scene = to.scene;
   scene.title = file["title"].get<std::string>();
   take(file, "gravity_m_s2", scene.gravity);
   for (std::size_t i = 0; i < file["bodies"].size(); ++i) {
-    scene.bodies.push_back(read_body(file["bodies"][i], fmt::format("/bodies/{}", i)));
+    scene.bodies.push_back(read_body(file["bodies"][i], fmt::format("/bodies/{}", i), problems_));
     claim_name(body_names_, scene.bodies[i].name, static_cast<int>(i), "bodies");
   }
   const json cables = file.value("cables", json::array());
@@ -446,6 +336,7 @@ SceneContent Reader::read(const json& file) {
   if (!to.look.fit_view) scene.view = read_view(file["view"]);
   for (const json& body : file["bodies"]) to.look.bodies.push_back(read_body_look(body));
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
+  spread(to);
   const auto baseline = configuration_from_string(file["baseline"]["method"].get<std::string>());
   scene.baseline = baseline.value().method;
   scene.baseline_reason = file["baseline"]["reason"].get<std::string>();

@@ -13,6 +13,8 @@ namespace pinchlab {
 
 namespace {
 
+constexpr double full_turn = 2.0 * std::numbers::pi;
+
 Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
@@ -121,7 +123,7 @@ class PathBuilder {
   }
 
   /// m of cable on link i.
-  double arc(std::size_t i) const { return cable_.links[i].radius * cable_.links[i].wrap; }
+  double arc(std::size_t i) const { return stored_length(cable_.links[i]); }
 
   /// The shape of every span, and from it where each link's arc begins and ends.
   void find_bounds() {
@@ -214,28 +216,78 @@ class PathBuilder {
     return way;
   }
 
+  /// All turns of a drum that fills, each outside of the one below.
+  void add_layers(std::size_t i) {
+    const Link& link = cable_.links[i];
+    const Layers& layers = link.layers;
+    const Bounds& b = bounds_[i];
+    const Vec2 centre = link_centre(world_, link);
+    const double sweep = b.head_angle - b.tail_angle, turned = std::abs(sweep);
+    const int pieces = std::max(1, static_cast<int>(std::ceil(turned / most_turn)));
+    for (int k = 0; k <= pieces; ++k) {
+      const double share = static_cast<double>(k) / pieces;
+      const double below = layers.way > 0 ? share * turned : (1.0 - share) * turned;
+      const double wound = layers.length(below), radius = layers.radius(below);
+      const Vec2 e = unit_vector(b.tail_angle + share * sweep);
+      const double slope = link.orientation * layers.way * layers.growth / radius;
+      add_point(tangent_point(centre, link.orientation * radius, e),
+                (e - slope * left(e)).normalized(),
+                layers.way > 0 ? b.tail_material + wound : b.head_material - wound);
+    }
+  }
+
+  /// rad, by which the cable turns on a link.
+  double sweep(std::size_t i) const {
+    return std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
+  }
+
+  /// Share of the arc on link i that later turns on the same body hide: the last full turn shows. A
+  /// body that presses on the turns parts them.
+  double hidden_share(std::size_t i) const {
+    double turned = sweep(i);
+    const auto& links = cable_.links;
+    for (std::size_t k = i + 2; !cable_.closed && k < links.size(); k += 2) {
+      if (!links[k - 1].pinch_middle || links[k].body != links[i].body) break;
+      turned += sweep(k);
+    }
+    if (turned <= full_turn) return 0.0;
+    return std::min(1.0, (turned - full_turn) / sweep(i));
+  }
+
   void add_arc(std::size_t i) {
     const Link& link = cable_.links[i];
     if (link.orientation == 0 || link.pinch_middle) return;
+    if (link.layers.way != 0) return add_layers(i);
     const Bounds& b = bounds_[i];
-    const Vec2& centre = world_.position[static_cast<std::size_t>(link.body)];
-    const double sweep = b.head_angle - b.tail_angle;
+    const Vec2 centre = link_centre(world_, link);
+    const double turned = b.head_angle - b.tail_angle;
+    const double hidden = hidden_share(i);
+    if (hidden > 0.0 && points_.size() > begins_.back()) begins_.push_back(points_.size());
+    if (hidden >= 1.0) return;
     // Where an arc gives way it is no circle: finer pieces come close enough.
     const GiveWay way = give_way(i);
-    const double most = way.none() ? most_turn : 0.25 * most_turn;
-    // Of several turns the last one hides the others.
-    constexpr double full_turn = 2.0 * std::numbers::pi;
-    const double hidden = std::max(0.0, 1.0 - full_turn / std::max(std::abs(sweep), full_turn));
-    if (hidden > 0.0 && points_.size() > begins_.back()) begins_.push_back(points_.size());
-    const int pieces =
-        std::max(1, static_cast<int>(std::ceil((1.0 - hidden) * std::abs(sweep) / most)));
-    for (int k = 0; k <= pieces; ++k) {
-      const double share = hidden + (1.0 - hidden) * k / pieces, s = share * way.length;
-      const Vec2 e = unit_vector(b.tail_angle + share * sweep);
+    const int pieces_a_turn = way.none() ? 13 : 52;
+    const double piece = full_turn / pieces_a_turn;
+    static_assert(full_turn / 13 * 1.02 < most_turn);
+    const auto add = [&](double angle, const Vec2& e) {
+      const double share = turned != 0.0 ? (angle - b.tail_angle) / turned : 0.0;
+      const double s = share * way.length;
       add_point(tangent_point(centre, link.signed_radius(), e) + way.shift(s),
                 (e + way.slope(s)).normalized(),
                 b.tail_material + share * (b.head_material - b.tail_material));
+    };
+    // Pieces begin at the same places from frame to frame, whatever the arc's ends do: what stands
+    // still need not be drawn anew.
+    const double from = b.tail_angle + hidden * turned;
+    add(from, unit_vector(from));
+    const double sense = std::copysign(1.0, turned), least = 0.02;  // of a piece
+    const double first = std::floor(sense * from / piece + least) + 1.0;
+    const double last = std::ceil(sense * b.head_angle / piece - least) - 1.0;
+    for (double k = first; k <= last; ++k) {
+      const double place = sense * std::remainder(k, pieces_a_turn);
+      add(sense * k * piece, unit_vector(place * piece));
     }
+    add(b.head_angle, unit_vector(b.head_angle));
   }
 
   void add_span(std::size_t i) {

@@ -10,6 +10,7 @@
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/outline.h"
 
 namespace pinchlab {
 
@@ -108,7 +109,55 @@ class Composer {
   void add_shadows() {
     const Vec2 shift = scenery_.unit() * Vec2(0.5, -0.5);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      picture_.add(disc(world_.position[i] + shift, scene_.bodies[i].radius, theme_.shadow));
+      const Body& body = scene_.bodies[i];
+      if (body.node) continue;
+      if (is_polygon(body)) {
+        add_patch(i, shift, -body.corner_radius, theme_.shadow);
+      } else {
+        picture_.add(disc(world_.position[i] + shift, body.radius, theme_.shadow));
+      }
+    }
+  }
+
+  bool is_node(const Link& link) const {
+    return link.body >= 0 && scene_.bodies[static_cast<std::size_t>(link.body)].node;
+  }
+
+  /// A cable with mass from its first piece on, in one strip that bends at the nodes.
+  void add_chain(std::size_t c, Strip& strip) {
+    strip.first = picture_.points.size();
+    double material = 0.0;
+    const std::size_t count = world_.cables.size();
+    // Pieces follow one another, the first one's successor after all cables that the scene had.
+    for (std::size_t piece = c; piece < count;) {
+      const CableState& cable = world_.cables[piece];
+      const Segment& segment = cable.segments[1];
+      if (piece != c) add_bend(picture_.points.back(), segment.direction);
+      picture_.points.push_back({segment.tail, segment.direction, material});
+      material += segment.length;
+      picture_.points.push_back({segment.head, segment.direction, material});
+      const Link& end = cable.links.back();
+      if (!is_node(end)) break;
+      const auto starts_there = [&end](const CableState& next) {
+        return next.rod && next.links.front().body == end.body;
+      };
+      piece = piece + 1 < count && starts_there(world_.cables[piece + 1])
+                  ? piece + 1
+                  : static_cast<std::size_t>(
+                        std::find_if(world_.cables.begin(), world_.cables.end(), starts_there) -
+                        world_.cables.begin());
+    }
+    strip.count = picture_.points.size() - strip.first;
+    picture_.add(strip);
+  }
+
+  /// A fan of points where a strip bends by more than two of them can.
+  void add_bend(const StripPoint from, const Vec2& to) {
+    const double bend = std::atan2(cross(from.tangent, to), from.tangent.dot(to));
+    const int pieces = static_cast<int>(std::ceil(std::abs(bend) / most_turn));
+    for (int k = 1; k < pieces; ++k) {
+      picture_.points.push_back(
+          {from.position, turned(from.tangent, bend * k / pieces), from.material});
     }
   }
 
@@ -123,6 +172,10 @@ class Composer {
     strip.fill = look.colour.value_or(theme_.cable.fill);
     strip.edge = look.colour ? shade(*look.colour) : theme_.cable.edge;
     strip.mark = look.colour ? shade(*look.colour) : theme_.cable_mark;
+    if (cable.rod) {
+      if (!is_node(cable.links.front())) add_chain(c, strip);
+      return;
+    }
     const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
     std::vector<std::size_t> begins =
         append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
@@ -152,13 +205,71 @@ class Composer {
     return paint;
   }
 
+  /// Where corner k of a polygon is, with all sides moved inwards by `inset` (m).
+  Vec2 corner(std::size_t i, std::size_t k, double inset) const {
+    const std::vector<Vec2>& corners = scene_.bodies[i].corners;
+    const std::size_t count = corners.size();
+    const Vec2& here = corners[k % count];
+    const Vec2 before = (here - corners[(k + count - 1) % count]).normalized();
+    const Vec2 after = (corners[(k + 1) % count] - here).normalized();
+    const Vec2 inwards = (left(before) + left(after)) / (1.0 + before.dot(after));
+    return world_.position[i] + turned(here + inset * inwards, world_.angle[i]);
+  }
+
+  /// A patch whose sides lie `inset` (m) within those of the core of a polygon.
+  void add_patch(std::size_t i, const Vec2& shift, double inset, Colour colour) {
+    const std::size_t count = scene_.bodies[i].corners.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      picture_.corners.push_back(corner(i, k, inset) + shift);
+    }
+    picture_.add(Patch{picture_.corners.size() - count, count, colour});
+  }
+
+  /// A polygon's band along its outline, which hides the sides of the patch that fills it.
+  void add_polygon(std::size_t i, double band, Colour fill, Colour edge) {
+    const double rounding = scene_.bodies[i].corner_radius, half = 0.5 * band;
+    const double inset = std::max(0.0, half - rounding), radius = std::max(0.0, rounding - half);
+    const std::size_t count = scene_.bodies[i].corners.size();
+    Strip outline;
+    outline.first = picture_.points.size();
+    outline.half_width = half;
+    outline.fill = edge;
+    Patch patch;
+    patch.first = picture_.corners.size();
+    patch.fill = fill;
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vec2 centre = corner(i, k, inset);
+      const Vec2 before = (centre - corner(i, k + count - 1, inset)).normalized();
+      const Vec2 after = (corner(i, k + 1, inset) - centre).normalized();
+      const double bend = std::atan2(cross(before, after), before.dot(after));
+      const int pieces = static_cast<int>(std::ceil(bend / most_turn));
+      for (int piece = 0; piece <= pieces; ++piece) {
+        const Vec2 e = turned(before, bend * piece / pieces);
+        picture_.points.push_back({centre - radius * left(e), e, 0.0});
+        if (piece == 0 || radius > 0.0) picture_.corners.push_back(picture_.points.back().position);
+      }
+    }
+    const StripPoint first = picture_.points[outline.first];
+    picture_.points.push_back(first);
+    outline.count = picture_.points.size() - outline.first;
+    patch.count = picture_.corners.size() - patch.first;
+    picture_.add(patch);
+    picture_.add(outline);
+  }
+
   void add_body(std::size_t i) {
     const Body& body = scene_.bodies[i];
+    if (body.node) return;
     const Vec2& centre = world_.position[i];
-    const double r = body.radius, angle = world_.angle[i];
+    const double r = inner_radius(body), angle = world_.angle[i];
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
     const auto [fill, edge] = paint_of(i);
-    picture_.add(Stroke{centre, centre, r, std::min(0.09 * r, 4.0 * scenery_.line()), fill, edge});
+    const double band = std::min(0.09 * r, 4.0 * scenery_.line());
+    if (is_polygon(body)) {
+      add_polygon(i, band, fill, edge);
+    } else {
+      picture_.add(Stroke{centre, centre, r, band, fill, edge});
+    }
     if (held) {
       // A bracket from the axle down to the ground, inside of the rim where no cable runs.
       const Vec2 foot = centre + Vec2(0.0, -0.6 * r), half(0.34 * r, 0.0);
@@ -188,6 +299,7 @@ class Composer {
   void add_fastenings(const CableState& cable) {
     if (cable.closed || cable.links.size() < 2) return;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
+      if (is_node(*link)) continue;
       if (link->body >= 0) {
         picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
       } else {

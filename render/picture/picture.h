@@ -51,6 +51,13 @@ struct Strip {
   Colour fill, edge, mark;
 };
 
+/// A convex polygon of corners[first .. first + count), without antialiasing: its sides are to lie
+/// under other shapes of the same colour, or of one that hides them.
+struct Patch {
+  std::size_t first = 0, count = 0;  // into Picture::corners
+  Colour fill;
+};
+
 /// One line of text, centred on a point.
 struct Label {
   Vec2 centre = Vec2::Zero();  // m
@@ -61,10 +68,10 @@ struct Label {
 
 /// The shapes in painter's order: later ones lie on top.
 struct Picture {
-  enum class Kind : std::uint8_t { stroke, strip, label };
+  enum class Kind : std::uint8_t { stroke, strip, patch, label };
   struct Item {
     Kind kind;
-    std::size_t index;  // into strokes, strips or labels
+    std::size_t index;  // into strokes, strips, patches or labels
   };
 
   View view;  // m, fitted into the frame and centred, aspect kept
@@ -72,6 +79,8 @@ struct Picture {
   std::vector<Stroke> strokes;
   std::vector<StripPoint> points;
   std::vector<Strip> strips;
+  std::vector<Vec2> corners;  // m
+  std::vector<Patch> patches;
   std::vector<Label> labels;
   std::vector<Item> order;
 
@@ -83,6 +92,10 @@ struct Picture {
     order.push_back({Kind::strip, strips.size()});
     strips.push_back(strip);
   }
+  void add(const Patch& patch) {
+    order.push_back({Kind::patch, patches.size()});
+    patches.push_back(patch);
+  }
   void add(Label label) {
     order.push_back({Kind::label, labels.size()});
     labels.push_back(std::move(label));
@@ -92,6 +105,8 @@ struct Picture {
     strokes.clear();
     points.clear();
     strips.clear();
+    corners.clear();
+    patches.clear();
     labels.clear();
     order.clear();
   }

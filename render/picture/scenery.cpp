@@ -81,7 +81,7 @@ class Rehearsal {
  public:
   Rehearsal(const Scene& scene, Scenery& scenery) : scene_(scene), scenery_(scenery) {}
 
-  void play(const Configuration& configuration) {
+  void play(const Configuration& configuration, const OnStep& on_step) {
     World world = make_world(scene_, configuration);
     Workspace work;
     const int every = std::max(1, scene_.frame_count / most_snapshots);
@@ -89,6 +89,7 @@ class Rehearsal {
       look(world, frame % every == 0);
       for (int i = 0; i < scene_.steps_per_frame; ++i) {
         if (step(scene_, world, work) != StepStatus::ok) return;
+        if (on_step) on_step(world);
       }
     }
   }
@@ -119,6 +120,14 @@ void Rehearsal::look(const World& world, bool keep) {
     const double along = body.rail_axis.dot(world.position[i] - body.position);
     scenery_.travel[i].low = std::min(scenery_.travel[i].low, along);
     scenery_.travel[i].high = std::max(scenery_.travel[i].high, along);
+  }
+  for (const CableState& cable : world.cables) {
+    if (!cable.fills) continue;
+    for (const Link& link : cable.links) {
+      if (link.body < 0) continue;
+      double& fullest = scenery_.fullest[static_cast<std::size_t>(link.body)];
+      fullest = std::max(fullest, thickness_of_layers(link));
+    }
   }
   if (!keep) return;
   Snapshot snapshot;
@@ -282,6 +291,7 @@ std::vector<SceneryLabel> find_labels(const Scene& scene, const SceneLook& look)
   std::vector<SceneryLabel> labels;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
+    if (body.node) continue;
     std::string text = can_move(body) ? fmt::format("{:.4g} kg", body.mass) : "";
     if (!look.bodies.empty() && look.bodies[i].label) text = *look.bodies[i].label;
     if (!text.empty()) labels.push_back({i, text, Vec2::Zero()});
@@ -330,16 +340,18 @@ void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
 }  // namespace
 
 double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body) {
-  return scene.bodies[body].radius + widest_cable(scene) + 1.6 * scenery.unit();
+  return scene.bodies[body].radius + widest_cable(scene) + scenery.fullest[body] +
+         1.6 * scenery.unit();
 }
 
 Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
-                    std::span<const Configuration> configurations) {
+                    std::span<const Configuration> configurations, const OnStep& on_step) {
   Scenery scenery;
   scenery.theme = theme;
   scenery.look = look;
   scenery.view = scene.view;
   scenery.travel.resize(scene.bodies.size());
+  scenery.fullest.resize(scene.bodies.size());
   scenery.arrow_middle.assign(scene.bodies.size(), 0.5 * std::numbers::pi);
   scenery.labels = find_labels(scene, look);
   scenery.anchors = find_anchors(scene);
@@ -349,7 +361,7 @@ Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& them
                     });
   if (!asks) return scenery;
   Rehearsal rehearsal(scene, scenery);
-  for (const Configuration& configuration : configurations) rehearsal.play(configuration);
+  for (const Configuration& configuration : configurations) rehearsal.play(configuration, on_step);
   share_rails(scene, scenery.travel, scenery.unit());
   if (look.fit_view) rehearsal.fit_view();
   rehearsal.place_arrows();
@@ -358,9 +370,10 @@ Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& them
   return scenery;
 }
 
-Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme) {
+Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
+                    const OnStep& on_step) {
   const std::array<Configuration, 2> pair = {Method::pinch, scene.baseline};
-  return set_scenery(scene, look, theme, pair);
+  return set_scenery(scene, look, theme, pair, on_step);
 }
 
 }  // namespace pinchlab

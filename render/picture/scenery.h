@@ -4,12 +4,14 @@
 // where labels and arrows keep out of the way. Found by a rehearsal, so that both clips of a pair
 // have the same.
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "render/picture/look.h"
 #include "sim/configuration.h"
+#include "sim/world.h"
 
 namespace pinchlab {
 
@@ -39,6 +41,7 @@ struct Scenery {
   View view;
   std::vector<Travel> travel;        // one a body
   std::vector<double> arrow_middle;  // rad, one a body: where a motor's arrow stands
+  std::vector<double> fullest;       // m, one a body: how thick the layers on it get
   std::vector<SceneryLabel> labels;
   std::vector<Anchor> anchors;
 
@@ -48,16 +51,20 @@ struct Scenery {
   double text() const { return theme.text_height * unit(); }
 };
 
+using OnStep = std::function<void(const World& world)>;
+
 /// Plays the scene once under each configuration and sets the scenery for all of them. The scene is
 /// not played where nothing in it asks for it (no rail, no label, no motor, no fitted view). Where
-/// a value becomes not finite the rehearsal ends early. Throws as make_world.
+/// a value becomes not finite the rehearsal ends early. `on_step` is called after each step. Throws
+/// as make_world and on_step.
 Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
-                    std::span<const Configuration> configurations);
+                    std::span<const Configuration> configurations, const OnStep& on_step = {});
 
 /// m from a driven body's centre to its arrow, outside of its rim and of the cables round it.
 double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body);
 
 /// set_scenery for the pair that the scene asks for.
-Scenery set_scenery(const Scene& scene, const SceneLook& look = {}, const Theme& theme = {});
+Scenery set_scenery(const Scene& scene, const SceneLook& look = {}, const Theme& theme = {},
+                    const OnStep& on_step = {});
 
 }  // namespace pinchlab

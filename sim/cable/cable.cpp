@@ -2,9 +2,11 @@
 #include "sim/cable/cable.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/at.h"
 #include "sim/cable/tangent.h"
+#include "sim/outline.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -30,26 +32,97 @@ double alpha_head(const CableState& cable, std::size_t link) {
   return cable.segments[0].alpha + cable.turning;
 }
 
+namespace {
+
+/// Angle (rad) by which the drum is wound up to where its cable has the direction alpha.
+double turned_until(const Link& link, double alpha, double angle) {
+  return link.layers.way * (link.orientation * (alpha - angle) - link.layers.begins);
+}
+
+double material_in_layers(const Link& link, double alpha, double angle) {
+  return link.material + link.layers.way * link.layers.length(turned_until(link, alpha, angle));
+}
+
+/// Material coordinate at which the cable has the direction alpha on a link; `fills` is the cable's.
+template <bool fills>
+double material_at(const Link& link, double alpha, double angle) {
+  if (fills && link.layers.way != 0) return material_in_layers(link, alpha, angle);
+  return link.material + link.signed_radius() * (alpha - angle);
+}
+
+}  // namespace
+
 double tail_material(const CableState& cable, std::size_t i, double angle) {
-  const Link& link = cable.links[i];
-  return link.material + link.signed_radius() * (cable.segments[i].alpha - angle);
+  return material_at<true>(cable.links[i], cable.segments[i].alpha, angle);
 }
 
 double head_material(const CableState& cable, std::size_t i, double angle) {
+  return material_at<true>(cable.links[i], alpha_head(cable, i), angle);
+}
+
+void begin_layers(const World& world, CableState& cable, std::size_t i, int way) {
+  Link& link = cable.links[i];
+  const double alpha = way > 0 ? cable.segments[i].alpha : alpha_head(cable, i);
+  const double inner = at(world.bodies, link.body).radius + cable.half_width;
+  link.layers = {way, inner, cable.half_width / std::numbers::pi,
+                 link.orientation * (alpha - body_angle(world, link))};
+  cable.fills = true;
+}
+
+int way_of_layers(const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  return link.material + link.signed_radius() * (alpha_head(cable, i) - angle);
+  if (link.orientation == 0 || link.corner >= 0 || cable.closed) return 0;
+  const auto holds = [&link](const Link& end) {
+    return end.layers.way != 0 && end.orientation == 0 && end.body == link.body;
+  };
+  if (i > 0 && holds(cable.links[i - 1])) return 1;
+  return i + 1 < cable.links.size() && holds(cable.links[i + 1]) ? -1 : 0;
 }
 
 Vec2 offset_centre(const World& world, const Link& link) {
-  const double angle = at(world.angle, link.body);
-  const double c = std::cos(angle), s = std::sin(angle);
-  return at(world.position, link.body) +
-         Vec2(c * link.offset.x() - s * link.offset.y(), s * link.offset.x() + c * link.offset.y());
+  return at(world.position, link.body) + turned(link.offset, at(world.angle, link.body));
 }
 
+bool is_fastened_inside(const World& world, const CableState& cable, const Link& end) {
+  const BodyProperties& b = at(world.bodies, end.body);
+  const double margin = (rim_radius(b) + cable.half_width) * (1.0 - 1e-9);
+  if (is_polygon(b)) return outside_of(b.corners, end.offset).distance < margin;
+  return end.offset.norm() < margin;
+}
+
+namespace {
+
+/// The radius of a drum's outermost turn depends on the direction of the span that leaves it, which
+/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by w / (pi
+/// length) each time.
+void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
+                        const Link& from, const Link& to) {
+  constexpr int most_rounds = 60;
+  const Segment& span = cable.segments[i];
+  const Vec2 a = link_centre(world, from), b = link_centre(world, to);
+  const double angle = body_angle(world, drum);
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vec2 e = common_tangent(a, from.signed_radius(), b, to.signed_radius()).direction;
+    const double alpha = unwrapped(std::atan2(e.y(), e.x()), span.alpha);
+    const double before = drum.radius;
+    drum.radius = drum.layers.radius(std::max(0.0, turned_until(drum, alpha, angle)));
+    if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;
+  }
+}
+
+}  // namespace
+
 void update_tangent(const World& world, CableState& cable, std::size_t i) {
-  const Link& from = cable.links[tail_link(cable, i)];
-  const Link& to = cable.links[i];
+  Link& from = cable.links[tail_link(cable, i)];
+  Link& to = cable.links[i];
+  if (cable.fills && !wound_end(from, to)) {
+    if (from.layers.way > 0 && from.orientation != 0) {
+      lay_outermost_turn(world, cable, i, from, from, to);
+    }
+    if (to.layers.way < 0 && to.orientation != 0) {
+      lay_outermost_turn(world, cable, i, to, from, to);
+    }
+  }
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
   const bool exact = locates_events(world.configuration);  // and so round-off matters
@@ -91,14 +164,20 @@ void update_wraps(CableState& cable) {
   }
 }
 
+template <bool fills>
 void update_rest_lengths(const World& world, CableState& cable) {
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
-    const std::size_t from = tail_link(cable, i);
+    const std::size_t tail = tail_link(cable, i);
+    const Link &to = cable.links[i], &from = cable.links[tail];
     cable.segments[i].rest_length =
-        tail_material(cable, i, body_angle(world, cable.links[i])) -
-        head_material(cable, from, body_angle(world, cable.links[from])) +
+        material_at<fills>(to, cable.segments[i].alpha, body_angle(world, to)) -
+        material_at<fills>(from, alpha_head(cable, tail), body_angle(world, from)) +
         (i == 0 ? cable.length : 0.0);
   }
+}
+
+void update_rest_lengths(const World& world, CableState& cable) {
+  (cable.fills ? update_rest_lengths<true> : update_rest_lengths<false>)(world, cable);
 }
 
 }  // namespace
@@ -120,7 +199,9 @@ bool update_cable(const World& world, CableState& cable, bool begins) {
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    if (from != segment.tail_centre || to != segment.head_centre) update_tangent(world, cable, i);
+    if (cable.fills || from != segment.tail_centre || to != segment.head_centre) {
+      update_tangent(world, cable, i);
+    }
     moved = moved || segment.moved;
     from = to;
   }
@@ -148,8 +229,11 @@ void remove_link(const World& world, CableState& cable, int link) {
                          cable.links[static_cast<std::size_t>(after)].body &&
                      cable.links[static_cast<std::size_t>(before)].orientation ==
                          cable.links[static_cast<std::size_t>(after)].orientation &&
+                     cable.links[static_cast<std::size_t>(before)].corner ==
+                         cable.links[static_cast<std::size_t>(after)].corner &&
                      cable.links[static_cast<std::size_t>(before)].orientation != 0 &&
                      before != after;
+  const bool of_corner = !merge && at(cable.links, link).corner >= 0;
   ++cable.changes;
   // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
   // computed anew from the link before. In a merge the earlier link on the body stays.
@@ -163,7 +247,11 @@ void remove_link(const World& world, CableState& cable, int link) {
   } else {
     erase(link);
   }
-  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+  // Of a polygon's corner only the segment that closes up is new; a cable may have very many.
+  const std::size_t closed_up = index(link) % cable.segments.size();
+  const std::size_t first = of_corner ? closed_up : first_segment(cable);
+  const std::size_t end = of_corner ? closed_up + 1 : cable.segments.size();
+  for (std::size_t i = first; i < end; ++i) {
     const Vec2 tail = cable.segments[i].tail, head = cable.segments[i].head;
     update_tangent(world, cable, i);
     if (cable.segments[i].tail != tail || cable.segments[i].head != head) {
@@ -205,17 +293,26 @@ void remove_links(World& world, Workspace& work) {
   }
 }
 
-void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
+Link rolling_link(const BodyProperties& properties, int body, int corner, int orientation,
+                  double half_width) {
+  Link link;
+  link.body = body;
+  link.corner = corner;
+  link.orientation = orientation;
+  link.radius = (corner < 0 ? properties.radius : properties.corner_radius) + half_width;
+  if (corner >= 0) link.offset = at(properties.corners, corner);
+  return link;
+}
+
+void insert_link(const World& world, CableState& cable, std::size_t segment, int body, int corner,
                  int orientation) {
   // A link put into the segment that closes a loop comes last, so that indices stay where they are.
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
   const Segment old = cable.segments[segment];
   const std::size_t from = tail_link(cable, segment);
 
-  Link link;
-  link.body = body;
-  link.orientation = orientation;
-  link.radius = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
+  const Link link =
+      rolling_link(at(world.bodies, body), body, corner, orientation, cable.half_width);
   cable.links.insert(cable.links.begin() + offset(position), link);
   Segment arriving = old;
   if (segment == 0) arriving.alpha = old.alpha + cable.turning;
@@ -234,16 +331,22 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   // is what lies between the neighbours' new tangents: they have turned, by much where the body is
   // near.
   ++cable.changes;
+  if (const int way = way_of_layers(cable, position); way != 0) {
+    begin_layers(world, cable, position, way);
+  }
   Link& added = cable.links[position];
   const std::size_t to = leaving;  // a segment arrives at the link of its index
   const double start = head_material(cable, from, body_angle(world, cable.links[from]));
   const double end =
       tail_material(cable, to, body_angle(world, cable.links[to])) + (to == 0 ? cable.length : 0.0);
-  const double stored = link.radius * orientation * (alpha_head(cable, position) - first.alpha);
+  added.wrap = orientation * (alpha_head(cable, position) - first.alpha);
+  const double stored = stored_length(added);
   const double free_length = first.length + second.length;
   const double share = free_length > 0.0 ? first.length / free_length : 0.5;
-  const double arrives = start + share * (end - start - stored);
-  added.material = arrives - added.signed_radius() * (first.alpha - body_angle(world, added));
+  double arrives = start + share * (end - start - stored);
+  if (is_side(cable.links[from], added)) arrives = start + first.length;
+  if (is_side(added, cable.links[to])) arrives = end - second.length - stored;
+  added.material += arrives - tail_material(cable, position, body_angle(world, added));
   update_wraps_and_rest_lengths(world, cable);
 }
 

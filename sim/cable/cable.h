@@ -2,6 +2,7 @@
 #pragma once
 // Links and segments: geometry and transport, insertion, removal and merging.
 
+#include <algorithm>
 #include <span>
 
 #include "sim/world.h"
@@ -52,6 +53,15 @@ inline int next_link(const CableState& cable, int link) {
   return cable.closed ? 0 : -1;
 }
 
+/// How far apart it keeps bodies at most (m): its width, and the layers on a drum.
+inline double thickness(const CableState& cable) {
+  double layers = 0.0;
+  if (cable.fills) {
+    for (const Link& link : cable.links) layers = std::max(layers, thickness_of_layers(link));
+  }
+  return 2.0 * cable.half_width + layers;
+}
+
 /// Whether bodies that pinch the cable sink into it.
 inline bool yields(const CableState& cable) {
   return cable.least_gap < 2.0 * cable.half_width;
@@ -65,16 +75,31 @@ inline bool opposite(const Link& a, const Link& b) {
 /// Whether the segment between the two only fastens the cable's end to the rim of the body that it
 /// is wound on. It has no length and exerts nothing.
 inline bool wound_end(const Link& a, const Link& b) {
-  return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0);
+  return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0) &&
+         a.corner < 0 && b.corner < 0;
 }
 
-/// Whether the span that ends at link `end` is held by `body` there, and cannot be hit by it:
-/// always so but for an end that is held at the body's rim.
-inline bool holds_span(const World& world, const CableState& cable, const Link& end, int body) {
-  if (end.body != body) return false;
-  const double margin = world.bodies[static_cast<std::size_t>(body)].radius + cable.half_width;
-  return end.orientation != 0 || end.offset.norm() < margin * (1.0 - 1e-9);
+/// Whether the segment between the two lies along a polygon that both are on. It is rigid.
+inline bool is_side(const Link& a, const Link& b) {
+  return (a.corner >= 0 || b.corner >= 0) && a.body == b.body;
 }
+
+/// Whether an end of the cable on a body is further in than on its rim.
+bool is_fastened_inside(const World& world, const CableState& cable, const Link& end);
+
+/// Whether the span that ends at link `end` is held by `body` there, and cannot be hit by it:
+/// always so but for an end that is held at the body's rim, and for polygons, whose other corners
+/// it may meet.
+inline bool holds_span(const World& world, const CableState& cable, const Link& end, int body) {
+  if (end.body != body || end.corner >= 0) return false;
+  return end.orientation != 0 || is_fastened_inside(world, cable, end);
+}
+
+/// +1 or -1 where a link is on the drum in layers that holds the cable's start or end; or 0.
+int way_of_layers(const CableState& cable, std::size_t link);
+
+/// Makes it lie in layers, of way_of_layers, the tangents being up to date.
+void begin_layers(const World& world, CableState& cable, std::size_t link, int way);
 
 /// New tangents, directions, wraps and rest lengths for the bodies' present positions (thesis:
 /// UpdateSegments). Material stays where it is on every body.
@@ -99,10 +124,16 @@ void remove_links(World& world, Workspace& work);
 /// Takes link i out of the cable. If its neighbours lie on one body they become one link.
 void remove_link(const World& world, CableState& cable, int link);
 
-/// Puts a rolling link on `body` into free segment i, between its tail and head links, and shares
-/// the segment's material so that both parts are stretched alike (thesis: AddJoints).
-void insert_link(const World& world, CableState& cable, std::size_t segment, int body,
+/// Puts a rolling link on `body`, or on that corner of it, into free segment i, between its tail and
+/// head links, and shares the segment's material so that both parts are stretched alike (thesis:
+/// AddJoints); a part that then lies along a polygon gets as much as it is long.
+void insert_link(const World& world, CableState& cable, std::size_t segment, int body, int corner,
                  int orientation);
+
+/// The circle on which a cable rolls round a body, or round that corner of it: all of a new link
+/// but its material.
+Link rolling_link(const BodyProperties& properties, int body, int corner, int orientation,
+                  double half_width);
 
 /// A body that presses link `link`, `arc` rad after its tail.
 struct NewPinch {

@@ -22,7 +22,7 @@ struct Margin {
   double fall = 0.0;    // m, by gravity in one step
 
   Margin(const Scene& scene, const World& world) {
-    for (const CableState& cable : world.cables) widest = std::max(widest, cable.half_width);
+    for (const CableState& cable : world.cables) widest = std::max(widest, 0.5 * thickness(cable));
     fall = scene.gravity.norm() * world.step_length * world.step_length;
   }
 };
@@ -93,10 +93,7 @@ void list_body_pairs(const World& world, BroadPhase& broad) {
     for (std::size_t j = i + 1; j < broad.order.size() && broad.key[j] <= box.high[axis]; ++j) {
       const int b = broad.order[j];
       if (!overlap(box, broad.boxes[index(b)], 1 - axis)) continue;
-      if (at(world.bodies, a).kind == BodyKind::fixed &&
-          at(world.bodies, b).kind == BodyKind::fixed) {
-        continue;
-      }
+      if (never_touch(at(world.bodies, a), at(world.bodies, b))) continue;
       broad.body_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
@@ -149,7 +146,9 @@ void list_span_pairs(const World& world, BroadPhase& broad) {
       broad.span_boxes.push_back(box);
       const Link& to = cable.links[s];
       const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
+      if (cable.rod || is_side(from, to)) continue;
       visit_overlapping(broad, box, [&](int body) {
+        if (at(world.bodies, body).node) return;
         if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
       });

@@ -43,6 +43,11 @@ struct BroadPhase {
   std::vector<SpanPair> span_pairs;  // sorted
 };
 
+/// Whether two bodies are never in each other's way: fixed, or nodes of cables.
+inline bool never_touch(const BodyProperties& a, const BodyProperties& b) {
+  return (a.kind == BodyKind::fixed && b.kind == BodyKind::fixed) || (a.node && b.node);
+}
+
 /// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
 /// step, with `skin` (m) more round those that can move.
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes);

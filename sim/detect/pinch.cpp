@@ -8,6 +8,8 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/outline.h"
+#include "sim/touch.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -17,7 +19,7 @@ namespace {
 double full_width(const World& world) {
   double width = 0.0;
   if (world.configuration.method != Method::cable) {
-    for (const CableState& cable : world.cables) width = std::max(width, 2.0 * cable.half_width);
+    for (const CableState& cable : world.cables) width = std::max(width, thickness(cable));
   }
   return width;
 }
@@ -57,16 +59,32 @@ Contact* find_contact(World& world, int body, int other, int hint) {
   return it != world.contacts.end() && it->a == a && it->b == b ? &*it : nullptr;
 }
 
+/// Of a pair's contacts, one of which is given, the one of the least gap.
+Contact* nearest_of_pair(World& world, Contact* one) {
+  if (one->touch == Touch::circles) return one;
+  const auto of_pair = [one](const Contact& c) { return c.a == one->a && c.b == one->b; };
+  const auto begin = world.contacts.begin(), end = world.contacts.end();
+  auto first = begin + (one - world.contacts.data());
+  while (first != begin && of_pair(*(first - 1))) --first;
+  const auto last = std::find_if_not(first, end, of_pair);
+  return &*std::min_element(first, last,
+                            [](const Contact& p, const Contact& q) { return p.gap < q.gap; });
+}
+
 /// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
 /// than the cable's width it would press the span against the link's body, so it must keep that
 /// distance already before it hits the span. The body that holds the span's far end cannot hit it.
-bool over_adjacent_span(const World& world, const CableState& cable, std::size_t i, int other) {
+bool over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
+                        std::size_t i, int other) {
+  const bool circles = contact.touch == Touch::circles;
+  const Vec2 place = circles ? at(world.position, other) : touching_point(world, contact);
   const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
   for (const auto& [s, far_end] : {std::pair(static_cast<int>(i), before), {after, after}}) {
     if (holds_span(world, cable, cable.links[static_cast<std::size_t>(far_end)], other)) continue;
     const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
-    const Vec2 x = world.position[static_cast<std::size_t>(other)] - segment.tail;
+    if (is_side(cable.links[i], at(cable.links, far_end))) continue;
+    const Vec2 x = place - segment.tail;
     const double along = segment.direction.dot(x);
     const double side = cross(segment.direction, x) * cable.links[i].orientation;
     if (!segment.pinched && along > 0.0 && along < segment.length && side < 0.0) return true;
@@ -87,6 +105,23 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
   return after_tail < -arc_tolerance || before_head < -arc_tolerance;
 }
 
+/// A drum's layers keep others out as far as the outermost reaches.
+void note_cable_between(const CableState& cable, const Link& link, Contact& contact) {
+  contact.target = std::max(contact.target, cable.least_gap + thickness_of_layers(link));
+  contact.pinch_linked = true;
+}
+
+/// Whether a contact of a polygon has the cable on link i between its bodies. It presses the cable
+/// without friction.
+bool presses_arc(const CableState& cable, const Contact& contact, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  // What touches with a corner does so there; where something touches its side, `u` tells.
+  const int owner = contact.touch == Touch::point_of_a ? contact.a : contact.b;
+  if (link.body == owner && link.corner >= 0 && link.corner != contact.point) return false;
+  if (link.wrap < std::numbers::pi && off_arc(cable, i, u)) return false;
+  return arc_of_direction(cable, i, u) <= link.wrap + arc_tolerance;
+}
+
 /// The turns of link i that `contact` presses, apart from the end at which the other body is the
 /// cable's next or previous one (there the pinch is transitional or made already).
 void find_pinches_on(const World& world, const CableState& cable, Contact& contact, std::size_t i,
@@ -105,9 +140,8 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
               (before_other && cable.segments[static_cast<std::size_t>(after)].pinched))) {
     return;  // the pinch is there
   }
-  if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, i, other)) {
-    contact.target = std::max(contact.target, cable.least_gap);
-    contact.pinch_linked = true;
+  if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, contact, i, other)) {
+    note_cable_between(cable, link, contact);
   }
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
@@ -119,8 +153,8 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
     if (arc > link.wrap && arc < link.wrap + end) arc = link.wrap;
     if (after_other && arc < near_end) continue;
     if (before_other && link.wrap - arc < near_end) continue;
-    contact.target = std::max(contact.target, cable.least_gap);
-    contact.pinch_linked = true;
+    note_cable_between(cable, link, contact);
+    if (link.layers.way != 0) return;  // they are held as they lie
     if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }
@@ -195,7 +229,9 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   std::size_t kept = 0;
   const double width = full_width(world);
   const auto less = [](const Contact& p, const Contact& q) {
-    return std::tie(p.a, p.b, p.wall) < std::tie(q.a, q.b, q.wall);
+    if (p.a != q.a) return p.a < q.a;
+    if (p.b != q.b) return p.b < q.b;
+    return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
   };
   // Between bodies that are where they were, what was a contact is one.
   const auto keep = [&](int a, int b, int wall) {
@@ -203,10 +239,17 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     wanted.a = a;
     wanted.b = b;
     wanted.wall = wall;
-    const auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
-    if (it == old.end() || less(wanted, *it)) return;
-    world.contacts.push_back(*it);
-    ++kept;
+    auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
+    for (; it != old.end() && it->a == a && it->b == b && it->wall == wall; ++it) {
+      world.contacts.push_back(*it);
+      ++kept;
+    }
+  };
+  // A polygon may come nearer by turning as well.
+  const auto speed_of = [&world](std::size_t b) {
+    const BodyProperties& body = world.bodies[b];
+    const double rim = is_polygon(body) ? body.radius * std::abs(world.angular_velocity[b]) : 0.0;
+    return world.velocity[b].norm() + rim;
   };
   for (const BodyPair& pair : broad.body_pairs) {
     if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
@@ -219,8 +262,13 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     const double radii = world.bodies[a].radius + world.bodies[b].radius;
     const double least = std::min(world.bodies[a].radius, world.bodies[b].radius);
     // Bodies that move together have no speed between them until one is stopped within the step.
-    const double speed = world.velocity[a].norm() + world.velocity[b].norm();
-    if (distance - radii > width + reach(scene, world, speed, least)) continue;
+    const double speed = speed_of(a) + speed_of(b);
+    const double most = width + reach(scene, world, speed, least);
+    if (distance - radii > most) continue;
+    if (is_polygon(world.bodies[a]) || is_polygon(world.bodies[b])) {
+      append_touches(scene, world, pair.a, pair.b, -1, most, world.contacts);
+      continue;
+    }
     Contact contact;
     contact.a = pair.a;
     contact.b = pair.b;
@@ -237,7 +285,12 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     const auto b = static_cast<std::size_t>(pair.body);
     const Vec2 d = nearest_point(at(scene.walls, pair.wall), world.position[b]) - world.position[b];
     const double distance = d.norm(), radius = world.bodies[b].radius;
-    if (distance - radius > reach(scene, world, world.velocity[b].norm(), radius)) continue;
+    const double most = reach(scene, world, speed_of(b), radius);
+    if (distance - radius > most) continue;
+    if (is_polygon(world.bodies[b])) {
+      append_touches(scene, world, pair.body, -1, pair.wall, most, world.contacts);
+      continue;
+    }
     Contact contact;
     contact.a = pair.body;
     contact.wall = pair.wall;
@@ -245,6 +298,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     contact.gap = distance - radius;
     world.contacts.push_back(contact);
   }
+  // Those of a pair come in their order, those of walls after all of pairs.
   if (!broad.wall_pairs.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
   all_kept = kept == world.contacts.size() && kept == old.size();
   auto previous = old.begin();
@@ -283,8 +337,14 @@ void configure_pinches(World& world, Workspace& work) {
         const bool still = is_still(work.parts, contact.a) && is_still(work.parts, contact.b);
         if (still && !moved) continue;
         const bool is_a = contact.a == link.body;
-        find_pinches_on(world, cable, contact, i, is_a ? contact.b : contact.a,
-                        is_a ? contact.normal : Vec2(-contact.normal), found);
+        const int other = is_a ? contact.b : contact.a;
+        const Vec2 u = is_a ? contact.normal : Vec2(-contact.normal);
+        if (contact.touch == Touch::circles) {
+          find_pinches_on(world, cable, contact, i, other, u, found);
+        } else if (presses_arc(cable, contact, i, u) ||
+                   over_adjacent_span(world, cable, contact, i, other)) {
+          note_cable_between(cable, link, contact);
+        }
       }
     }
     if (found.empty()) continue;
@@ -320,8 +380,9 @@ void assign_contacts(World& world, const Workspace& work) {
       if (!opposite(from, to) || from.pinch_middle) continue;
       Contact* contact = find_contact(world, from.body, to.body, hint);
       if (contact == nullptr) continue;
-      contact->target = std::max(contact->target, cable.least_gap);
-      contact->pinch_linked = true;
+      contact = nearest_of_pair(world, contact);
+      note_cable_between(cable, from, *contact);
+      note_cable_between(cable, to, *contact);
       const int index = static_cast<int>(contact - world.contacts.data());
       ++contact->pinch_points;
       if (to.pinch_middle) {

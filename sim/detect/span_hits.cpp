@@ -4,6 +4,8 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/outline.h"
+#include "sim/touch.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -18,9 +20,34 @@ struct Hit {
   bool found = false;
   double time = 0.0;  // of the touch, in steps; -1 is the last step's position, 0 the present
   int body = -1;
+  int corner = -1;
   int orientation = 0;
   std::size_t segment = 0;
 };
+
+/// What may hit a span: a disc, or the circle about a polygon's corner.
+struct Circle {
+  int body = 0, corner = -1;
+  Vec2 now, before;     // m, of its centre; `before` is at the interval's start
+  double margin = 0.0;  // m, its radius and the cable's half width
+};
+
+/// Corner -1 is the body itself.
+Circle circle_of(const World& world, const Workspace& work, const CableState& cable, int body,
+                 int corner) {
+  const BodyProperties& b = at(world.bodies, body);
+  const Start& start = work.start;
+  Circle circle{body, corner, at(world.position, body), at(world.position, body),
+                rim_radius(b) + cable.half_width};
+  const bool known = index(body) < start.position.size();
+  if (known) circle.before = at(start.position, body);
+  if (corner < 0) return circle;
+  const Vec2& point = at(b.corners, corner);
+  circle.now = place_of_point(world, body, corner);
+  const bool turns = known && index(body) < start.angle.size();
+  circle.before += turned(point, turns ? at(start.angle, body) : at(world.angle, body));
+  return circle;
+}
 
 /// The middle link of a pinch near the end of the wrapped arc comes off through that arc's removal,
 /// not by hitting the span that leaves the arc.
@@ -49,24 +76,20 @@ bool just_left(const World& world, const Workspace& work, const CableState& cabl
   return false;
 }
 
-Hit test_span(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
-              int body) {
+Hit test_circle(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
+                const Circle& circle) {
   const Segment& segment = cable.segments[s];
   Hit hit;
-  if (segment.pinched || !(segment.length > 0.0) || pinched_beside(cable, s, body)) return hit;
-  if (just_left(world, work, cable, segment, body)) return hit;
-  const auto b = static_cast<std::size_t>(body);
-  const double margin = (world.bodies[b].radius + cable.half_width) * (1.0 - graze);
-  const Vec2 now = world.position[b] - segment.tail;
+  const double margin = circle.margin * (1.0 - graze);
+  const Vec2 now = circle.now - segment.tail;
   const double along = segment.direction.dot(now), side = cross(segment.direction, now);
   const bool beside = along > 0.0 && along < segment.length;
   const bool within = beside && std::abs(side) < margin;
   if (!within && segment.tail == segment.previous_tail && segment.head == segment.previous_head &&
-      b < work.start.position.size() && work.start.position[b] == world.position[b]) {
+      circle.before == circle.now && !work.start.position.empty()) {
     return hit;  // neither of them has moved
   }
-  const Vec2& then = b < work.start.position.size() ? work.start.position[b] : world.position[b];
-  const Vec2 before = then - segment.previous_tail;
+  const Vec2 before = circle.before - segment.previous_tail;
   const Vec2 span_before = segment.previous_head - segment.previous_tail;
   const double length_before = span_before.norm();
   const Vec2 direction_before =
@@ -91,28 +114,85 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   const double old_side = side_before != 0.0 ? side_before : side;
   const double approach = old_side > 0.0 ? old_side - side : side - old_side;
   hit.found = true;
-  hit.body = body;
+  hit.body = circle.body;
+  hit.corner = circle.corner;
   hit.segment = s;
   hit.orientation = old_side > 0.0 ? 1 : -1;
   hit.time = approach > 0.0 ? (std::abs(old_side) - margin) / approach - 1.0 : 0.0;
   return hit;
 }
 
+/// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner side
+/// of the cable; likewise one that arrives, the corner before. A span whose other end has got into the
+/// polygon would meet them for ever, and meets none.
+Hit test_next_corner(const World& world, const Workspace& work, const CableState& cable,
+                     std::size_t s, const Link& end, bool leaves) {
+  const int count = static_cast<int>(at(world.bodies, end.body).corners.size());
+  const int way = leaves ? end.orientation : -end.orientation;
+  const Circle circle = circle_of(world, work, cable, end.body, (end.corner + way + count) % count);
+  const Segment& segment = cable.segments[s];
+  const Vec2 x = circle.now - segment.tail;
+  const double along = segment.direction.dot(x);
+  Hit hit;
+  hit.found = along > 0.0 && along < segment.length &&
+              end.orientation * cross(segment.direction, x) < circle.margin * (1.0 - graze);
+  if (!hit.found) return hit;
+  const Vec2 far = turned((leaves ? segment.head : segment.tail) - at(world.position, end.body),
+                          -at(world.angle, end.body));
+  const std::vector<Vec2>& corners = at(world.bodies, end.body).corners;
+  hit.found = outside_of(corners, far).distance >= circle.margin * (1.0 - graze);
+  hit.body = end.body;
+  hit.corner = circle.corner;
+  hit.orientation = end.orientation;
+  hit.segment = s;
+  return hit;
+}
+
+/// The body's first hit of the span since the interval's start.
+Hit test_span(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
+              int body) {
+  const Segment& segment = cable.segments[s];
+  if (segment.pinched || !(segment.length > 0.0)) return {};
+  const Link &to = cable.links[s],
+             &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
+  if (from.body == body && from.corner >= 0) {
+    return test_next_corner(world, work, cable, s, from, true);
+  }
+  if (to.body == body && to.corner >= 0) {
+    return test_next_corner(world, work, cable, s, to, false);
+  }
+  if (just_left(world, work, cable, segment, body)) return {};
+  const int corners = static_cast<int>(at(world.bodies, body).corners.size());
+  if (corners == 0) {
+    if (pinched_beside(cable, s, body)) return {};
+    return test_circle(world, work, cable, s, circle_of(world, work, cable, body, -1));
+  }
+  Hit first;
+  for (int k = 0; k < corners; ++k) {
+    const Hit hit = test_circle(world, work, cable, s, circle_of(world, work, cable, body, k));
+    if (hit.found && (!first.found || hit.time < first.time)) first = hit;
+  }
+  return first;
+}
+
 /// Whether the span can be hit by the body at all.
 bool may_hit(const World& world, const CableState& cable, std::size_t s, int body) {
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
-  return !holds_span(world, cable, cable.links[s], body) &&
-         !holds_span(world, cable, cable.links[static_cast<std::size_t>(tail)], body);
+  const Link &to = cable.links[s], &from = at(cable.links, tail);
+  return !holds_span(world, cable, to, body) && !holds_span(world, cable, from, body) &&
+         !is_side(from, to);
 }
 
 }  // namespace
 
-double span_clearance(const World& world, const CableState& cable, std::size_t s, int body,
-                      int orientation) {
-  const Segment& segment = cable.segments[s];
-  const Vec2 x = at(world.position, body) - segment.tail;
-  const double margin = at(world.bodies, body).radius + cable.half_width;
-  return orientation * cross(segment.direction, x) - margin;
+double span_clearance(const World& world, const Happening& hit) {
+  const CableState& cable = at(world.cables, hit.cable);
+  const Segment& segment = at(cable.segments, hit.item);
+  const BodyProperties& body = at(world.bodies, hit.body);
+  Vec2 x = at(world.position, hit.body) - segment.tail;
+  if (hit.corner >= 0) x += turned(at(body.corners, hit.corner), at(world.angle, hit.body));
+  const double margin = rim_radius(body) + cable.half_width;
+  return hit.orientation * cross(segment.direction, x) - margin;
 }
 
 void find_hits(const World& world, Workspace& work, std::vector<Happening>& events) {
@@ -127,6 +207,7 @@ void find_hits(const World& world, Workspace& work, std::vector<Happening>& even
     event.cable = pair.cable;
     event.item = pair.segment;
     event.body = pair.body;
+    event.corner = hit.corner;
     event.orientation = hit.orientation;
     events.push_back(event);
   }
@@ -161,7 +242,8 @@ void add_hit_links(World& world, const Workspace& work) {
         }
       }
       if (earliest.found) {
-        insert_link(world, cable, earliest.segment, earliest.body, earliest.orientation);
+        insert_link(world, cable, earliest.segment, earliest.body, earliest.corner,
+                    earliest.orientation);
         ++added;
         again = true;
       }

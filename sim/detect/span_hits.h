@@ -20,9 +20,9 @@ void add_hit_links(World& world, const Workspace& work);
 /// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to `events`.
 void find_hits(const World& world, Workspace& work, std::vector<Happening>& events);
 
-/// How far a body's margin is from a span's centre line, on the side on which a cable that ran round
-/// it would have that orientation (m); below 0 where it is deeper, whether beside the span or not.
-double span_clearance(const World& world, const CableState& cable, std::size_t segment, int body,
-                      int orientation);
+/// How far the body of a hit, or its corner, is with its margin from the span's centre line, on the
+/// side on which a cable that ran round it would have that orientation (m); below 0 where it is
+/// deeper, whether beside the span or not.
+double span_clearance(const World& world, const Happening& hit);
 
 }  // namespace pinchlab

@@ -2,6 +2,7 @@
 #include "sim/motion/clearance.h"
 
 #include "base/at.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 
@@ -11,6 +12,9 @@ double clearance_of(const Scene& scene, const World& world, const Row& row) {
     return segment.rest_length - segment.length;
   }
   const Contact& contact = at(world.contacts, row.index);
+  if (contact.touch != Touch::circles) {
+    return meeting_of(scene, world, contact).gap - contact.target;
+  }
   const Vec2& a = at(world.position, contact.a);
   const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
                                 : nearest_point(at(scene.walls, contact.wall), a);

@@ -21,7 +21,7 @@ namespace {
 Happening* find(std::span<Happening> events, const Happening& key) {
   const auto it = std::find_if(events.begin(), events.end(), [&key](const Happening& e) {
     return e.kind == key.kind && e.part == key.part && e.row == key.row && e.cable == key.cable &&
-           e.item == key.item && e.body == key.body;
+           e.item == key.item && e.body == key.body && e.corner == key.corner;
   });
   return it == events.end() ? nullptr : std::to_address(it);
 }
@@ -95,8 +95,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
 void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
   for (Happening& event : work.events) {
     if (event.kind != EventKind::hit) continue;
-    event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
-                                     event.body, event.orientation);
+    event.clearance = span_clearance(world, event);
     event.seen = true;
   }
   find_pairs(scene, world, work);
@@ -107,8 +106,7 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
     Happening event = work.events[i];
     event.reach =
         std::max(reach_at(world, event.body), within_reach * at(world.cables, event.cable).length);
-    event.clearance = span_clearance(world, at(world.cables, event.cable), index(event.item),
-                                     event.body, event.orientation);
+    event.clearance = span_clearance(world, event);
     event.seen = true;
     const bool met = event.clearance < -0.5 * event.reach;
     if (met && !find(std::span(work.events).first(known), event)) work.events[kept++] = event;
@@ -139,7 +137,7 @@ void change_courses(World& world, Workspace& work) {
       work.released.push_back({event.cable, at(cable.links, event.item).body});
       remove_link(world, cable, event.item);
     } else {
-      insert_link(world, cable, index(event.item), event.body, event.orientation);
+      insert_link(world, cable, index(event.item), event.body, event.corner, event.orientation);
     }
     cable_changed = event.cable;
     item_changed = event.item;

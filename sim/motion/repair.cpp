@@ -53,6 +53,13 @@ bool is_closed(const World& world, const CableState& cable, int segment) {
   return contact.gap - contact.target <= nearly * cable.half_width;
 }
 
+/// Whether material may come into a segment: it is no closed pinch, and no side of a polygon.
+bool opens(const World& world, const CableState& cable, int segment) {
+  const int before = previous_link(cable, segment);
+  if (before >= 0 && is_side(at(cable.links, before), at(cable.links, segment))) return false;
+  return !is_closed(world, cable, segment);
+}
+
 }  // namespace
 
 void empty_pinches(World& world, const Parts& parts) {
@@ -62,11 +69,13 @@ void empty_pinches(World& world, const Parts& parts) {
     const double rounding = 1e-15 * cable.length;
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const double slack = at(cable.segments, i).rest_length;
-      if (slack <= rounding || !is_closed(world, cable, i)) continue;
+      if (slack <= rounding || !at(cable.segments, i).pinched || !is_closed(world, cable, i)) {
+        continue;
+      }
       const int before = previous_link(cable, i), after = next_link(cable, i);
       if (after < 0) continue;
-      const bool opens_before = !is_closed(world, cable, before);
-      const bool opens_after = !is_closed(world, cable, after);
+      const bool opens_before = opens(world, cable, before);
+      const bool opens_after = opens(world, cable, after);
       if (!opens_before && !opens_after) continue;
       const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
       at(cable.links, before).material += share * slack;

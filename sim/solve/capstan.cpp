@@ -89,6 +89,12 @@ Run make_run(const World& world, int cable, int first, int last) {
   return run;
 }
 
+/// Whether the segment that arrives at the link is inside a run.
+bool begins_within_run(const CableState& cable, int link) {
+  const Link &to = at(cable.links, link), &from = at(cable.links, previous_link(cable, link));
+  return to.pinch_middle || from.pinch_middle || is_side(from, to);
+}
+
 /// Takes friction off all runs that may slide.
 void smooth(CapstanScratch& s) {
   for (Passage& passage : s.passages) {
@@ -133,10 +139,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
     // Start a closed cable outside of any pinch, an open one at the first segment that bears
     // tension.
     int start = cable.closed ? 0 : 1;
-    while (cable.closed && (cable.links[index(start)].pinch_middle ||
-                            cable.links[index(previous_link(cable, start))].pinch_middle)) {
-      ++start;
-    }
+    while (cable.closed && begins_within_run(cable, start)) ++start;
     if (row_of(start) < 0) ++start;
     int run_before = -1;
     const std::size_t first_of_cable = s.segments.size();
@@ -146,9 +149,18 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
       const int first = segment;
       int last = first;
       if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
-      while (!link_by_link && cable.links[index(next_link(cable, last))].pinch_middle) {
-        last = next_link(cable, next_link(cable, last));
-        seen += 2;
+      while (true) {
+        const int after = next_link(cable, last);
+        const Link& link = cable.links[index(after)];
+        if (link.pinch_middle && !link_by_link) {
+          last = next_link(cable, after);
+          seen += 2;
+        } else if (link.corner >= 0 && link.body == cable.links[index(last)].body) {
+          last = after;  // along a side
+          seen += 1;
+        } else {
+          break;
+        }
       }
       segment = next_link(cable, last);
       if (row_of(segment) < 0) break;  // wound up here: the end is fast

@@ -18,7 +18,7 @@ struct World;
 struct CableState;
 
 /// All links of a cable on one body in succession: one link, or the parts into which pinches divide
-/// it. Material slides over the body at one speed everywhere in the run. (The direct solver with
+/// it, or those at a polygon's corners. Material slides over the body at one speed everywhere in the run. (The direct solver with
 /// three rows a pinch has a run for each link; the segments between them make the speeds equal.)
 struct Run {
   int cable = 0, first_link = 0, last_link = 0;

@@ -44,7 +44,7 @@ Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, co
   if (body.driven_angular_velocity) {
     omega = *body.driven_angular_velocity;
   } else if (angular != 0.0 || body.torque != 0.0) {
-    omega = ((1.0 - angular) * omega + k * body.torque / disc_inertia(body)) / (1.0 + angular);
+    omega = ((1.0 - angular) * omega + k * body.torque / inertia_of(body)) / (1.0 + angular);
   }
   return {free.x(), free.y(), omega};
 }

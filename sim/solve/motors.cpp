@@ -41,14 +41,18 @@ double stretching(const PartSystem& s, const SolveScratch& set) {
   return most;
 }
 
-/// The most that rows have changed a body's velocity by (m/s).
-double greatest_change(const PartSystem& s) {
-  double most = 0.0;
-  for (std::size_t b = 0; b < s.velocity.size(); ++b) {
-    const Eigen::Vector3d change = s.velocity[b] - s.unconstrained[b];
-    most = std::max({most, std::abs(change.x()), std::abs(change.y())});
+/// The speed that all of the part's moving bodies would have with the energy of motion that rows have
+/// given them (m/s); what they have taken counts against it.
+double speed_given(const World& world, std::span<const int> bodies, const PartSystem& s) {
+  double energy = 0.0, mass = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyProperties& body = at(world.bodies, bodies[i]);
+    if (!can_move(body)) continue;
+    energy += body.mass *
+              (s.velocity[i].head<2>().squaredNorm() - s.unconstrained[i].head<2>().squaredNorm());
+    mass += body.mass;
   }
-  return most;
+  return energy > 0.0 ? std::sqrt(energy / mass) : 0.0;
 }
 
 /// Lets motors without a limit stall where all else that could give is a cable's stretch, or a body
@@ -61,7 +65,7 @@ bool stall(const World& world, const Parts& parts, const Part& part, PartSystem&
     const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
     if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
     const bool yields =
-        stretching(s, set) > contradicting * rim || greatest_change(s) > thrown * rim;
+        stretching(s, set) > contradicting * rim || speed_given(world, bodies, s) > thrown * rim;
     if (!yields) continue;
     motor.state = motor.state == MotorState::stalls ? MotorState::insists : MotorState::stalls;
     changed = true;
@@ -77,7 +81,7 @@ void add_motor(const BodyProperties& body, int place, double speed, double befor
   motor.place = place;
   motor.speed = kick > 0.0 || body.torque_limit < infinity ? speed : before;
   motor.before = before;
-  motor.inertia = disc_inertia(body);
+  motor.inertia = inertia_of(body);
   motor.moves = can_move(body);
   motor.most = body.torque_limit < infinity ? kick * body.torque_limit : infinity;
   const double needed = motor.inertia * (speed - before);

@@ -10,6 +10,7 @@
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/touch.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -91,11 +92,20 @@ void set_segment_values(const World& world, const Segment& segment, const TimeSp
   row.compliance = 0.0;
 }
 
-/// What a link's body adds to J v of a row that sees it by j, at the world's velocities (m/s).
-double speed_of(const World& world, const Link& link, const Eigen::Vector3d& j) {
-  if (link.body < 0) return 0.0;
-  const Vec2& v = at(world.velocity, link.body);
-  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, link.body);
+/// A rod's row is never slack and has nothing to spare. Where lengths are not exact at the end of a step,
+/// rods only pull: what both ways miss would feed back as speed.
+void hold_both_ways(const TimeSpan& interval, Row& row) {
+  row.clamped = row.on = true;
+  row.idle = false;
+  const double time = interval.repair;
+  row.bias = interval.length > 0.0 ? row.clearance / time : 0.0;
+}
+
+/// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
+double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
+  if (body < 0) return 0.0;
+  const Vec2& v = at(world.velocity, body);
+  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, body);
 }
 
 // With C_n at the positions' time, v- and v+ the velocities before and after the kick, which lasts
@@ -121,8 +131,8 @@ void make_elastic(const World& world, const Link& from, const Link& to, const Se
   const double damped =
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
   const double b = 0.25 * (1.0 - damped);
-  const double before = to.slip_speed - from.slip_speed - speed_of(world, from, bodies.ja) -
-                        speed_of(world, to, bodies.jb);                            // dC/dt(v-), m/s
+  const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
+                        speed_of(world, to.body, bodies.jb);                       // dC/dt(v-), m/s
   const double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
     if (damped > 0.0) return;
@@ -156,6 +166,14 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   set_clearance(std::max(segment.rest_length, 0.0) - overlap, interval, row);
 }
 
+/// Levers of a row's forces where a contact's surfaces meet, on bodies one of which is a polygon.
+void set_levers(const Scene& scene, const World& world, const Contact& contact, RowBodies& bodies) {
+  const Vec2 point = meeting_of(scene, world, contact).point;
+  bodies.ja.z() = cross(point - at(world.position, contact.a), bodies.ja.head<2>());
+  if (contact.b < 0) return;
+  bodies.jb.z() = cross(point - at(world.position, contact.b), bodies.jb.head<2>());
+}
+
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
                     const TimeSpan& interval, RowBodies& bodies, Row& row) {
   const Vec2& n = contact.normal;
@@ -163,6 +181,7 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   row.on = contact.touching;
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
+  if (contact.touch != Touch::circles) set_levers(scene, world, contact, bodies);
   const double clearance = contact.gap - contact.target;
   set_clearance(clearance, interval, row);
   if (contact.rebounds && interval.reach < infinity) {
@@ -173,9 +192,8 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   if (locates_events(world.configuration) || interval.length == 0.0) return;
   const double restitution = restitution_of(scene, world, contact);
   if (restitution == 0.0) return;
-  Vec2 v = -at(world.velocity, contact.a);
-  if (contact.b >= 0) v += at(world.velocity, contact.b);
-  const double speed = n.dot(v);
+  const double speed =
+      speed_of(world, contact.a, bodies.ja) + speed_of(world, contact.b, bodies.jb);
   // Slower than what gravity gives in four steps, a body rests rather than bounces.
   const double slowest = 4.0 * scene.gravity.norm() * world.step_length;
   if (speed < -slowest && clearance + world.step_length * speed < 0.0) {
@@ -186,8 +204,15 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
 
 /// Both forces of bare friction act at one point, a share of the gap off the surfaces, so that they
 /// have no moment.
-void set_tangent_bodies(const World& world, const Contact& contact, RowBodies& bodies) {
+void set_tangent_bodies(const Scene& scene, const World& world, const Contact& contact,
+                        RowBodies& bodies) {
   const Vec2 t = left(contact.normal);
+  if (contact.touch != Touch::circles) {
+    bodies.ja = {-t.x(), -t.y(), 0.0};
+    bodies.jb = {t.x(), t.y(), 0.0};
+    set_levers(scene, world, contact, bodies);
+    return;
+  }
   const double radius_a = at(world.bodies, contact.a).radius;
   const double radius_b = contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0;
   const double radii = radius_a + radius_b;
@@ -244,7 +269,7 @@ Mobility mobility_of(const BodyProperties& body, double kick) {
     m.yy = linear * n.y() * n.y();
   }
   if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
-    m.angular = 1.0 / (disc_inertia(body) * (1.0 + 0.5 * kick * body.angular_drag));
+    m.angular = 1.0 / (inertia_of(body) * (1.0 + 0.5 * kick * body.angular_drag));
   }
   return m;
 }
@@ -253,6 +278,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
                        const TimeSpan& interval, PartSystem& s) {
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   const bool plain = world.configuration.method == Method::cable;
+  const bool exact = locates_events(world.configuration);
   RowsMade made{0, interval.kick};
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
@@ -281,7 +307,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
       // After a middle link comes the opposite of the row before it: one signed row serves both.
-      if ((from.pinch_middle && !three) || wound_end(from, to)) continue;
+      if (from.pinch_middle && !three) continue;
+      if (from.body == to.body && (wound_end(from, to) || is_side(from, to))) continue;
       const Segment& segment = at(cable.segments, i);
       int& number = s.row_of_segment[begin + index(i)];
       if (!again) {
@@ -304,6 +331,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       const bool changed = !stands || on_centre_line || s.mobility_changed;
       at(s.changed, number) = changed;
       if (changed) weigh(s, bodies, row);
+      if (cable.rod && exact) hold_both_ways(interval, row);
       if (stiffness < infinity && !segment.pinched) {
         make_elastic(world, from, to, segment, stiffness, interval, s, number);
       }
@@ -344,7 +372,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     row.kind = RowKind::tangent;
     row.index = number;
     row.slip = contact.slip;
-    set_tangent_bodies(world, contact, s.bodies.back());
+    set_tangent_bodies(scene, world, contact, s.bodies.back());
     weigh(s, s.bodies.back(), row);
     add_friction(s, contact_friction(tangent, normal, mu));
   }

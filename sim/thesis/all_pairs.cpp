@@ -24,13 +24,12 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
   const int walls = static_cast<int>(scene.walls.size());
   for (int a = 0; a < count; ++a) {
     const auto i = static_cast<std::size_t>(a);
-    const bool fixed = world.bodies[i].kind == BodyKind::fixed;
     const Box box = broad.boxes[i];
     for (int w = 0; w < walls; ++w) broad.wall_pairs.push_back({a, w});
     for (int b = a + 1; b < count; ++b) {
       const auto j = static_cast<std::size_t>(b);
       if (!overlap(box, broad.boxes[j])) continue;
-      if (fixed && world.bodies[j].kind == BodyKind::fixed) continue;
+      if (never_touch(world.bodies[i], world.bodies[j])) continue;
       broad.body_pairs.push_back({a, b});
     }
   }
@@ -43,10 +42,11 @@ void find_all_span_pairs(const World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      if (cable.rod) continue;
       const Box box = span_box(cable.segments[s]);
       for (int b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        if (!overlap(box, broad.boxes[i])) continue;
+        if (!overlap(box, broad.boxes[i]) || world.bodies[i].node) continue;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), b});
       }
     }

@@ -59,7 +59,7 @@ export function connect(onTrouble) {
       return response.json();
     }, onTrouble);
     const open = Object.keys(input().questionnaires ?? {}).filter((part) => !session.questionnaires?.[part]);
-    return { trials: plan, next: session.answers.length, questionnaires: open };
+    return { trials: plan, next: session.answers.length, questionnaires: open, language: session.language };
   }
 
   const result = (freeText) => {
@@ -72,7 +72,7 @@ export function connect(onTrouble) {
       await loaded;
       jatos.httpTimeout = 15000;  // ms
       jatos.httpRetry = 1;  // then the page says so, and tries again by itself
-      return { texts: input().texts, questionnaires: input().questionnaires, trial_options: input().trial_options };
+      return { language: input().language, texts: input().texts, translations: input().translations, questionnaires: input().questionnaires, trial_options: input().trial_options };
     },
 
     async running() {
@@ -80,10 +80,10 @@ export function connect(onTrouble) {
       return session && progress();
     },
 
-    async start() {
+    async start(language = input().language) {
       const participant = hex(8);
       session = {
-        participant, number: await takeNumber(participant), language: input().language, user_agent: navigator.userAgent.slice(0, 1000),
+        participant, number: await takeNumber(participant), language, user_agent: navigator.userAgent.slice(0, 1000),
         started_utc: now(), resumed_count: 0, withdrawal_code: code(), answers: [], shown_utc: '',
       };
       await keep();

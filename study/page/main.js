@@ -7,6 +7,7 @@ import { PairTrial } from './pair_trial.js';
 import { questionnaire } from './questionnaire.js';
 import { Site } from './recruiting.js';
 import { measureScreen } from './screen.js';
+import { simulationOf } from './simulation.js';
 
 const stage = document.getElementById('stage');
 const notice = document.getElementById('notice');
@@ -20,17 +21,50 @@ const tell = (trouble) => {
 };
 const backend = connect(tell);
 let isShared = false;  // one computer for many participants
-let recruiting = null, questionnaires = {}, options = {};
-({ texts, recruiting = null, questionnaires = {}, trial_options: options = {}, shared_computer: isShared = false } = await backend.study());
+let recruiting = null, questionnaires = {}, options = {}, isPilot = false, firstLanguage = '', translations = {};
+({ language: firstLanguage, texts, translations = {}, recruiting = null, questionnaires = {}, trial_options: options = {},
+  shared_computer: isShared = false, pilot: isPilot = false } = await backend.study());
+const simulation = simulationOf(isPilot);
 const site = new Site(recruiting, texts);
+const languages = { [firstLanguage]: texts, ...translations };
+
+function speak(language) {
+  texts = languages[language] ?? texts;
+  site.texts = texts;
+  document.documentElement.lang = language;
+  document.title = texts.title;
+  notice.dataset.lost = texts.connection_lost;
+}
+
+// What the browser asks for, of the study's languages; what the participant then chooses.
+function preferred() {
+  const known = Object.keys(languages);
+  for (const wanted of navigator.languages) {
+    const found = known.find((one) => one === wanted) ?? known.find((one) => one.split('-')[0] === wanted.split('-')[0]);
+    if (found) return found;
+  }
+  return firstLanguage;
+}
+
+async function inform() {
+  if (Object.keys(translations).length === 0) return information(stage, texts, backend, site);
+  for (let language = preferred(); ;) {
+    speak(language);
+    const others = Object.entries(languages).filter(([other]) => other !== language).map(([other, own]) => [other, own.language_name]);
+    const session = await information(stage, texts, backend, site, language, others);
+    if (!session.wanted) return session;
+    language = session.wanted;
+  }
+}
 
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
   const running = await backend.running(site.ids);
-  if (!running) return information(stage, texts, backend, site);
+  if (!running) return inform();
+  if (running.language) speak(running.language);
   if (await askResume(stage, texts)) return backend.resume();
   await backend.startAnew();
-  return information(stage, texts, backend, site);
+  return inform();
 }
 
 function page(show) {
@@ -81,6 +115,7 @@ try {
     before: () => backend.show(index),
     after: (data) => backend.answer({ index, encoding: clips.encoding, ...data }),
     failed: (error) => failed(stage, texts, error),
+    simulation_options: { data: simulation?.answers?.[index] ?? {} },
     on_finish: () => clips.release(index),
   });
 
@@ -97,7 +132,7 @@ try {
     thanks(display, texts, saved, site, isShared);
     return new Promise(() => {});  // the end: stays
   }));
-  await jsPsych.run(timeline);
+  await (simulation ? jsPsych.simulate(timeline, simulation.mode) : jsPsych.run(timeline));
 } catch (error) {
   failed(stage, texts, error);
 }

@@ -34,6 +34,14 @@ export class PagePlugin {
   trial(display, { page }) {
     page(display).then((result) => this.jsPsych.finishTrial({ result }), (error) => failed(display, page.texts, error));
   }
+
+  /** Goes on at once; questions that need an answer are left to who drives the browser. */
+  simulate(trial, mode, options, onLoad) {
+    const display = this.jsPsych.getDisplayElement();
+    this.trial(display, trial);
+    onLoad();
+    display.querySelector('#next, #save')?.click();
+  }
 }
 
 /** The end where something went wrong. */
@@ -56,8 +64,11 @@ function fullScreen() {
   document.documentElement.requestFullscreen?.().catch(() => { /* then without */ });
 }
 
-/** Information and consent. Resolves to the new session. `site`: where the participant comes from. */
-export function information(stage, texts, backend, site) {
+/**
+ * Information and consent. Resolves to the new session, or to { wanted }: another of the languages. `site`: where the
+ * participant comes from; `language`: that of the texts, if there is a choice; `others`: [language, its name in it].
+ */
+export function information(stage, texts, backend, site, language, others = []) {
   return new Promise((resolve) => {
     const tick = make('input', { type: 'checkbox', id: 'consent' });
     const problem = make('p', { class: 'wrong', role: 'alert' });
@@ -81,7 +92,7 @@ export function information(stage, texts, backend, site) {
       fullScreen();
       start.disabled = true;
       try {
-        const session = await backend.start();
+        const session = await backend.start(language);
         removeEventListener('resize', checkWindow);
         resolve(session);
       } catch (error) {
@@ -90,7 +101,11 @@ export function information(stage, texts, backend, site) {
         start.disabled = false;
       }
     });
-    sheet(stage, texts.information_heading, windowHint, wayOut, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
+    const choices = others.map(([other, name]) => make('button', {
+      type: 'button', class: 'quiet', lang: other, id: `language-${other}`,
+      onclick() { removeEventListener('resize', checkWindow); resolve({ wanted: other }); },
+    }, name));
+    sheet(stage, texts.information_heading, ...(choices.length > 0 ? [make('div', { class: 'row' }, ...choices)] : []), windowHint, wayOut, ...paragraphs(texts.information_body), ...paragraphs(texts.information_rights),
       ...paragraphs(texts.information_questions), make('label', { class: 'tick' }, tick, texts.consent), problem,
       make('div', { class: 'row' }, start, ...site.back('declined', texts.recruiting_decline)), make('p', { class: 'hint' }, texts.keyboard_hint));
     addEventListener('resize', checkWindow);

@@ -4,6 +4,7 @@
 
 import { askBesides, grade, inputOf } from './after_choice.js';
 import { make } from './make.js';
+import { decision, pressAll, unseen } from './simulation.js';
 
 const { ParameterType } = jsPsychModule;
 
@@ -37,6 +38,24 @@ export class PairTrial {
 
   trial(display, trial) {
     this.run(display, trial).then((data) => this.jsPsych.finishTrial(data), trial.failed);
+  }
+
+  /** jsPsych's simulation: `data` of the options is what the participant decides. */
+  simulate(trial, mode, { data: given }, onLoad) {
+    const display = this.jsPsych.getDisplayElement();
+    const decided = decision(trial.options, given);
+    onLoad();
+    if (mode === 'visual') {
+      this.trial(display, trial);
+      pressAll(display, decided);
+      return;
+    }
+    const data = { ...decided, ...unseen() };
+    (async () => {
+      await trial.before();
+      await trial.after(data);
+      this.jsPsych.finishTrial(data);
+    })().catch(trial.failed);
   }
 
   async run(display, trial) {

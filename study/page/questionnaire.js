@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The researcher's own questions on one page. A field is { element, read, focus }: `read` returns the answer, undefined
+// The researcher's own questions on one page, in the form of jsPsych's survey-html-form. A field is { element, read, focus }: `read` returns the answer, undefined
 // where there is none, or { wrong } with what to tell.
 
 import { make } from './make.js';
@@ -81,8 +81,8 @@ export function questionnaire(show, texts, part, questions, exit) {
     };
     // What was wrong is looked at again as soon as it changes.
     for (const field of fields) field.element.addEventListener('change', () => { if (field.isWrong) check(field); });
-    const next = () => {
-      const answers = {};
+    const answers = {};
+    const next = (event) => {
       let first = null;
       for (const field of fields) {
         const answer = check(field);
@@ -90,10 +90,21 @@ export function questionnaire(show, texts, part, questions, exit) {
         else if (answer !== undefined) answers[field.question.name] = answer;
       }
       problem.textContent = first ? texts.questionnaire_problem : '';
-      if (first) first.focus();
-      else resolve(answers);
+      if (!first) return;
+      event.stopPropagation();  // and so past the plugin
+      event.preventDefault();
+      first.focus();
     };
-    show(texts[`questionnaire_${part}_heading`], make('div', { class: 'questions' }, ...fields.map(({ element }) => element)), problem,
-      make('div', { class: 'row' }, make('button', { type: 'button', id: 'next', onclick: next }, texts.next), exit));
+    const display = make('div', {});
+    display.addEventListener('submit', next, { capture: true });
+    show(texts[`questionnaire_${part}_heading`], display);
+    new jsPsychSurveyHtmlForm({ finishTrial: () => resolve(answers) }).trial(display, {
+      html: '<div class="questions"></div>', preamble: null, button_label: texts.next, autofocus: '', dataAsArray: false, autocomplete: false,
+    });
+    const form = display.querySelector('form'), button = form.querySelector('[type=submit]');
+    form.noValidate = true;  // what is wrong is said beside each answer
+    form.querySelector('.questions').replaceChildren(...fields.map(({ element }) => element));
+    button.id = 'next';
+    form.append(problem, make('div', { class: 'row' }, button, exit));
   });
 }

@@ -61,9 +61,9 @@ export function connect(onTrouble) {
       }
     },
 
-    async start() {
+    async start(language) {
       const link = new URLSearchParams(location.search).get('link') ?? '';
-      const { token, ...session } = await request('POST', 'api/start', { consent: true, link, ...withIds() });
+      const { token, ...session } = await request('POST', 'api/start', { consent: true, link, ...(language && { language }), ...withIds() });
       stored.write({ token, answers: [], ...withIds() });
       return session;
     },

@@ -70,6 +70,18 @@ INSTANTIATE_TEST_SUITE_P(
                     Reference{Shape::logistic, 4.63323308e-3, 4.81690380e-3, 7.09527732, 1222.5446},
                     Reference{Shape::weibull, 4.66591153e-3, 1.10863116, 5.74309079, 3.66883384}));
 
+// The figures that psignifit's own test of this example holds (python-psignifit,
+// tests/test_psignifit.py): the mode of a posterior with weak priors and room for overdispersion,
+// which lies beside the maximum of the likelihood. Within 1 %, as psignifit compares its versions.
+TEST(ExampleOfPsignifitItself, LiesBesideItsPosteriorMode) {
+  PsychometricModel model;
+  model.shape = Shape::normal;
+  const PsychometricFit fit = fit_psychometric(model, example(), {.resamples = 0});
+  EXPECT_NEAR(fit.threshold.value / 0.0046448472488663396, 1.0, 0.01);
+  EXPECT_NEAR(fit.width.value / 0.004683837353547434, 1.0, 0.01);
+  EXPECT_NEAR(fit.lapse.value, 1.0676339572811912e-07, 1e-4);
+}
+
 // At a bound of the threshold, the best of the other parameters is 3.841 / 2 above the minimum.
 TEST(Profile, BoundsAreWhereTheLikelihoodSaysThey) {
   PsychometricModel model;

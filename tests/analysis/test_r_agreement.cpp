@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "analysis/besides.h"
 #include "analysis/clustered.h"
 #include "analysis/gsl_support.h"
 #include "analysis/scale_report.h"
@@ -155,6 +156,46 @@ TEST(AgreementWithR, MixedModelOfLme4) {
   EXPECT_NEAR(model.sd_participant.value, r[1], 2e-3);
   EXPECT_NEAR(model.sd_demonstration.value, r[2], 2e-3);
   EXPECT_NEAR(model.deviance.value, r[3], 1e-3);
+}
+
+// The type 2 area of a participant is Mann and Whitney's statistic over the number of pairs.
+TEST(AgreementWithR, ConfidenceInHits) {
+  if (!has_r()) GTEST_SKIP() << "Rscript is not installed (Debian: r-base-core)";
+  const Rng rng = make_rng(RandomUse::bootstrap, 11);
+  std::vector<BesidesAnswer> answers;
+  std::string csv = "who,hit,confidence\n";
+  for (int who = 0; who < 25; ++who) {
+    for (int trial = 0; trial < 30; ++trial) {
+      BesidesAnswer& answer = answers.emplace_back();
+      answer.participant = fmt::format("p{}", who);
+      answer.demonstration = "squeeze";
+      answer.level = 1;
+      answer.is_hit = gsl_rng_uniform(rng.get()) < 0.7;
+      answer.first = answer.chosen = *answer.is_hit ? "reference" : "graded";
+      answer.confidence = 1 + static_cast<int>(gsl_rng_uniform_int(rng.get(), 5)) +
+                          (*answer.is_hit && trial % 3 == 0 ? 1 : 0);
+      csv +=
+          fmt::format("{},{},{}\n", answer.participant, *answer.is_hit ? 1 : 0, *answer.confidence);
+    }
+  }
+  const test::TemporaryFolder folder;
+  const fs::path data = folder.write("data.csv", csv);
+  const std::vector<double> r =
+      run_r(folder, fmt::format("d <- read.csv('{}')\n"
+                                "area <- sapply(split(d, d$who), function(p) {{\n"
+                                "  a <- p$confidence[p$hit == 1]; b <- p$confidence[p$hit == 0]\n"
+                                "  suppressWarnings(wilcox.test(a, b)$statistic) / length(a) / "
+                                "length(b)\n"
+                                "}})\n"
+                                "write(formatC(c(mean(area), t.test(area)$conf.int), digits = 17, "
+                                "format = 'g'), stdout(), ncolumns = 1)\n",
+                                data.string()));
+  const Confidence ours = *analyse_besides(answers, 0.05, 1).confidence;
+  ASSERT_EQ(r.size(), 3U);
+  EXPECT_NEAR(ours.area.value, r[0], 1e-12);
+  EXPECT_NEAR(ours.area_low.value, r[1], 1e-12);
+  EXPECT_NEAR(ours.area_high.value, r[2], 1e-12);
+  EXPECT_GT(r[1], 0.5);
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ const Golden goldens[] = {
     {"04-two-blocking", 0xf768d3970f7f99d9, 0x1bbf2106bc0d404f},
     {"05-notch", 0x21e1bdd1f284f664, 0xcb73a0473485c56a},
     {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
-    {"07-driven-roller", 0xa7783d35724a6ab0, 0xe5102d7de568fa92},
-    {"08-driven-roller-weights", 0xce045a99701c16c1, 0xf03d0123364d0bc1},
+    {"07-driven-roller", 0x0a77e39ae5112867, 0x5682d55cc3d6d9a5},
+    {"08-driven-roller-weights", 0x2765e3feb278ad96, 0x1a76d10c5b042e67},
 };
 
 class Demonstration : public ::testing::TestWithParam<Golden> {

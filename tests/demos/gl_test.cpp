@@ -40,7 +40,11 @@ TEST(GlContext, EveryFrameOfTheDemonstrationsDrawnInPartsIsAsDrawnWhole) {
   constexpr int side = 480;  // px
   Picture picture, blank;
   Canvas parts(side, side), whole(side, side);
-  for (const fs::path& path : find_scenes({fs::path(PINCHLAB_SOURCE_DIR) / "demos"})) {
+  const fs::path demos = fs::path(PINCHLAB_SOURCE_DIR) / "demos";
+  std::vector<fs::path> paths = find_scenes({demos});
+  const std::vector<fs::path> more = find_scenes({demos / "more"});
+  paths.insert(paths.end(), more.begin(), more.end());
+  for (const fs::path& path : paths) {
     const SceneFile file = read_scene_file(path);
     const Scenery scenery = set_scenery(file.scene, file.look);
     for (const Configuration& method :

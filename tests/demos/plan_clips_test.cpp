@@ -65,6 +65,12 @@ TEST(PlanClips, OptionsThatCannotBe) {
   wide.width = 5000;
   wide.side_by_side = true;
   EXPECT_EQ(error(wide), "frames of 10000 x 960 pixels cannot be drawn: each must be 16 to 8192");
+  BatchOptions preview;
+  preview.codec = Codec::gif;
+  EXPECT_EQ(error(preview).find(file.scene.name + ".pinch.gif: a GIF counts hundredths"), 0U)
+      << error(preview);
+  preview.timing.frames_per_second = 50;
+  EXPECT_EQ(error(preview), "no error");
   BatchOptions rate;
   nlohmann::json scene = small_scene();
   scene["duration_s"] = 2.1;

@@ -265,6 +265,26 @@ TEST(Simulate, GivesUpAfterTheTimeLimit) {
       0);
 }
 
+TEST(Program, TheTimeLimitBoundsTheRehearsalOfAFittedView) {
+  const fs::path folder = scratch_folder();
+  nlohmann::json scene = small_scene();
+  scene["view"] = "fit";
+  std::ofstream(folder / "01-small.json") << scene;
+  // The first frame needs no step of its own.
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"still", "01-small.json", "--time", "0", "--out", "x.png"},
+        {"render", "01-small.json", "--out", "clips"}}) {
+    std::vector<std::string> limited = command;
+    limited.insert(limited.end(), {"--time-limit", "0.000001"});
+    const RunResult run = run_program(folder, limited);
+    EXPECT_EQ(run.exit_code, 1) << command[0];
+    EXPECT_NE(run.err.find("method pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s"),
+              std::string::npos)
+        << run.err;
+    EXPECT_EQ(run_program(folder, command).exit_code, 0) << command[0];
+  }
+}
+
 // Plain joints meet a body of some hundred sizes a step in the step after.
 TEST(Program, TellsWhatIsNotKept) {
   const fs::path folder = scratch_folder();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "demos/scenes/scene_json.h"
 #include "sim/promises.h"
@@ -15,6 +16,14 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* file = "scene.json";
+
+/// What follows this word makes scenes of all shapes; inputs without it stay what they were.
+constexpr std::string_view shapes_word = "shapes:";
+
+std::string_view after_word(std::string_view bytes) {
+  if (bytes.starts_with(shapes_word)) bytes.remove_prefix(shapes_word.size());
+  return bytes;
+}
 
 /// Bytes as choices; zeros when there are no more, so that small inputs make simple scenes.
 class Choices {
@@ -148,6 +157,48 @@ json scene(Choices& choices) {
   return s;
 }
 
+/// Whether an end of a cable is on that body's rim.
+bool holds_a_rim(const json& scene, const json& body) {
+  for (const json& cable : scene["cables"]) {
+    for (const char* end : {"start", "end"}) {
+      if (cable.contains(end) && cable[end].contains("rim_angle_rad") &&
+          cable[end]["body"] == body["name"]) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Polygons in place of discs, layers on drums, and mass in cables.
+void add_shapes(json& scene, Choices& choices) {
+  for (json& body : scene["bodies"]) {
+    const unsigned corners = 3 + choices.below(6);
+    const double first = choices.between(0.0, 7.0), rounding = choices.between(0.0, 0.05);
+    if (corners == 8 || holds_a_rim(scene, body)) continue;
+    const double radius = body["radius_m"].get<double>();
+    body.erase("radius_m");
+    body["corner_radius_m"] = rounding;
+    for (unsigned k = 0; k < corners; ++k) {
+      const double angle = first + 2.0 * std::numbers::pi * k / corners;
+      body["corners_m"].push_back({radius * std::cos(angle), radius * std::sin(angle)});
+    }
+  }
+  for (json& cable : scene["cables"]) {
+    const bool heavy = choices.one_in(2);
+    const double mass = choices.magnitude(-3.0, 3.0);
+    const unsigned nodes = choices.below(20);
+    for (const char* end : {"start", "end"}) {
+      if (cable.contains(end) && cable[end].contains("rim_angle_rad")) {
+        cable[end]["layers"] = choices.one_in(2);
+      }
+    }
+    if (!heavy || cable.contains("closed") || !cable["wraps"].empty()) continue;
+    cable["mass_per_metre_kg"] = mass;
+    if (nodes > 0) cable["nodes"] = nodes;
+  }
+}
+
 /// Every number that leaves the simulator.
 bool is_finite(const World& world) {
   for (std::size_t b = 0; b < world.position.size(); ++b) {
@@ -181,14 +232,18 @@ bool run(const SceneFile& source, const Configuration& configuration, int steps)
 }  // namespace
 
 std::string scene_of(std::string_view bytes) {
+  const bool shapes = bytes.starts_with(shapes_word);
+  bytes = after_word(bytes);
   Choices choices(bytes.substr(std::min<std::size_t>(1, bytes.size())));
-  return scene(choices).dump(1);
+  json made = scene(choices);
+  if (shapes) add_shapes(made, choices);
+  return made.dump(1);
 }
 
 bool fuzz_world(std::string_view bytes) {
   const Configuration configurations[] = {Method::pinch, Method::cable, Method::pinch_no_contact,
                                           thesis_configuration()};
-  const unsigned first = bytes.empty() ? 0 : static_cast<unsigned char>(bytes.front());
+  const unsigned first = Choices(after_word(bytes)).byte();
   try {
     const SceneFile source = parse_scene(scene_of(bytes), file);
     return run(source, configurations[first % 8 > 3 ? 0 : first % 8], 240);

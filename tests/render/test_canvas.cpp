@@ -93,6 +93,32 @@ TEST(Canvas, CapsulesMatchSupersamplingEvenBelowAPixel) {
   }
 }
 
+// Each pixel whose middle is inside, once, translucent or not.
+TEST(Canvas, PatchesFillTheirPolygon) {
+  Picture picture = page();
+  picture.corners = {{20.5, 20.5}, {70.5, 30.5}, {80.5, 70.5}, {40.5, 80.5}, {15.5, 50.5}};
+  Colour half = ink;
+  half.alpha = 128;
+  picture.add(Patch{0, 5, half});
+  Canvas canvas(size, size);
+  const std::uint8_t* pixels = canvas.draw(picture);
+  const auto at = [&](int x, int y) { return pixels[4 * ((size - 1 - y) * size + x)]; };
+  const std::uint8_t paper = at(2, 2), inside = at(50, 50);
+  EXPECT_NE(inside, paper);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      double least = 1e9;  // px, inside of the nearest side
+      for (std::size_t k = 0; k < 5; ++k) {
+        const Vec2 &a = picture.corners[k], &b = picture.corners[(k + 1) % 5];
+        const Vec2 d = (b - a).normalized(), p = Vec2(x + 0.5, y + 0.5) - a;
+        least = std::min(least, d.x() * p.y() - d.y() * p.x());
+      }
+      if (std::abs(least) < 1e-3) continue;
+      ASSERT_EQ(at(x, y), least > 0.0 ? inside : paper) << x << " " << y;
+    }
+  }
+}
+
 TEST(Canvas, ArcsOfAStripAreRoundAndCarryTheirMarks) {
   // Half a turn of radius 30 in pieces of the largest allowed turn.
   const Vec2 centre(48.2,
@@ -260,6 +286,74 @@ TEST(Canvas, ReadsBackEverythingThatChanges) {
   }
   canvas.draw(picture);
   EXPECT_TRUE(canvas.changed().empty());
+}
+
+int area_of(const std::vector<PixelRect>& parts) {
+  int sum = 0;
+  for (const PixelRect& r : parts) sum += r.width * r.height;
+  return sum;
+}
+
+TEST(Canvas, DrawsOnlyWhereMarksOfARunningCableAre) {
+  // Straight on, then half a turn; one mark every 150 px.
+  constexpr int side = 512;
+  const auto rope = [&](double run) {
+    Picture picture;
+    picture.view = {{0.0, 0.0}, {side, side}};
+    picture.points.push_back({{300.0, 40.0}, {-1.0, 0.0}, run});
+    for (int k = 0; k <= 8; ++k) {
+      const double a = std::numbers::pi * (1.5 - k / 8.0);
+      picture.points.push_back({Vec2(200.0, 240.0) + 200.0 * Vec2(std::cos(a), std::sin(a)),
+                                Vec2(std::sin(a), -std::cos(a)),
+                                run + 100.0 + 200.0 * std::numbers::pi * k / 8.0});
+    }
+    picture.add(Strip{0, picture.points.size(), 20.0, 3.0, 150.0, 40.0, orange, ink, brown});
+    return picture;
+  };
+  Canvas canvas(side, side);
+  canvas.draw(rope(0.0));
+  for (const double run : {3.0, 5.0, 44.0, 130.0}) {
+    const auto pixels = copy(canvas.draw(rope(run)), side, side);
+    EXPECT_LT(area_of(canvas.changed()), run < 10.0 ? side * side / 8 : side * side);
+    Canvas fresh(side, side);
+    EXPECT_TRUE(pixels == copy(fresh.draw(rope(run)), side, side)) << run;
+  }
+}
+
+TEST(Canvas, DrawsNotTheInsideOfADiscThatMoves) {
+  constexpr int side = 512;
+  const auto disc = [&](double x) {
+    Picture picture;
+    picture.view = {{0.0, 0.0}, {side, side}};
+    picture.add(Stroke{{x, 250.0}, {x, 250.0}, 230.0, 4.0, {0, 90, 140, 128}, ink});
+    return picture;
+  };
+  Canvas canvas(side, side);
+  canvas.draw(disc(240.0));
+  for (const double x : {240.4, 243.0, 270.0}) {
+    const auto pixels = copy(canvas.draw(disc(x)), side, side);
+    EXPECT_LT(area_of(canvas.changed()), 2 * side * side / 3) << x;
+    Canvas fresh(side, side);
+    EXPECT_TRUE(pixels == copy(fresh.draw(disc(x)), side, side)) << x;
+  }
+}
+
+TEST(Canvas, AShapeOfMorePiecesChangesItsOwnPlaceAlone) {
+  const auto bent = [](double bend) {
+    Picture picture = page();
+    picture.add(Stroke{{80.0, 80.0}, {80.0, 80.0}, 10.0, 0.0, ink, ink});
+    picture.points.push_back({{10.0, 10.0}, {1.0, 0.0}, 0.0});
+    if (bend > 0.0) picture.points.push_back({{20.0, 10.0 + bend}, {1.0, 0.0}, 10.0});
+    picture.points.push_back({{30.0, 10.0}, {1.0, 0.0}, 20.0});
+    picture.add(Strip{0, picture.points.size(), 3.0, 1.0, 9.0, 2.0, orange, ink, brown});
+    return picture;
+  };
+  Canvas canvas(size, size);
+  canvas.draw(bent(0.0));
+  const auto pixels = copy(canvas.draw(bent(2.0)), size, size);
+  EXPECT_LT(area_of(canvas.changed()), size * size / 2);
+  Canvas fresh(size, size);
+  EXPECT_TRUE(pixels == copy(fresh.draw(bent(2.0)), size, size));
 }
 
 TEST(Canvas, PicturesSideBySideLookAsAlone) {

@@ -94,6 +94,7 @@ TEST(Preview, AGifsClockIsChecked) {
     VideoWriter(folder.file("a.gif"), {Codec::gif, 32, 32, 60, ""});
   });
   EXPECT_NE(error.find("--fps 50"), std::string::npos) << error;
+  EXPECT_THROW(check_video("a.gif", {Codec::gif, 32, 32, 0, ""}), std::invalid_argument);
   EXPECT_TRUE(folder.empty());
 }
 

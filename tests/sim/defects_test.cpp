@@ -16,7 +16,7 @@ double kinetic_energy(const Scene& scene, const World& world) {  // J
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     const double spin = world.angular_velocity[b];
-    energy += 0.5 * disc_inertia(body) * spin * spin;
+    energy += 0.5 * inertia_of(body) * spin * spin;
     if (can_move(body)) energy += 0.5 * body.mass * world.velocity[b].squaredNorm();
   }
   return energy;

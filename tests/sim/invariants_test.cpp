@@ -107,7 +107,7 @@ TEST(Invariants, ConservesMomentumWithoutForces) {
       const Vec2 p = scene.bodies[b].mass * now.linear[b];
       linear += p;
       angular += world.position[b].x() * p.y() - world.position[b].y() * p.x() +
-                 disc_inertia(scene.bodies[b]) * now.angular[b];
+                 inertia_of(scene.bodies[b]) * now.angular[b];
     }
     return std::pair(linear, angular);
   };

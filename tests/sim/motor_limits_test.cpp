@@ -181,6 +181,22 @@ TEST(MotorLimits, StallOverAPulley) {
 }
 
 // Sweeps know neither groups of sliding segments nor what contradicts a motor: they hold it.
+// However slow: what a weight gains by falling for a step is no speed that the motor gives.
+TEST(MotorLimits, SlowMotorsHoldWhatHangs) {
+  for (const double speed : {1e-2, 1e-4, 1e-8}) {
+    Scene scene;
+    Body winch = body("winch", BodyKind::fixed_axle, 0.0, 0.0, 0.2);
+    winch.driven_angular_velocity = speed;
+    scene.bodies.push_back(winch);
+    scene.bodies.push_back(body("weight", BodyKind::free, 0.25, -2.0, 0.1, 3.0));
+    scene.cables.push_back(cable({0, {-0.25, 0.0}}, {{0, -1, 0}}, on(1)));
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 240);
+    EXPECT_NEAR(world.angle[0], speed, 1e-12 * speed);
+    EXPECT_NEAR(world.position[1].y(), -2.0 + 0.25 * speed, 1e-12);
+  }
+}
+
 TEST(MotorLimits, SweepsHoldWhatHasNoLimit) {
   for (const double limit : {infinity, 30.0}) {
     Scene scene = winch(1.0, 2.0, limit);

@@ -10,9 +10,10 @@ namespace pinchlab::testing {
 /// Whether two links, segments, contacts have the same state to the last bit; a contact's place in
 /// the list is state too.
 inline bool same_link(const Link& p, const Link& q) {
-  return p.body == q.body && p.orientation == q.orientation && p.radius == q.radius &&
-         p.material == q.material && p.wrap == q.wrap && p.pinch_middle == q.pinch_middle &&
-         p.slip == q.slip && p.slip_speed == q.slip_speed && p.contact == q.contact;
+  return p.body == q.body && p.orientation == q.orientation && p.corner == q.corner &&
+         p.radius == q.radius && p.material == q.material && p.wrap == q.wrap &&
+         p.pinch_middle == q.pinch_middle && p.slip == q.slip && p.slip_speed == q.slip_speed &&
+         p.contact == q.contact;
 }
 
 inline bool same_segment(const Segment& p, const Segment& q) {
@@ -22,10 +23,10 @@ inline bool same_segment(const Segment& p, const Segment& q) {
 }
 
 inline bool same_contact(const Contact& p, const Contact& q) {
-  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.gap == q.gap && p.target == q.target &&
-         p.pinch_points == q.pinch_points && p.pinch_linked == q.pinch_linked &&
-         p.touching == q.touching && p.slip == q.slip && p.normal_force == q.normal_force &&
-         p.tangent_force == q.tangent_force;
+  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point &&
+         p.gap == q.gap && p.target == q.target && p.pinch_points == q.pinch_points &&
+         p.pinch_linked == q.pinch_linked && p.touching == q.touching && p.slip == q.slip &&
+         p.normal_force == q.normal_force && p.tangent_force == q.tangent_force;
 }
 
 /// Whether two worlds of one scene are in the same state to the last bit.

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <memory>
 
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
-#include "study/answers.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {

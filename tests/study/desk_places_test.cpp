@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "analysis/answers_table.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
-#include "study/answers.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions, answers and what survives a restart.
 #include "study/desk.h"
+#include "base/answer_file.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
 
@@ -358,6 +359,32 @@ TEST(Export, PsychDs) {
   EXPECT_TRUE(fs::exists(folder / "dataset" / "README.md"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
   EXPECT_THROW(write_psych_ds(folder / "answers", folder / "dataset"), std::runtime_error);
+}
+
+TEST(Desk, EachParticipantHasTheirLanguage) {
+  const fs::path folder = scratch_folder();
+  const auto options = [&] {
+    DeskOptions made = desk_options(folder);
+    made.config = parse_config({{"format", "pinchlab-study 1"},
+                                {"demonstrations", demonstrations},
+                                {"languages", {"en", "sv"}}},
+                               "study.json");
+    return made;
+  };
+  std::string token;
+  {
+    Desk desk(options());
+    EXPECT_EQ(refused([&] { desk.start("", "", "", {}, "de"); }), 422);
+    EXPECT_EQ(desk.progress(desk.start("", "")).language, "en");
+    token = desk.start("", "", "", {}, "sv");
+  }
+  Desk desk(options());
+  EXPECT_EQ(desk.progress(token).language, "sv") << "also after a restart";
+  answer_all(desk, token);
+  desk.save(token, {});
+  const json file = json::parse(read_whole(answer_files(folder / "answers").front()));
+  EXPECT_EQ(file["language"], "sv");
+  EXPECT_EQ(file["study"]["language"], "en, sv") << "one study";
 }
 
 TEST(Export, FormulasAreHarmless) {

@@ -7,8 +7,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/answer_file.h"
 #include "base/strict_json.h"
-#include "study/answers.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {

@@ -2,11 +2,17 @@
 // Answers as tables of participants and as a BIDS dataset.
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
+#include "base/answer_file.h"
+#include "base/input_error.h"
 #include "base/read_file.h"
 #include "study/answers.h"
+#include "study/crate.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -94,6 +100,46 @@ TEST(Exports, ABidsDatasetHoldsEveryTrial) {
   }
   EXPECT_TRUE(has_text);
   EXPECT_THROW(write_bids(folder / "answers", folder / "bids"), std::runtime_error);
+}
+
+TEST(Exports, ACrateHoldsWhatWasShown) {
+  const fs::path folder = answered(4);
+  write_text(folder / "clips/manifest.json", "{}");
+  write_ro_crate(folder / "answers", folder / "clips", folder / "crate");
+  // The program's own check of crates: every MUST of the two documents, and every file's hash.
+  const std::string check = std::string("'") + PINCHLAB_PROGRAM + "' crate '" +
+                            (folder / "crate").string() + "' > '" + (folder / "out.txt").string() +
+                            "' 2>&1";
+  EXPECT_EQ(std::system(check.c_str()), 0) << read_whole(folder / "out.txt");
+  EXPECT_EQ(read_whole(folder / "crate/data/answers.csv"), answers_csv(folder / "answers"));
+  const auto clip = [](const fs::path& path) { return path.extension() == ".mp4"; };
+  int clips = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "crate/stimuli")) {
+    clips += clip(entry.path()) ? 1 : 0;
+  }
+  EXPECT_EQ(clips, 6) << "three demonstrations, both orders";
+  EXPECT_THROW(write_ro_crate(folder / "answers", folder / "clips", folder / "crate"),
+               std::runtime_error)
+      << "is there already";
+  write_text(folder / "clips/01-first.left-pinch.mp4", "another");
+  EXPECT_THROW(write_ro_crate(folder / "answers", folder / "clips", folder / "other"), InputError);
+  fs::remove(folder / "clips/01-first.left-pinch.mp4");
+  EXPECT_THROW(write_ro_crate(folder / "answers", folder / "clips", folder / "other"), InputError);
+  EXPECT_FALSE(fs::exists(folder / "other"));
+}
+
+TEST(Exports, NothingIsNoExport) {
+  const fs::path folder = scratch_folder();
+  fs::create_directories(folder / "answers/.running");
+  for (const char* what : {"csv", "participants-csv", "bids", "psych-ds"}) {
+    const std::string line = std::string("'") + PINCHLAB_PROGRAM + "' study export --answers '" +
+                             (folder / "answers").string() + "' --" + what + " '" +
+                             (folder / "out").string() + "' 2> '" + (folder / "err.txt").string() +
+                             "'";
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1) << what;
+    EXPECT_NE(read_whole(folder / "err.txt").find("there is nothing to export"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder / "out")) << what;
+  }
 }
 
 }  // namespace

@@ -8,10 +8,10 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
-#include "study/answers.h"
 #include "study/utc.h"
 #include "tests/study/support.h"
 

@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "base/input_error.h"
 #include "study/config.h"
 #include "study/plan.h"
+#include "tests/study/config_error.h"
 
 namespace pinchlab::study {
 namespace {
@@ -138,23 +138,13 @@ TEST(PairPlan, GradedClipsAreShownAsOftenAsAsked) {
   EXPECT_EQ(keys, (std::set<std::string>{"squeeze @ 0.1", "squeeze @ 0.2", "squeeze @ 0.4"}));
 }
 
-std::string why(json document) {
-  document["format"] = "pinchlab-study 1";
-  try {
-    parse_config(document, "study.json");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(PairPlan, ConfigurationsAreCheckedWholly) {
   const json good = {{"demonstrations", {"a"}}, {"methods", {"pinch", "cable", "thesis"}}};
-  EXPECT_EQ(why(good), "");
+  EXPECT_EQ(error_with_format(good), "");
   const auto with = [&](const char* key, const json& value) {
     json document = good;
     document[key] = value;
-    return why(document);
+    return error_with_format(document);
   };
   EXPECT_EQ(with("pairs_per_demonstration", 3), "");
   EXPECT_NE(with("pairs_per_demonstration", 4).find("pairs_per_demonstration"), std::string::npos);
@@ -163,8 +153,10 @@ TEST(PairPlan, ConfigurationsAreCheckedWholly) {
   EXPECT_NE(with("methods", {"a", "b", "baseline"}).find("baseline"), std::string::npos);
   EXPECT_NE(with("methods", {"a", "b", "c-d"}).find("c-d"), std::string::npos);
   EXPECT_NE(with("both_orders", true).find("both_orders"), std::string::npos);
-  EXPECT_NE(why({{"methods", {"a", "b", "c"}}}).find("must be named"), std::string::npos);
-  EXPECT_NE(why({{"demonstrations", {"a"}}, {"pairs_per_demonstration", 1}}).find("needs methods"),
+  EXPECT_NE(error_with_format({{"methods", {"a", "b", "c"}}}).find("must be named"),
+            std::string::npos);
+  EXPECT_NE(error_with_format({{"demonstrations", {"a"}}, {"pairs_per_demonstration", 1}})
+                .find("needs methods"),
             std::string::npos);
 
   const json clip = {{"level", 0.1}, {"left", "l.mp4"}, {"right", "r.mp4"}};
@@ -173,19 +165,19 @@ TEST(PairPlan, ConfigurationsAreCheckedWholly) {
   const auto series = [](const json& clips) {
     return json{{"series", {{{"name", "squeeze"}, {"clips", clips}}}}};
   };
-  EXPECT_EQ(why(series({clip, other})), "");
-  EXPECT_NE(why(series(json::array({clip}))).find("two clips"), std::string::npos);
-  EXPECT_NE(why(series({clip, clip})).find("stands twice"), std::string::npos);
+  EXPECT_EQ(error_with_format(series({clip, other})), "");
+  EXPECT_NE(error_with_format(series(json::array({clip}))).find("two clips"), std::string::npos);
+  EXPECT_NE(error_with_format(series({clip, clip})).find("stands twice"), std::string::npos);
   other["right"] = "l.mp4";
-  EXPECT_NE(why(series({clip, other})).find("same file"), std::string::npos);
+  EXPECT_NE(error_with_format(series({clip, other})).find("same file"), std::string::npos);
   other["right"] = "../r.mp4";
-  EXPECT_NE(why(series({clip, other})).find(".mp4 file"), std::string::npos);
+  EXPECT_NE(error_with_format(series({clip, other})).find(".mp4 file"), std::string::npos);
   other["right"] = "r.mp4";
   other["level"] = "0.2";
-  EXPECT_NE(why(series({clip, other})).find("level"), std::string::npos);
+  EXPECT_NE(error_with_format(series({clip, other})).find("level"), std::string::npos);
   json both = series({clip, clip});
   both["demonstrations"] = {"a"};
-  EXPECT_NE(why(both).find("cannot be combined"), std::string::npos);
+  EXPECT_NE(error_with_format(both).find("cannot be combined"), std::string::npos);
 }
 
 }  // namespace

@@ -235,9 +235,9 @@ TEST(Screen, IsMeasuredFirstAndReported) {
             std::string::npos);
   const analysis::AnswersTable table = analysis::read_answers({folder / "answers"}, {});
   const analysis::Report report = analysis::analyse_table(table, {.bootstrap = 99});
-  EXPECT_EQ(report.playback.screens_measured, 2);
-  ASSERT_EQ(report.playback.uneven_screens.size(), 1U);
-  EXPECT_TRUE(report.playback.uneven_screens[0].ends_with(" (75 Hz)"));
+  EXPECT_EQ(report.circumstances.screens_measured, 2);
+  ASSERT_EQ(report.circumstances.uneven_screens.size(), 1U);
+  EXPECT_TRUE(report.circumstances.uneven_screens[0].ends_with(" (75 Hz)"));
   EXPECT_NE(report_markdown(report, table, {}).find("1 of 2 measured screens"), std::string::npos);
   EXPECT_EQ(json::parse(report_json(report, table))["playback"]["screens_measured"], 2);
 }

@@ -5,9 +5,9 @@
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
-#include "study/answers.h"
 #include "study/jatos.h"
 #include "study/tables.h"
+#include "tests/study/config_error.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -110,26 +110,17 @@ TEST(Recruiting, ErrorsNamePlaceAndCure) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
     }
   }
-  const auto error_of = [](json document) -> std::string {
-    document["format"] = "pinchlab-study 1";
-    try {
-      parse_config(document, "study.json");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_NE(error_of({{"recruiting", json::object()}}).find("name the parameter"),
+  EXPECT_NE(error_with_format({{"recruiting", json::object()}}).find("name the parameter"),
             std::string::npos);
   for (const char* other : {"one_time_links", "shared_computer"}) {
-    EXPECT_NE(
-        error_of({{other, true}, {"recruiting", {{"preset", "sona"}}}}).find("cannot be combined"),
-        std::string::npos);
+    EXPECT_NE(error_with_format({{other, true}, {"recruiting", {{"preset", "sona"}}}})
+                  .find("cannot be combined"),
+              std::string::npos);
   }
-  EXPECT_NE(
-      error_of({{"recruiting", {{"preset", "sona"}, {"full_url", "https://a.org/?s={study}"}}}})
-          .find("no other braces"),
-      std::string::npos)
+  EXPECT_NE(error_with_format(
+                {{"recruiting", {{"preset", "sona"}, {"full_url", "https://a.org/?s={study}"}}}})
+                .find("no other braces"),
+            std::string::npos)
       << "SONA names no study";
 }
 

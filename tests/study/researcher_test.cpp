@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "base/answer_file.h"
 #include "base/read_file.h"
-#include "study/answers.h"
 #include "study/http_client.h"
 #include "study/results.h"
 #include "study/server.h"

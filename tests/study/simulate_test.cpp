@@ -7,10 +7,11 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
+#include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
-#include "study/answers.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -45,6 +46,27 @@ void expect_same_answers(const json& one, const json& other) {
   EXPECT_EQ(one["transitivity"]["circular_triads"], other["transitivity"]["circular_triads"]);
 }
 
+// The exported CSV gives analysis/reproduce.R, where there is R, the same function.
+void expect_reproduced(const fs::path& folder, const json& series) {
+  if (std::system("Rscript --version > /dev/null 2>&1") != 0) return;
+  const std::string line = std::string("Rscript --vanilla '") + PINCHLAB_SOURCE_DIR +
+                           "/analysis/reproduce.R' '" + (folder / "answers.csv").string() +
+                           "' 2> /dev/null > '" + (folder / "r.csv").string() + "'";
+  ASSERT_EQ(std::system(line.c_str()), 0);
+  std::istringstream text(read_whole(folder / "r.csv"));
+  std::string names, cells, cell;
+  std::getline(text, names);
+  std::getline(text, cells);
+  ASSERT_EQ(names, "series,answers,threshold,width,lapse,spread");
+  std::istringstream row(cells);
+  std::getline(row, cell, ',');
+  EXPECT_EQ(cell, series["name"]);
+  for (const char* key : {"answers", "threshold", "width", "lapse", "spread"}) {
+    std::getline(row, cell, ',');
+    EXPECT_NEAR(std::stod(cell), series[key].get<double>(), 2e-4) << key;
+  }
+}
+
 const std::vector<std::string> methods = {"pinch", "nocontact", "cable", "thesis"};
 
 void write_methods_study(const fs::path& folder, const json& truth) {
@@ -74,6 +96,8 @@ TEST(Simulate, AStudyOfFourMethodsFindsTheirScale) {
       {"left", 0.2}};
   write_methods_study(folder, truth);
   const json report = report_of(folder, "--participants 40 --seed 3", "");
+  EXPECT_TRUE(report["answer"].get<std::string>().starts_with("Answers of a pilot. The methods"));
+  EXPECT_EQ(report["playback"]["screens"][0]["participants"], 40);
   EXPECT_EQ(report["participants"], 40);
   EXPECT_EQ(report["answers"], 40 * 18);
   for (const json& method : report["scale"]["methods"]) {
@@ -147,6 +171,7 @@ TEST(Simulate, AStudyOfThresholdsFindsTheThreshold) {
   EXPECT_NEAR(series["width"].get<double>(), 0.15, 0.06);
   EXPECT_NEAR(series["spread"].get<double>(), 0.02, 0.02);
   run(folder, "study export --answers answers --csv answers.csv");
+  expect_reproduced(folder, series);
   run(folder, "analyse answers.csv --ignore-other-columns --no-figures --bootstrap 99 --out again");
   EXPECT_EQ(json::parse(read_whole(folder / "again/report.json"))["series"][0]["threshold"],
             series["threshold"]);

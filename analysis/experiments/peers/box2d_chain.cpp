@@ -114,7 +114,7 @@ class ChainWorld {
     if (def.type == b2_dynamicBody) {
       b2MassData mass;
       mass.mass = static_cast<float>(body.mass);
-      mass.I = static_cast<float>(disc_inertia(body) * scale * scale);
+      mass.I = static_cast<float>(inertia_of(body) * scale * scale);
       mass.center.SetZero();
       made->SetMassData(&mass);
     }

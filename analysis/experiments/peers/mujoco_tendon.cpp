@@ -46,7 +46,7 @@ double pulley_share(const Scene& scene, const CableState& cable) {
   for (const Link& link : cable.links) {
     if (link.orientation == 0) continue;
     const Body& body = scene.bodies[static_cast<std::size_t>(link.body)];
-    if (turns(body)) share += disc_inertia(body) / (link.radius * link.radius);
+    if (turns(body)) share += inertia_of(body) / (link.radius * link.radius);
   }
   return share;
 }

@@ -28,7 +28,7 @@ TEST(BenchCommand, HelpNamesEveryExperiment) {
   CLI::App app;
   add_bench_commands(app);
   const std::string help = app.get_subcommand("bench")->help();
-  for (const char* name : {"stress", "pinch-detection", "features", "render", "all"}) {
+  for (const char* name : {"stress", "pinch-detection", "features", "shapes", "render", "all"}) {
     EXPECT_NE(help.find(name), std::string::npos) << name;
   }
 }

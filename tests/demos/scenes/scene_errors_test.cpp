@@ -16,15 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string error_of(const std::string& text) {
-  try {
-    parse_scene(text, "s.json");
-  } catch (const SceneFileError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 // A change to the small scene: a JSON pointer, and what to put there ("-" at the end appends; a
 // discarded value removes).
 struct BadScene {
@@ -41,7 +32,8 @@ const BadScene bad_scenes[] = {
      "s.json: /cables/0/half_widht_m: unknown key (did you mean half_width_m?)"},
     {"/bodies/1/radius", "1", "s.json: /bodies/1/radius: unknown key (did you mean radius_m?)"},
     {"/bodies/1/colour", "1",
-     "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, mass_kg, "
+     "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, corners_m, "
+     "corner_radius_m, mass_kg, density_kg_m2, "
      "inertia_kg_m2, "
      "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, "
      "driven_angular_velocity_rad_s, torque_n_m, motor, torque_limit_n_m, linear_drag_per_s, "
@@ -69,9 +61,11 @@ const BadScene bad_scenes[] = {
     {"/baseline/reason", nullptr, "s.json: /baseline: reason is missing"},
     {"/bodies/0/name", nullptr, "s.json: /bodies/0: name is missing"},
     {"/bodies/0/kind", nullptr, "s.json: /bodies/0: kind is missing"},
-    {"/bodies/0/radius_m", nullptr, "s.json: /bodies/0: radius_m is missing"},
+    {"/bodies/0/radius_m", nullptr,
+     "s.json: /bodies/0: radius_m is missing (or corners_m, of a polygon)"},
     {"/bodies/0/position_m", nullptr, "s.json: /bodies/0: position_m is missing"},
-    {"/bodies/1/mass_kg", nullptr, "s.json: /bodies/1: mass_kg is missing (a free body needs one)"},
+    {"/bodies/1/mass_kg", nullptr,
+     "s.json: /bodies/1: mass_kg is missing (a free body needs one, or density_kg_m2)"},
     {"/cables/0/name", nullptr, "s.json: /cables/0: name is missing"},
     {"/cables/0/half_width_m", nullptr, "s.json: /cables/0: half_width_m is missing"},
     {"/cables/0/start", nullptr,
@@ -289,114 +283,14 @@ TEST(SceneErrors, SyntaxSaysLineAndColumn) {
   }
 }
 
-TEST(SceneErrors, KeysWithoutEffectAreRefused) {
-  const auto refused = [](const char* kind, const char* key, const char* value, bool driven) {
-    json scene = small_scene();
-    json& body = scene["bodies"][0];
-    body["kind"] = kind;
-    if (std::string(kind) == "fixed") {
-      body.erase("mass_kg");
-    }
-    if (driven) {
-      body["driven_angular_velocity_rad_s"] = 1;
-    }
-    body[key] = json::parse(value);
-    return error_of(scene.dump());
-  };
-  const auto message = [](const char* key, const char* why) {
-    return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, why);
-  };
-  for (const char* key : {"mass_kg", "inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m",
-                          "driven_angular_velocity_rad_s", "torque_limit_n_m", "linear_drag_per_s",
-                          "angular_drag_per_s"}) {
-    EXPECT_EQ(refused("fixed", key, "1", false), message(key, "a fixed body"));
-  }
-  EXPECT_EQ(refused("fixed", "velocity_m_s", "[0, 0]", false),
-            message("velocity_m_s", "a fixed body"));
-  EXPECT_EQ(refused("fixed_axle", "linear_drag_per_s", "1", false),
-            message("linear_drag_per_s", "a fixed_axle body"));
-  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
-    EXPECT_EQ(refused("fixed_axle", key, "1", true),
-              message(key, "a motor without torque_limit_n_m"));
-  }
-  EXPECT_EQ(
-      refused("fixed_axle", "torque_limit_n_m", "1", false),
-      message("torque_limit_n_m",
-              "a body without driven_angular_velocity_rad_s or a motor of angular velocities"));
-  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
-    EXPECT_EQ(refused("fixed_axle", key, "1", true),
-              message(key, "a body whose angular velocity is driven"));
-  }
-}
-
-TEST(SceneErrors, MotorsAreTablesOfOneThingInOrder) {
-  const auto error = [](const char* key, const char* value) {
-    json scene = small_scene();
-    scene["bodies"][0][key] = json::parse(value);
-    if (std::string(key) != "motor") {
-      scene["bodies"][0]["motor"] = {{{"time_s", 0}, {"angular_velocity_rad_s", 1}}};
-    }
-    return error_of(scene.dump());
-  };
-  const std::string one_thing =
-      "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all";
-  EXPECT_EQ(error("motor", "[]"), "s.json: /bodies/0/motor: must have 1 to 1000 entries, not 0");
-  EXPECT_EQ(error("motor", R"([{"time_s": 0}])"), "s.json: /bodies/0/motor/0: " + one_thing);
-  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1},
-                               {"time_s": 1, "angular_velocity_rad_s": 1}])"),
-            "s.json: /bodies/0/motor/1: " + one_thing);
-  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1, "angular_velocity_rad_s": 1}])"),
-            "s.json: /bodies/0/motor/0: " + one_thing);
-  EXPECT_EQ(error("motor", R"([{"time_s": 1, "torque_n_m": 1}, {"time_s": 1, "torque_n_m": 2}])"),
-            "s.json: /bodies/0/motor/1/time_s: must be after the one before, 1; a jump takes two "
-            "points a little apart");
-  EXPECT_EQ(error("motor", R"([{"time_s": -1, "torque_n_m": 1}])"),
-            "s.json: /bodies/0/motor/0/time_s: must be 0 to 3600, not -1");
-  const auto no_effect = [](const char* key, const char* on) {
-    return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, on);
-  };
-  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
-    EXPECT_EQ(error(key, "1"), no_effect(key, "a body whose angular velocity is driven"));
-  }
-  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
-    EXPECT_EQ(error(key, "1"), no_effect(key, "a motor without torque_limit_n_m"));
-  }
-  EXPECT_EQ(error("torque_limit_n_m", "1"), "no error");
-  EXPECT_EQ(error("torque_limit_n_m", "0"),
-            "s.json: /bodies/0/torque_limit_n_m: must be 1e-12 to 1e+12, not 0");
-  EXPECT_EQ(error("driven_angular_velocity_rad_s", "1"),
-            "s.json: /bodies/0/motor: has no effect on a body whose angular velocity is driven; "
-            "leave it out");
-}
-
-TEST(SceneErrors, GripNeedsABodyThatSlips) {
-  json scene = small_scene();
-  for (json& body : scene["bodies"]) body.erase("cable_friction");
-  for (const double grip : {0.0, 1.0}) {
-    scene["cables"][0]["grip"] = grip;
-    EXPECT_EQ(error_of(scene.dump()), "no error");
-  }
-  scene["cables"][0]["grip"] = 0.5;
-  EXPECT_EQ(error_of(scene.dump()),
-            "s.json: /cables/0/grip: has no effect but as 0 or 1 where no body has a "
-            "cable_friction above 0 other than \"no_slip\"; give one to the body that is to slip");
-  scene["bodies"][0]["cable_friction"] = 0.1;
-  EXPECT_EQ(error_of(scene.dump()), "no error");
-  scene["cables"][0]["grip"] = 1.5;
-  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/grip: must be 0 to 1, not 1.5");
-  scene["cables"][0]["squeeze"] = -0.5;
-  scene["cables"][0].erase("grip");
-  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/squeeze: must be 0 to 1, not -0.5");
-}
-
 TEST(SceneErrors, AllMistakesOfFormAreReportedAtOnce) {
   json scene = small_scene();
   scene["titel"] = "x";
   scene["bodies"][0]["mass_kg"] = -1;
-  scene["bodies"][2].erase("radius_m");
+  scene["bodies"][2].erase("position_m");
   EXPECT_EQ(error_of(scene.dump()),
             "s.json: /bodies/0/mass_kg: must be 1e-09 to 1e+12, not -1\n"
-            "s.json: /bodies/2: radius_m is missing\n"
+            "s.json: /bodies/2: position_m is missing\n"
             "s.json: /titel: unknown key (did you mean title?)");
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
+
+#include "demos/scenes/scene_json.h"
 
 namespace pinchlab {
 
@@ -29,6 +32,16 @@ inline nlohmann::json small_scene() {
     "view": {"low_m": [-2.5, -4.2], "high_m": [2.5, 0.8]},
     "baseline": {"method": "cable", "reason": "It runs well without pinch joints."}
   })");
+}
+
+/// What the reader says of a scene, as of a file `s.json`; or "no error".
+inline std::string error_of(const std::string& text) {
+  try {
+    parse_scene(text, "s.json");
+  } catch (const SceneFileError& error) {
+    return error.what();
+  }
+  return "no error";
 }
 
 }  // namespace pinchlab

@@ -56,6 +56,16 @@ json schema_of(const KeyFormat& key) {
               {"items", {{"type", "number"}, {"minimum", key.low}, {"maximum", key.high}}},
               {"minItems", 2},
               {"maxItems", 2}};
+    case KeyType::points: {
+      KeyFormat point;
+      point.type = KeyType::vector;
+      point.low = -most_coordinate;
+      point.high = most_coordinate;
+      return {{"type", "array"},
+              {"items", schema_of(point)},
+              {"minItems", key.low},
+              {"maxItems", key.high}};
+    }
     case KeyType::text:
       return {{"type", "string"}, {"minLength", key.low}, {"maxLength", key.high}};
     case KeyType::name:
@@ -121,6 +131,7 @@ std::string documented_range(const KeyFormat& key) {
     case KeyType::text:
     case KeyType::name:
       return fmt::format("{} to {} characters", key.low, key.high);
+    case KeyType::points:
     case KeyType::list:
       return fmt::format("{} to {} entries", key.low, key.high);
     case KeyType::choice:

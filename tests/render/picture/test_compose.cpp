@@ -8,6 +8,7 @@
 
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
+#include "sim/nodes.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
 
@@ -170,7 +171,7 @@ TEST(CablePath, ALinkWithoutWrapChangesNothing) {
   World world = make_world(scene, Method::pinch);
   Workspace work;
   const auto before = path_of(scene, world);
-  if (world.cables[0].links.size() == 2) insert_link(world, world.cables[0], 1, 0, 1);
+  if (world.cables[0].links.size() == 2) insert_link(world, world.cables[0], 1, 0, -1, 1);
   ASSERT_EQ(world.cables[0].links.size(), 3u);
   update_segments(world, work);
   const auto after = path_of(scene, world);
@@ -204,6 +205,26 @@ TEST(CablePath, APinchOnAWrapIsDrawnOnce) {
     }
   }
   EXPECT_NEAR(length_of(points), world.cables[0].length, 1e-6);
+}
+
+TEST(CablePath, OfSeveralTurnsTheLastOneShowsUnderAPinchToo) {
+  Scene scene = pinching();
+  scene.cables[0].wraps[0].extra_turns = 2;
+  World world = make_world(scene, Method::pinch);
+  const auto shown = [&](const World& now) {
+    std::vector<StripPoint> points;
+    const auto begins = append_cable_path(scene, now, now.cables[0], fine, points);
+    EXPECT_EQ(begins.size(), 2u) << "the span that is wound on, and what shows of the rest";
+    const auto cut = points.begin() + static_cast<std::ptrdiff_t>(begins.back());
+    return length_of({points.begin(), cut}) + length_of({cut, points.end()});
+  };
+  const double before = shown(world);
+  EXPECT_NEAR(before, world.cables[0].length - 1.5 * 2.0 * std::numbers::pi * 0.55, 1e-6);
+  Workspace work;
+  for (int k = 0; k < 40 && world.cables[0].links.size() == 3; ++k)
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+  ASSERT_EQ(world.cables[0].links.size(), 9u) << "the roller parts each of three turns";
+  EXPECT_NEAR(shown(world), before, 1e-6);
 }
 
 TEST(CablePath, ClippingBodiesStillShowOneSmoothCable) {
@@ -377,6 +398,33 @@ TEST(Compose, ReusedPictureHoldsNothingOld) {
   EXPECT_EQ(picture.order.size(), fresh.order.size());
   EXPECT_EQ(picture.points.size(), fresh.points.size());
   EXPECT_EQ(picture.labels.size(), fresh.labels.size());
+}
+
+// One band for all pieces, with marks along all of it, and nothing for the nodes.
+TEST(Compose, CablesWithMassAreOneBand) {
+  Scene scene;
+  scene.view = {Vec2(-1.0, -1.5), Vec2(2.0, 1.0)};
+  Cable chain;
+  chain.name = "chain";
+  chain.half_width = 0.01;
+  chain.end.point = Vec2(1.0, 0.0);
+  chain.slack = 1.0;
+  chain.mass_per_metre = 1.0;
+  chain.nodes = 20;
+  scene.cables.push_back(chain);
+  spread_nodes(scene);
+  const World world = make_world(scene, Method::pinch);
+  Picture picture;
+  compose(scene, set_scenery(scene), world, picture);
+  ASSERT_EQ(picture.strips.size(), 1U);
+  const Strip& strip = picture.strips[0];
+  EXPECT_GT(strip.mark_length, 0.0);
+  EXPECT_NEAR(picture.points[strip.first + strip.count - 1].material, 2.0, 1e-9);
+  EXPECT_NEAR(picture.points[strip.first + strip.count - 1].position.x(), 1.0, 1e-9);
+  for (std::size_t i = strip.first + 1; i < strip.first + strip.count; ++i) {
+    EXPECT_GT(picture.points[i].tangent.dot(picture.points[i - 1].tangent), std::cos(most_turn));
+  }
+  EXPECT_TRUE(picture.labels.empty());
 }
 
 }  // namespace

@@ -2,27 +2,17 @@
 // Questions of the researcher's own and what is asked besides the choice, on a JATOS server.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
-import { fakeJatos } from './fake_jatos.mjs';
-import { browse, clips, demonstrations, open, program, scratch } from './support.mjs';
-import { unzip } from './unzip.mjs';
+import { jatosStudy } from './jatos_study.mjs';
+import { answer, browse, consent, demonstrations, open } from './support.mjs';
 
-const folder = scratch();
-const run = (...options) => execFileSync(program, ['study', ...options], { cwd: folder, encoding: 'utf8' });
-writeFileSync(join(folder, 'study.json'), JSON.stringify({
-  format: 'pinchlab-study 1', demonstrations, preference: 'graded', confidence: 3, click_where: true, reason: 50,
+const { folder, run, jatos } = await jatosStudy({
+  preference: 'graded', confidence: 3, click_where: true, reason: 50,
   questionnaire_before: [{ name: 'age', kind: 'number', text: 'How old are you?', min: 18, max: 120, required: true }],
   questionnaire_after: [{ name: 'words', kind: 'text', text: 'What else?' }],
-}));
-run('export', '--jatos', 'study.jzip', '--clips', clips(), '--participants', '1', '--seed', '7', '--config', 'study.json', '--no-webm');
-const entries = unzip(readFileSync(join(folder, 'study.jzip')));
-const study = JSON.parse(entries.get('moving_cables.jas'));
-const input = JSON.parse(study.data.componentList[0].jsonData);
-const assets = new Map([...entries].filter(([name]) => name.startsWith('moving_cables/')).map(([name, bytes]) => [name.slice('moving_cables/'.length), bytes]));
-const jatos = await fakeJatos({ assets, input });
+}, 1);
 after(jatos.close);
 
 test('everything is asked, kept over a reload, and brought back', async () => {
@@ -61,4 +51,36 @@ test('everything is asked, kept over a reload, and brought back', async () => {
     [['left', -1, 2, 'reason 0'], ['tie', 0, 2, 'reason 1'], ['right', 1, 2, 'reason 2']]);
   assert.equal(questionnaires.before.age.answer, 44);
   assert.equal(questionnaires.after.words.answer, 'Nothing');
+});
+
+test('the language is the participant\'s', async () => {
+  const two = await jatosStudy({ languages: ['en', 'sv'] }, 1);
+  const { browser, context } = await browse({ locale: 'en-GB' });
+  try {
+    const page = await open(context, two.jatos.address('one'));
+    await page.waitForSelector('#language-sv');
+    await page.click('#language-sv');
+    await page.waitForSelector('#language-en');
+    await consent(page);
+    await page.reload();
+    await page.waitForSelector('#continue');
+    assert.equal(await page.textContent('#continue'), 'Fortsätt');
+    await page.click('#continue');
+    for (let i = 0; i < demonstrations.length; ++i) {
+      await page.waitForSelector('#left');
+      await answer(page);
+    }
+    await page.click('#next');
+    await page.click('#save');
+    await page.waitForSelector('#code');
+    assert.deepEqual(page.problems, []);
+  } finally {
+    await browser.close();
+    two.jatos.close();
+  }
+  writeFileSync(join(two.folder, 'results.txt'), `${JSON.stringify(two.jatos.runs.get('one').result)}\n`);
+  two.run('import', '--jatos', 'results.txt', '--key', 'study.key.json', '--answers', 'answers');
+  const [name] = readdirSync(join(two.folder, 'answers')).filter((file) => file.endsWith('.json'));
+  const { language, study } = JSON.parse(readFileSync(join(two.folder, 'answers', name), 'utf8'));
+  assert.deepEqual([language, study.language], ['sv', 'en, sv']);
 });

@@ -3,18 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, browse, consent, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
-
-async function withStudy(config, body) {
-  const server = await serve(scratch(), { config });
-  const { browser, context } = await browse();
-  try {
-    await body(server, context, browser);
-  } finally {
-    await browser.close();
-    killServers();
-  }
-}
+import { answer, answersIn, assertAccessible, consent, open, openSessions, picture, withStudy } from './support.mjs';
 
 test('practice and an attention check, by their names alone', () => withStudy({ training: ['01-roll-over'], attention_checks: ['03-drop'] }, async (server, context) => {
   const page = await open(context, server.address);
@@ -79,6 +68,44 @@ test('one-time links: who has one starts, once', () => withStudy({ one_time_link
   assert.match(await refusal(new URL(`?link=${'0'.repeat(32)}`, server.address).href), /used already/, 'a link that nobody was given');
   assert.deepEqual(openSessions(server), []);
 }));
+
+for (const [width, height] of [[1920, 1080], [1366, 768], [1280, 720]]) {
+  test(`the language is the participant's, ${width} x ${height}`, () => withStudy({
+    languages: ['en', 'sv'], controller: 'University of X, Department of Y', contact: 'A. B., ab@x.example', consent_version: '2 (2026-11-01)',
+  }, async (server, context) => {
+    const page = await open(context, server.address);
+    await page.waitForSelector('#start');
+    const language = () => page.evaluate(() => document.documentElement.lang);
+    assert.equal(await language(), 'sv', 'the one that the browser asks for');
+    assert.match(await page.textContent('#stage'), /Ansvarig.+University of X/);
+    await assertAccessible(page, 'Swedish information');
+    await picture(page, `languages-${width}-sv`);
+    await page.click('#language-en');
+    await page.waitForSelector('#language-sv');
+    assert.equal(await language(), 'en');
+    assert.match(await page.textContent('#stage'), /Version of this information: 2 \(2026-11-01\)/);
+    await assertAccessible(page, 'English information');
+    await picture(page, `languages-${width}-en`);
+    await consent(page);
+    await page.reload();
+    await page.waitForSelector('#continue');
+    assert.equal(await language(), 'en', 'what was chosen stays');
+    assert.equal(await page.textContent('#continue'), 'Go on');
+    await page.click('#continue');
+    for (let i = 0; i < 3; ++i) {
+      await page.waitForSelector('#left');
+      await answer(page);
+    }
+    await page.click('#next');
+    await page.click('#save');
+    await page.waitForSelector('#code');
+    const [file] = answersIn(server);
+    assert.equal(file.language, 'en');
+    assert.equal(file.study.language, 'en, sv');
+    assert.equal(file.study.consent_version, '2 (2026-11-01)');
+    assert.deepEqual(page.problems, []);
+  }, { locale: 'sv-SE', viewport: { width, height } }));
+}
 
 test('chosen levels: one clip at a time, and a reload goes on', () => {
   const pair = (name, level) => ({ level, left: `${name}.left-pinch.mp4`, right: `${name}.left-baseline.mp4` });

@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, browse, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, assertAccessible, open, openSessions, picture, withStudy } from './support.mjs';
 
 const questions = {
   en: {
@@ -31,17 +31,6 @@ function configOf(language) {
   };
 }
 
-async function withStudy(language, contextOptions, body) {
-  const server = await serve(scratch(), { config: configOf(language) });
-  const { browser, context } = await browse(contextOptions);
-  try {
-    await body(server, context);
-  } finally {
-    await browser.close();
-    killServers();
-  }
-}
-
 async function begin(page) {
   await page.waitForSelector('#start');
   await page.check('#consent');
@@ -58,7 +47,7 @@ async function answerTrials(page) {
 
 for (const [width, height] of [[1366, 768], [1280, 720]]) {
   for (const language of ['en', 'sv']) {
-    test(`questions by the keyboard, ${language}, ${width} x ${height}`, () => withStudy(language, { viewport: { width, height } }, async (server, context) => {
+    test(`questions by the keyboard, ${language}, ${width} x ${height}`, () => withStudy(configOf(language), async (server, context) => {
       const { yes } = questions[language];
       const page = await open(context, server.address);
       await begin(page);
@@ -102,62 +91,55 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
       assert.equal(file.questionnaires.after.words.answer, 'The pulleys.\n<b>&amp;</b>');
       assert.deepEqual(file.free_text, {});
       assert.deepEqual(page.problems, []);
-    }));
+    }, { viewport: { width, height } }));
   }
 }
 
 for (const [width, height] of [[1366, 768], [1280, 720]]) {
   for (const language of ['en', 'sv']) {
-    test(`the screen is measured, ${language}, ${width} x ${height}`, async () => {
-      const server = await serve(scratch(), { config: { language, measure_screen: true } });
-      const { browser, context } = await browse({ viewport: { width, height } });
-      try {
-        const page = await open(context, server.address);
-        await page.waitForSelector('#start');
-        await page.check('#consent');
-        await page.click('#start');
-        await page.waitForSelector('#card-width');
-        await assertAccessible(page, 'screen');
-        await picture(page, `screen-${width}-${language}`);
-        const card = () => page.$eval('.card', (element) => [element.getBoundingClientRect().width, element.getBoundingClientRect().height]);
-        await page.click('#next');
-        assert.equal(await page.evaluate(() => document.activeElement.id), 'card-width', 'a width that nobody touched is no answer');
-        assert.notEqual(await page.textContent('#card-wrong'), '');
-        await page.keyboard.press('End');
-        const [widest] = await card();
-        assert.equal(widest, 1000, 'the sheet holds the largest');
-        await page.fill('#card-width', '428');
-        const [across, down] = await card();
-        assert.ok(Math.abs(across / down - 85.6 / 53.98) < 0.01, `${across} x ${down}`);
-        await page.fill('#distance', '6');
-        await page.click('#next');
-        assert.match(await page.textContent('#distance-wrong'), /20.+300/);
-        await assertAccessible(page, 'screen, wrong');
-        await page.fill('#distance', '57.5');
-        await page.waitForTimeout(3000);
-        await page.click('#next');
-        for (let i = 0; i < 3; ++i) {
-          await page.waitForSelector('#left');
-          await answer(page);
-        }
-        await page.click('#next');
-        await page.click('#save');
-        await page.waitForSelector('#code');
-        const [{ questionnaires: { screen } }] = answersIn(server);
-        assert.equal(screen.px_per_mm.answer, 5);
-        assert.equal(screen.viewing_distance_mm.answer, 575);
-        // Chromium without a screen redraws 60 times a second, or less while it is busy.
-        assert.ok(screen.refresh_rate_hz.answer > 5 && screen.refresh_rate_hz.answer < 70, `${screen.refresh_rate_hz.answer} Hz`);
-        assert.deepEqual(page.problems, []);
-      } finally {
-        await browser.close();
-        killServers();
+    test(`the screen is measured, ${language}, ${width} x ${height}`, () => withStudy({ language, measure_screen: true }, async (server, context) => {
+      const page = await open(context, server.address);
+      await page.waitForSelector('#start');
+      await page.check('#consent');
+      await page.click('#start');
+      await page.waitForSelector('#card-width');
+      await assertAccessible(page, 'screen');
+      await picture(page, `screen-${width}-${language}`);
+      const card = () => page.$eval('.card', (element) => [element.getBoundingClientRect().width, element.getBoundingClientRect().height]);
+      await page.click('#next');
+      assert.equal(await page.evaluate(() => document.activeElement.id), 'card-width', 'a width that nobody touched is no answer');
+      assert.notEqual(await page.textContent('#card-wrong'), '');
+      await page.keyboard.press('End');
+      const [widest] = await card();
+      assert.equal(widest, 1000, 'the sheet holds the largest');
+      await page.fill('#card-width', '428');
+      const [across, down] = await card();
+      assert.ok(Math.abs(across / down - 85.6 / 53.98) < 0.01, `${across} x ${down}`);
+      await page.fill('#distance', '6');
+      await page.click('#next');
+      assert.match(await page.textContent('#distance-wrong'), /20.+300/);
+      await assertAccessible(page, 'screen, wrong');
+      await page.fill('#distance', '57.5');
+      await page.waitForTimeout(3000);
+      await page.click('#next');
+      for (let i = 0; i < 3; ++i) {
+        await page.waitForSelector('#left');
+        await answer(page);
       }
-    });
+      await page.click('#next');
+      await page.click('#save');
+      await page.waitForSelector('#code');
+      const [{ questionnaires: { screen } }] = answersIn(server);
+      assert.equal(screen.px_per_mm.answer, 5);
+      assert.equal(screen.viewing_distance_mm.answer, 575);
+      // Chromium without a screen redraws 60 times a second, or less while it is busy.
+      assert.ok(screen.refresh_rate_hz.answer > 5 && screen.refresh_rate_hz.answer < 70, `${screen.refresh_rate_hz.answer} Hz`);
+      assert.deepEqual(page.problems, []);
+    }, { viewport: { width, height } }));
   }
 }
 
-test('what was answered is asked once; leaving keeps nothing', () => withStudy('en', {}, async (server, context) => {
+test('what was answered is asked once; leaving keeps nothing', () => withStudy(configOf('en'), async (server, context) => {
   const page = await open(context, server.address);
   await begin(page);
   await page.reload();

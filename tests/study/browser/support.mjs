@@ -79,11 +79,11 @@ process.on('exit', killServers);
  * Starts the server, on a port that is free or on `port`, with the short clips or with those of `clipsFolder`. Resolves
  * when it listens.
  */
-export async function serve(folder, { port = 0, config = {}, clipsFolder, cwd = folder, answers = join(folder, 'answers') } = {}) {
+export async function serve(folder, { port = 0, config = {}, clipsFolder, cwd = folder, answers = join(folder, 'answers'), isPilot = false } = {}) {
   const configFile = join(folder, 'study.json');
   writeFileSync(configFile, JSON.stringify({ format: 'pinchlab-study 1', demonstrations: clipsFolder ? undefined : demonstrations, ...config }));
   const child = spawn(program, ['study', 'serve', '--clips', clipsFolder ?? clips(), '--answers', answers, '--port', String(port), '--seed', '7',
-    '--config', configFile, '--no-webm'], { cwd, stdio: ['ignore', 'pipe', 'inherit'] });
+    '--config', configFile, '--no-webm', ...(isPilot ? ['--pilot'] : [])], { cwd, stdio: ['ignore', 'pipe', 'inherit'] });
   running.add(child);
   const server = { child, answers, output: '' };
   server.ended = new Promise((resolve) => { child.on('exit', resolve); });
@@ -124,6 +124,18 @@ export async function browse(options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   context.setDefaultTimeout(patience);
   return { browser, context };
+}
+
+/** A study of that configuration and a browser in front of it; both end with `body(server, context, browser)`. */
+export async function withStudy(config, body, contextOptions = {}, serveOptions = {}) {
+  const server = await serve(scratch(), { config, ...serveOptions });
+  const { browser, context } = await browse(contextOptions);
+  try {
+    await body(server, context, browser);
+  } finally {
+    await browser.close();
+    killServers();
+  }
 }
 
 /** A page whose every problem is kept in `page.problems`. */

@@ -3,18 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answersIn, assertAccessible, browse, consent, killServers, open, picture, scratch, serve } from './support.mjs';
-
-async function withStudy(config, contextOptions, body) {
-  const server = await serve(scratch(), { config });
-  const { browser, context } = await browse(contextOptions);
-  try {
-    await body(server, context);
-  } finally {
-    await browser.close();
-    killServers();
-  }
-}
+import { answersIn, assertAccessible, consent, open, picture, withStudy } from './support.mjs';
 
 // Says that nothing is cut off, and that the clips have not changed their size.
 async function assertFits(page, video) {
@@ -36,7 +25,7 @@ const sizeOf = (page) => page.$eval('video', (video) => [video.getBoundingClient
 for (const [width, height] of [[1366, 768], [1280, 720]]) {
   for (const language of ['en', 'sv']) {
     const config = { language, preference: 'graded', confidence: 5, reason: 100, click_where: true };
-    test(`everything is asked, ${language}, ${width} x ${height}`, () => withStudy(config, { viewport: { width, height } }, async (server, context) => {
+    test(`everything is asked, ${language}, ${width} x ${height}`, () => withStudy(config, async (server, context) => {
       const page = await open(context, server.address);
       const name = `asked-${width}-${language}`;
       await page.waitForSelector('#start');
@@ -105,11 +94,11 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
       assert.ok(Math.abs(two.where_x - 0.7) < 1e-9 && Math.abs(two.where_y - 0.48) < 1e-9, `${two.where_x}, ${two.where_y}`);
       assert.equal(three.where_side, undefined);
       assert.deepEqual(page.problems, []);
-    }));
+    }, { viewport: { width, height } }));
   }
 }
 
-test('confidence alone, after a choice of two; a reload asks the trial again', () => withStudy({ confidence: 9 }, {}, async (server, context) => {
+test('confidence alone, after a choice of two; a reload asks the trial again', () => withStudy({ confidence: 9 }, async (server, context) => {
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What could have shaped the answers beside the clips, in the report.
+#include <fmt/format.h>
+
+#include "analysis/document.h"
+
+namespace pinchlab::analysis {
+namespace {
+
+std::vector<Block> reaction_blocks(const Report& report) {
+  const Estimate& median = report.reaction_times.front().median_s;
+  if (!median) return why_missing("A table of reaction times", median);
+  TableBlock block;
+  block.caption = "Reaction times in seconds, from the moment the buttons appear";
+  block.header = {"",         "answers", "median", "lower quartile", "upper quartile",
+                  "shortest", "longest"};
+  for (const ReactionTimes& row : report.reaction_times) {
+    block.rows.push_back({{row.name},
+                          {fmt::format("{}", row.answers)},
+                          {fixed(row.median_s, 2)},
+                          {fixed(row.lower_quartile_s, 2)},
+                          {fixed(row.upper_quartile_s, 2)},
+                          {fixed(row.shortest_s, 2)},
+                          {fixed(row.longest_s, 2)}});
+  }
+  return {std::move(block)};
+}
+
+}  // namespace
+
+std::vector<Block> effect_blocks(const Report& report) {
+  Document part;
+  const std::string& pinch = report.options.pinch_label;
+  part.add(Heading{"Side, order, time and attention"});
+  const SideBias& side = report.side_bias;
+  if (side.chosen.total() > 0) {
+    part.add(Paragraph{fmt::format(
+        "The left clip was chosen {} times and the right one {} times. The clip of {} was chosen "
+        "in {} of {} answers when it was on the left and in {} of {} when it was on the right.",
+        side.chosen.pinch, side.chosen.cable, pinch, side.shown_left.pinch, side.shown_left.total(),
+        side.shown_right.pinch, side.shown_right.total())});
+  }
+  if (side.p) {
+    part.add(Paragraph{fmt::format(
+        "With demonstrations as strata and {} on either side equally often, the left clip "
+        "would be chosen in {} % of the answers (Mantel–Haenszel X² = {}, p = {}; by sign flips "
+        "over participants p = {}).",
+        pinch, fixed(50.0 + 100.0 * side.bias.value, 1), fixed(side.chi_square, 3), p_text(side.p),
+        p_text(side.p_sign_flip))});
+  }
+  part.add(why_missing("A side bias", side.p));
+  const OrderEffect& order = report.order_effect;
+  if (order.p_trend) {
+    part.add(Paragraph{fmt::format(
+        "Over the course of a session the choice of {} shows a trend of X² = {} (p = {}; by "
+        "sign flips over participants p = {}).",
+        pinch, fixed(order.chi_square, 3), p_text(order.p_trend), p_text(order.p_sign_flip))});
+  }
+  part.add(why_missing("An order effect", order.p_trend));
+  if (side.chosen.total() > 0 || !order.by_position.empty()) part.add(FigureBlock{"effects"});
+  part.add(reaction_blocks(report));
+  part.add(circumstance_blocks(report.circumstances));
+  return std::move(part.blocks);
+}
+
+}  // namespace pinchlab::analysis

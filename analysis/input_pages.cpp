@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What went into the report, what participants wrote, and how it was computed.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/document.h"
+
+namespace pinchlab::analysis {
+namespace {
+
+std::vector<Block> went_in(const Report& report, const AnswersTable& table) {
+  Document part;
+  part.add(Heading{"What went in"});
+  const std::int64_t answers = report.all().row.counts.total();
+  std::string text =
+      table.participants.empty()
+          ? fmt::format(
+                "A table of counts with {} answers to {} demonstrations; who gave which is not "
+                "known.",
+                answers, table.demonstrations.size())
+          : fmt::format("{} answers of {} participants to {} demonstrations, read from {} file{}.",
+                        answers, table.participants.size(), table.demonstrations.size(),
+                        table.sources.size(), table.sources.size() == 1 ? "" : "s");
+  if (!table.incomplete.empty()) {
+    const size_t shown = std::min<size_t>(table.incomplete.size(), 20);
+    const std::vector<std::string> names(
+        table.incomplete.begin(), table.incomplete.begin() + static_cast<std::ptrdiff_t>(shown));
+    text += fmt::format(" Answers are missing from {} participant{}: {}{}.",
+                        table.incomplete.size(), table.incomplete.size() == 1 ? "" : "s",
+                        fmt::join(names, ", "), shown < table.incomplete.size() ? ", ..." : "");
+  }
+  part.add(Paragraph{text});
+  if (table.exclusions.empty()) return std::move(part.blocks);
+  TableBlock block;
+  block.caption = "Participants left out of everything above";
+  block.header = {"participant", "reason"};
+  for (const Exclusion& exclusion : table.exclusions) {
+    block.rows.push_back({{exclusion.participant}, {exclusion.reason}});
+  }
+  part.add(std::move(block));
+  return std::move(part.blocks);
+}
+
+std::vector<Block> free_text_blocks(const AnswersTable& table) {
+  Document part;
+  TableBlock block;
+  block.caption = "What participants wrote";
+  block.header = {"participant", "question", "text"};
+  for (const auto& [participant, session] : table.sessions) {
+    for (const auto& [question, text] : session.free_text) {
+      const bool blank = text.find_first_not_of(" \t\r\n") == std::string::npos;
+      if (!blank) block.rows.push_back({{table.participants[participant]}, {question}, {text}});
+    }
+  }
+  if (block.rows.empty()) return std::move(part.blocks);
+  part.add(Heading{"Free texts"});
+  part.add(std::move(block));
+  return std::move(part.blocks);
+}
+
+std::vector<Block> methods_blocks(const Report& report) {
+  Document part;
+  part.add(Heading{"Methods"});
+  const SignFlip& flip = report.all().pooled.sign_flip;
+  part.add(Paragraph{
+      fmt::format("Chi-square tests against one half, df 1, without continuity correction; exact "
+                  "binomial tests two-sided; "
+                  "Holm and Benjamini–Hochberg over the demonstrations, and over the groups; the "
+                  "Bayes factor compares a share "
+                  "with the prior Beta(1, 1) (uniform) to a share of 1/2; Rao–Scott first-order "
+                  "correction with participants as "
+                  "clusters, against chi-square (df 1) and against F(1, participants − 1); "
+                  "sign-flip tests {}; studentised "
+                  "cluster bootstrap with {} resamples; 1 JOD is the difference at which 3 of 4 "
+                  "people choose the better clip. "
+                  "alpha = {}, seed = {}, Pinchlab {}.",
+                  flip.exact ? "exact" : "by 99999 random flips", report.options.bootstrap,
+                  report.options.alpha, report.options.seed, PINCHLAB_VERSION)});
+  return std::move(part.blocks);
+}
+
+}  // namespace
+
+std::vector<Block> input_blocks(const Report& report, const AnswersTable& table) {
+  Document part;
+  part.add(went_in(report, table));
+  part.add(free_text_blocks(table));
+  part.add(methods_blocks(report));
+  return std::move(part.blocks);
+}
+
+}  // namespace pinchlab::analysis

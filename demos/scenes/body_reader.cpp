@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/body_reader.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "demos/scenes/json_values.h"
+#include "sim/outline.h"
+
+namespace pinchlab {
+namespace {
+
+using nlohmann::json;
+
+class BodyReader {
+ public:
+  BodyReader(const json& from, const std::string& place, std::vector<SceneProblem>& problems)
+      : from_(from), place_(place), problems_(problems) {}
+  Body read();
+
+ private:
+  void problem(const std::string& place, std::string message) {
+    problems_.push_back({place, std::move(message)});
+  }
+  void refuse(std::initializer_list<const char*> keys, const std::string& what) {
+    refuse_keys(from_, place_, keys, what, problems_);
+  }
+  void check_kind();
+  void read_outline(Body& body);
+  void read_rail(Body& body);
+  void read_motor(Body& body);
+
+  const json& from_;
+  const std::string& place_;
+  std::vector<SceneProblem>& problems_;
+};
+
+// A key that would be read and then ignored is a mistake of the author's.
+void BodyReader::check_kind() {
+  const std::string& kind = from_["kind"].get_ref<const std::string&>();
+  if (kind == "fixed") {
+    refuse({"mass_kg", "density_kg_m2", "inertia_kg_m2", "velocity_m_s", "angular_velocity_rad_s",
+            "driven_angular_velocity_rad_s", "torque_n_m", "motor", "torque_limit_n_m",
+            "linear_drag_per_s", "angular_drag_per_s"},
+           "a fixed body");
+  } else if (from_.contains("mass_kg") == from_.contains("density_kg_m2")) {
+    problem(place_,
+            from_.contains("mass_kg")
+                ? "mass_kg and density_kg_m2 both say how heavy it is; leave one out"
+                : fmt::format("mass_kg is missing (a {} body needs one, or density_kg_m2)", kind));
+  }
+  if (kind == "fixed_axle") {
+    refuse({"velocity_m_s", "linear_drag_per_s"}, "a fixed_axle body");
+  }
+  if (kind != "rail") {
+    refuse({"rail_axis"}, "a body that is not on a rail");
+  }
+  if (kind != "fixed" && from_.contains("driven_angular_velocity_rad_s")) {
+    refuse({"torque_n_m", "motor", "angular_drag_per_s"},
+           "a body whose angular velocity is driven");
+  }
+}
+
+// A disc's radius, or a polygon's corners; and what of its mass follows from them.
+void BodyReader::read_outline(Body& body) {
+  const bool polygon = from_.contains("corners_m");
+  if (polygon == from_.contains("radius_m")) {
+    problem(place_, polygon ? "radius_m makes it a disc and corners_m a polygon; leave one out"
+                            : "radius_m is missing (or corners_m, of a polygon)");
+    return;
+  }
+  const double density = from_.value("density_kg_m2", 0.0);
+  if (!polygon) {
+    refuse({"corner_radius_m"}, "a disc");
+    take(from_, "radius_m", body.radius);
+    if (density > 0.0) body.mass = density * std::numbers::pi * body.radius * body.radius;
+    return;
+  }
+  std::vector<Vec2> corners;
+  for (const json& corner : from_["corners_m"]) corners.push_back(vector_of(corner));
+  const double corner_radius = from_.value("corner_radius_m", 0.0);
+  if (!is_convex(corners)) {
+    problem(place_ + "/corners_m",
+            "must go round a convex polygon counter-clockwise, with no corner on a straight side");
+    return;
+  }
+  if (density > 0.0) body.mass = density * plate_of(corners, corner_radius).area;
+  make_polygon(body, std::move(corners), corner_radius);
+}
+
+void BodyReader::read_rail(Body& body) {
+  if (!from_.contains("rail_axis")) {
+    problem(place_, "rail_axis is missing (a rail body moves along it: [0, 1] is up and down)");
+    return;
+  }
+  const Vec2 axis = vector_of(from_["rail_axis"]);
+  if (axis.norm() < 1e-6) {
+    problem(place_ + "/rail_axis", "must have a direction: its length is zero or nearly so");
+    return;
+  }
+  body.rail_axis = axis.normalized();
+  const double across =
+      body.rail_axis.x() * body.velocity.y() - body.rail_axis.y() * body.velocity.x();
+  if (std::abs(across) > 1e-9 * body.velocity.norm()) {
+    problem(place_ + "/velocity_m_s", "must point along rail_axis");
+  }
+}
+
+// A table of angular velocities makes the body a driven one, a table of torques does not.
+void BodyReader::read_motor(Body& body) {
+  const json& points = from_["motor"];
+  const bool is_speed = points[0].contains("angular_velocity_rad_s");
+  const char* wanted = is_speed ? "angular_velocity_rad_s" : "torque_n_m";
+  const char* other = is_speed ? "torque_n_m" : "angular_velocity_rad_s";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const json& point = points[i];
+    const std::string at = fmt::format("{}/motor/{}", place_, i);
+    if (point.contains(other) || !point.contains(wanted)) {
+      problem(at, "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all");
+      return;
+    }
+    body.motor.push_back({point["time_s"].get<double>(), point[wanted].get<double>()});
+    if (i > 0 && body.motor[i].time <= body.motor[i - 1].time) {
+      problem(at + "/time_s", fmt::format("must be after the one before, {}; a jump takes two "
+                                          "points a little apart",
+                                          body.motor[i - 1].time));
+      return;
+    }
+  }
+  if (is_speed) {
+    refuse({"torque_n_m", "angular_drag_per_s"}, "a body whose angular velocity is driven");
+    body.driven_angular_velocity = body.motor.front().value;
+  } else {
+    refuse({"torque_n_m"}, "a body whose motor has a table of torques");
+  }
+}
+
+Body BodyReader::read() {
+  Body body;
+  body.name = from_["name"].get<std::string>();
+  if (body.name == "world") {
+    problem(place_ + "/name",
+            "\"world\" is what tables call the fixed surroundings; choose another name");
+  }
+  const std::map<std::string, BodyKind> kinds = {{"free", BodyKind::free},
+                                                 {"rail", BodyKind::rail},
+                                                 {"fixed_axle", BodyKind::fixed_axle},
+                                                 {"fixed", BodyKind::fixed}};
+  body.kind = kinds.at(from_["kind"].get<std::string>());
+  take(from_, "mass_kg", body.mass);
+  take(from_, "inertia_kg_m2", body.inertia);
+  read_outline(body);
+  take(from_, "position_m", body.position);
+  take(from_, "angle_rad", body.angle);
+  take(from_, "velocity_m_s", body.velocity);
+  take(from_, "angular_velocity_rad_s", body.angular_velocity);
+  take(from_, "driven_angular_velocity_rad_s", body.driven_angular_velocity);
+  take(from_, "torque_limit_n_m", body.torque_limit);
+  take(from_, "torque_n_m", body.torque);
+  take(from_, "linear_drag_per_s", body.linear_drag);
+  take(from_, "angular_drag_per_s", body.angular_drag);
+  if (from_.contains("cable_friction") && from_["cable_friction"].is_number()) {
+    body.cable_friction = from_["cable_friction"].get<double>();
+  }
+  take(from_, "contact_friction", body.contact_friction);
+  take(from_, "restitution", body.restitution);
+  check_kind();
+  if (body.kind == BodyKind::rail) {
+    read_rail(body);
+  }
+  if (from_.contains("motor") && body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    read_motor(body);
+  }
+  if (body.driven_angular_velocity && !from_.contains("torque_limit_n_m")) {
+    refuse({"inertia_kg_m2", "angular_velocity_rad_s"}, "a motor without torque_limit_n_m");
+  } else if (!body.driven_angular_velocity && body.kind != BodyKind::fixed) {
+    refuse({"torque_limit_n_m"},
+           "a body without driven_angular_velocity_rad_s or a motor of angular velocities");
+  }
+  return body;
+}
+
+}  // namespace
+
+Body read_body(const json& from, const std::string& place, std::vector<SceneProblem>& problems) {
+  return BodyReader(from, place, problems).read();
+}
+
+void refuse_keys(const json& from, const std::string& place,
+                 std::initializer_list<const char*> keys, const std::string& what,
+                 std::vector<SceneProblem>& problems) {
+  for (const char* key : keys) {
+    if (from.contains(key)) {
+      problems.push_back(
+          {place + "/" + key, fmt::format("has no effect on {}; leave it out", what)});
+    }
+  }
+}
+
+}  // namespace pinchlab

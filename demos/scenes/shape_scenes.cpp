@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/shape_scenes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "demos/scenes/build.h"
+#include "sim/nodes.h"
+#include "sim/outline.h"
+
+namespace pinchlab::build {
+
+namespace {
+
+constexpr double g = 9.81;  // m/s^2, the default gravity
+
+/// Of the bob's angle and its speed, by one step of Runge and Kutta's method on either side of 0, also
+/// where the step goes beyond it.
+struct Swing {
+  double angle = 0.0, speed = 0.0;  // rad, rad/s
+
+  void advance(double h, double free_at_0, double w) {
+    const auto acceleration = [&](double th, double omega) {
+      return -(w * omega * omega + g * std::sin(th)) / (free_at_0 + w * th);
+    };
+    const double k1 = acceleration(angle, speed), v1 = speed;
+    const double v2 = speed + 0.5 * h * k1, k2 = acceleration(angle + 0.5 * h * v1, v2);
+    const double v3 = speed + 0.5 * h * k2, k3 = acceleration(angle + 0.5 * h * v2, v3);
+    const double v4 = speed + h * k3, k4 = acceleration(angle + h * v3, v4);
+    angle += h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+    speed += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+};
+
+}  // namespace
+
+std::vector<Vec2> regular_corners(int count, double radius, double first) {
+  std::vector<Vec2> corners;
+  for (int k = 0; k < count; ++k) {
+    const double angle = first + 2.0 * std::numbers::pi * k / count;
+    corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return corners;
+}
+
+std::vector<Vec2> box_corners(double width, double height) {
+  const double x = 0.5 * width, y = 0.5 * height;
+  return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+}
+
+Vec2 SquareDrum::place(double th) const {
+  const double length = free + half_width * (th - start) + (th > 0.0 ? 2.0 * half : 0.0);
+  return Vec2(half, th > 0.0 ? half : -half) + half_width * Vec2(std::cos(th), std::sin(th)) +
+         length * Vec2(std::sin(th), -std::cos(th));
+}
+
+Scene SquareDrum::scene(int steps_per_frame) const {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  Body drum = body("drum", BodyKind::fixed, Vec2::Zero(), 1.0);
+  make_polygon(drum, box_corners(2.0 * half, 2.0 * half), 0.0);
+  scene.bodies.push_back(drum);
+  scene.bodies.push_back(body("bob", BodyKind::free, place(start), 0.02, 1.0));
+  scene.cables.push_back(cable({0, {0.0, half + half_width}}, {{0, -1, 0}}, on(1), half_width));
+  return scene;
+}
+
+Vec2 SquareDrum::bob_after(double seconds) const {
+  constexpr int steps = 200'000;
+  const double h = seconds / steps, inner = free - half_width * start, outer = inner + 2.0 * half;
+  Swing swing{start, 0.0};
+  for (int i = 0; i < steps; ++i) {
+    const bool out = swing.angle > 0.0;
+    Swing next = swing;
+    next.advance(h, out ? outer : inner, half_width);
+    if ((next.angle > 0.0) != out) {
+      double low = 0.0, high = h;  // s, into the step, about when it passes 0
+      for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (low + high);
+        next = swing;
+        next.advance(middle, out ? outer : inner, half_width);
+        ((next.angle > 0.0) == out ? low : high) = middle;
+      }
+      next = swing;
+      next.advance(high, out ? outer : inner, half_width);
+      next.speed *= out ? outer / inner : inner / outer;
+      next.advance(h - high, out ? inner : outer, half_width);
+    }
+    swing = next;
+  }
+  return place(swing.angle);
+}
+
+namespace {
+
+Scene with_bob(const Body& drum, const Attachment& start, int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(drum);
+  scene.bodies.push_back(body("bob", BodyKind::free, 0.75, -1.2, 0.02, 1.0));
+  scene.cables.push_back(cable(start, {{0, -1, 0}}, on(1)));
+  return scene;
+}
+
+Body drum_of(double radius, double speed) {
+  Body drum = body("drum", BodyKind::fixed_axle, Vec2::Zero(), radius, 10.0);
+  drum.inertia = 2.0;
+  drum.angular_velocity = speed;
+  return drum;
+}
+
+}  // namespace
+
+Scene turning_drum(const std::vector<Vec2>& corners, double speed, int steps_per_frame) {
+  Body drum = drum_of(1.0, speed);
+  make_polygon(drum, corners, 0.0);
+  double left = 0.0;  // of a side that is upright there
+  for (const Vec2& corner : corners) left = std::min(left, corner.x());
+  return with_bob(drum, {0, {left - cable_half_width, 0.0}}, steps_per_frame);
+}
+
+Scene turning_drum(double radius, double speed, int steps_per_frame) {
+  return with_bob(drum_of(radius, speed), {0, {-radius - cable_half_width, 0.0}}, steps_per_frame);
+}
+
+Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2, 3.0));
+  scene.bodies.push_back(body("load", BodyKind::rail, 0.3, -8.0, 0.1, 2.0));
+  const Attachment rim{0, {-0.2 - half_width, 0.0}, true};
+  const std::vector<Wrap> wraps = {{0, begins_there ? -1 : 1, turns}};
+  scene.cables.push_back(begins_there ? cable(rim, wraps, on(1), half_width)
+                                      : cable(on(1), wraps, rim, half_width));
+  return scene;
+}
+
+Scene catenary(int pieces, int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, at(1.0, 0.0), 0.002));
+  scene.cables[0].slack = 1.0;
+  scene.cables[0].mass_per_metre = 1.0;
+  scene.cables[0].nodes = pieces > 0 ? pieces - 1 : 0;
+  return scene;
+}
+
+Scene folded_chain(int pieces, int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  const double piece = 1.0 / pieces;
+  scene.bodies.push_back(body("tip", BodyKind::free, 0.5 * piece, 0.0, 0.002, 0.5 * piece));
+  scene.bodies[0].node = true;  // its half piece, which meets no other node
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.002));
+  scene.cables[0].slack = 1.0 - 0.5 * piece;
+  scene.cables[0].mass_per_metre = 1.0;
+  scene.cables[0].nodes = pieces - 1;
+  spread_nodes(scene);
+  return scene;
+}
+
+}  // namespace pinchlab::build

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Scenes of corners, layers and cables with mass, for experiments and tests.
+
+#include <vector>
+
+#include "sim/scene.h"
+
+namespace pinchlab::build {
+
+/// A regular polygon's corners, counter-clockwise, on a circle of `radius` (m) from the angle `first`
+/// (rad) on.
+std::vector<Vec2> regular_corners(int count, double radius, double first = 0.0);
+
+/// A box's, m.
+std::vector<Vec2> box_corners(double width, double height);
+
+/// A bob of 1 kg whose cable comes down the right of a fixed square and round its lower corner. The
+/// cable's angle th from the vertical grows as it unwinds; where it passes 0 the side comes free.
+struct SquareDrum {
+  double half = 0.3;         // m, of a side
+  double half_width = 0.05;  // m, of the cable
+  double free = 0.8;         // m, at the start
+  double start = -0.6;       // rad
+
+  Scene scene(int steps_per_frame) const;
+
+  /// Where the bob is after so many seconds (m): l th'' + w th'^2 + g sin th = 0 by Runge and Kutta's
+  /// method; where th passes 0, l grows by the side, and l th' stays.
+  Vec2 bob_after(double seconds) const;
+
+ private:
+  Vec2 place(double th) const;
+};
+
+/// A bob of 1 kg on a drum with a fixed axle, of the inertia 2 kg m^2, turning by `speed` (rad/s) at the
+/// start: bodies 0 (the drum, whose cable starts on its left) and 1.
+Scene turning_drum(const std::vector<Vec2>& corners, double speed, int steps_per_frame);
+Scene turning_drum(double radius, double speed, int steps_per_frame);
+
+/// A load of 2 kg, body 1, on a rail below a drum of 0.2 m with so many turns in layers. The cable begins
+/// on the drum, or ends there.
+Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there = true);
+
+/// A cable of 2 m and 1 kg/m whose ends are 1 m apart at one height, in so many pieces (0: as the program
+/// chooses). Before spread_nodes.
+Scene catenary(int pieces, int steps_per_frame);
+
+/// A chain of 1 m and 1 kg in so many pieces, hung up by both ends beside one another, one of which, body
+/// 0, is let go. After spread_nodes.
+Scene folded_chain(int pieces, int steps_per_frame);
+
+}  // namespace pinchlab::build

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/lay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/outline.h"
+#include "sim/scene_checks.h"
+#include "sim/scene_error.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+/// A cable being laid, and where each of its links comes from.
+struct Course {
+  const Cable& given;
+  std::size_t number;      // of the cable
+  double allowed;          // m, overlap_allowed
+  std::vector<int> stops;  // of each link: of Cable::wraps; -1: the start; their number: the end
+  CableState cable;
+};
+
+std::string place_of_stop(const Course& course, int stop) {
+  const std::string base = pointer("cables", course.number);
+  if (stop < 0) return base + "/start";
+  if (index(stop) == course.given.wraps.size()) return base + "/end";
+  return fmt::format("{}/wraps/{}", base, stop);
+}
+
+std::string place_of(const Course& course, std::size_t link) {
+  return place_of_stop(course, course.stops[link]);
+}
+
+/// An end whose layers have a way marks that its body's other link is to have them.
+Link attached_link(const Attachment& attachment, int way) {
+  Link link;
+  if (attachment.layers) link.layers.way = way;
+  link.body = attachment.body;
+  link.offset = attachment.point;
+  return link;
+}
+
+/// The links with which a wrap could begin or end: of a polygon one at each corner.
+std::vector<Link> choices(const World& world, const Cable& cable, const Wrap& wrap) {
+  const BodyProperties& body = at(world.bodies, wrap.body);
+  const int corners = static_cast<int>(body.corners.size());
+  std::vector<Link> links;
+  for (int k = corners == 0 ? -1 : 0; k < corners; ++k) {
+    links.push_back(rolling_link(body, wrap.body, k, wrap.orientation, cable.half_width));
+  }
+  return links;
+}
+
+/// Whether all corners of a link's polygon are on the inner side of a span along `direction` through
+/// `point`.
+bool is_beside(const World& world, const Link& link, const Vec2& point, const Vec2& direction,
+               double allowed) {
+  if (link.corner < 0) return true;
+  const std::vector<Vec2>& corners = at(world.bodies, link.body).corners;
+  return std::all_of(corners.begin(), corners.end(), [&](const Vec2& corner) {
+    const Vec2 x =
+        at(world.position, link.body) + turned(corner, at(world.angle, link.body)) - point;
+    return link.orientation * cross(direction, x) >= link.radius - allowed;
+  });
+}
+
+/// Of all tangents from one of the first links to one of the others, the one that leaves no corner on
+/// its outer side; whether there is one.
+bool join(const World& world, const std::vector<Link>& from, const std::vector<Link>& to,
+          double allowed, Link& leaves, Link& arrives) {
+  for (const Link& tail : from) {
+    for (const Link& head : to) {
+      const Vec2 a = link_centre(world, tail), b = link_centre(world, head);
+      const Vec2 e = common_tangent(a, tail.signed_radius(), b, head.signed_radius()).direction;
+      const Vec2 point = tangent_point(a, tail.signed_radius(), e);
+      leaves = tail;
+      arrives = head;
+      if (is_beside(world, tail, point, e, allowed) && is_beside(world, head, point, e, allowed)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Links of a wrap from the one at which the cable arrives to the one at which it leaves: on a polygon
+/// those at the corners between them, and once more round for each extra turn.
+void append_wrap(const World& world, int number, const Link& first, const Link& last,
+                 Course& course) {
+  const Wrap& wrap = at(course.given.wraps, number);
+  const BodyProperties& body = at(world.bodies, wrap.body);
+  const int corners = static_cast<int>(body.corners.size());
+  int count = 1, corner = -1;
+  if (corners > 0) {
+    const int between = (wrap.orientation * (last.corner - first.corner) + corners) % corners;
+    count += between + wrap.extra_turns * corners;
+    corner = first.corner;
+  }
+  for (int i = 0; i < count; ++i) {
+    course.cable.links.push_back(
+        rolling_link(body, wrap.body, corner, wrap.orientation, course.given.half_width));
+    course.stops.push_back(number);
+    if (corners > 0) corner = (corner + wrap.orientation + corners) % corners;
+  }
+}
+
+void lay_links(const Scene& scene, const World& world, Course& course) {
+  const Cable& given = course.given;
+  const int first_stop = given.closed ? 0 : -1;
+  std::vector<std::vector<Link>> stops;
+  if (!given.closed) stops.push_back({attached_link(given.start, 1)});
+  for (const Wrap& wrap : given.wraps) stops.push_back(choices(world, given, wrap));
+  if (!given.closed) stops.push_back({attached_link(given.end, -1)});
+  const std::size_t count = stops.size();
+  std::vector<Link> arrives(count), leaves(count);
+  for (std::size_t i = given.closed ? 0 : 1; i < count; ++i) {
+    const std::size_t before = (i + count - 1) % count;
+    if (join(world, stops[before], stops[i], course.allowed, leaves[before], arrives[i])) continue;
+    throw SceneError(
+        place_of_stop(course, static_cast<int>(i) + first_stop),
+        fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
+                    "move them apart or turn the orientation round",
+                    name_of_body(scene, leaves[before].body),
+                    name_of_body(scene, arrives[i].body)));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const int stop = static_cast<int>(i) + first_stop;
+    if (stop >= 0 && index(stop) < given.wraps.size()) {
+      append_wrap(world, stop, arrives[i], leaves[i], course);
+    } else {
+      course.cable.links.push_back(stops[i].front());
+      course.stops.push_back(stop);
+    }
+  }
+  course.cable.segments.resize(course.cable.links.size());
+}
+
+/// Tangents of all segments; refuses those that cannot be.
+void lay_tangents(const Scene& scene, const World& world, Course& course) {
+  CableState& cable = course.cable;
+  for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
+    const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(i)));
+    const Link &from = cable.links[tail], &to = cable.links[i];
+    const double distance = (link_centre(world, to) - link_centre(world, from)).norm();
+    const double pressed = opposite(from, to) ? 2.0 * cable.half_width - cable.least_gap : 0.0;
+    const double needed = std::abs(to.signed_radius() - from.signed_radius()) - pressed;
+    if (wound_end(from, to) && std::abs(distance - needed) > course.allowed) {
+      throw SceneError(
+          place_of(course, from.orientation == 0 ? tail : i),
+          fmt::format("an end on the body that the cable is wound on must lie at its rim, "
+                      "{} m from the centre (radius + half width), not {} m",
+                      needed, distance));
+    }
+    if (distance < needed - course.allowed) {
+      const bool end = from.orientation == 0 || to.orientation == 0;
+      throw SceneError(
+          place_of(course, i),
+          end ? fmt::format(
+                    "the cable's end lies {} inside the circle on which the cable would run "
+                    "round the neighbouring body; move the end or the body apart",
+                    in_mm(needed - distance))
+              : fmt::format(
+                    "the cable does not fit between {} and {}: their surfaces are {} too near; "
+                    "move them apart or make the cable thinner",
+                    name_of_body(scene, from.body), name_of_body(scene, to.body),
+                    in_mm(needed - distance)));
+    }
+    update_tangent(world, cable, i);
+  }
+}
+
+/// Wrap angles from the turning of the tangents, in [0, 2 pi) plus the turns asked for.
+void lay_wraps(const Scene& scene, Course& course) {
+  constexpr double suspicious = 330.0 / 360.0 * turn;
+  CableState& cable = course.cable;
+  const std::size_t count = cable.links.size();
+  double of_stop = 0.0;  // rad, of all links of a wrap so far
+  for (std::size_t i = 0; i < count; ++i) {
+    Link& link = cable.links[i];
+    if (link.orientation == 0) continue;
+    if (i == 0 || course.stops[i] != course.stops[i - 1]) of_stop = 0.0;
+    const std::size_t leaving = (i + 1) % count;
+    double wrap = link.orientation * (cable.segments[leaving].alpha - cable.segments[i].alpha);
+    wrap -= turn * std::floor((wrap + 1e-9) / turn);
+    wrap = std::max(wrap, 0.0);
+    of_stop += wrap;
+    const int asked = at(course.given.wraps, course.stops[i]).extra_turns;
+    const int turns = link.corner < 0 ? asked : 0;  // round a polygon they are links of their own
+    if (of_stop > suspicious && asked == 0) {
+      throw SceneError(
+          place_of(course, i),
+          fmt::format("the cable would have to run {:.0f} degrees round {}; does it pass on "
+                      "the other side (turn the orientation round), or not touch it at all?",
+                      of_stop / turn * 360.0, name_of_body(scene, link.body)));
+    }
+    const double next = cable.segments[i].alpha + link.orientation * (wrap + turn * turns);
+    if (cable.closed && leaving == 0) {
+      cable.turning = turn * std::round((next - cable.segments[0].alpha) / turn);
+    } else {
+      cable.segments[leaving].alpha = next;
+    }
+  }
+}
+
+/// Layers on the drums that hold the ends: their radius moves the tangents, and so the wraps.
+void lay_layers(const World& world, Course& course) {
+  CableState& cable = course.cable;
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    if (const int way = way_of_layers(cable, i); way != 0) begin_layers(world, cable, i, way);
+  }
+  if (!cable.fills) return;
+  for (std::size_t i = 1; i < cable.segments.size(); ++i) update_tangent(world, cable, i);
+}
+
+/// Material coordinates: along the taut path, the slack shared among the spans by their lengths.
+void lay_material(const World& world, Course& course) {
+  CableState& cable = course.cable;
+  const double slack = course.given.slack;
+  const auto is_free = [&cable](std::size_t i) {
+    const int before = previous_link(cable, static_cast<int>(i));
+    return !is_side(at(cable.links, before), cable.links[i]);
+  };
+  double taut = 0.0, free_length = 0.0;
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    Link& link = cable.links[i];
+    if (link.orientation != 0) {
+      link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
+      taut += stored_length(link);
+    }
+    if (i < first_segment(cable)) continue;
+    (is_free(i) ? free_length : taut) += cable.segments[i].length;
+  }
+  taut += free_length;
+  cable.length = taut + slack;
+  if (!(free_length + slack > 0.0)) {
+    throw SceneError(pointer("cables", course.number),
+                     "the cable has no free length; give it slack or move its ends apart");
+  }
+  const double stretch = free_length > 0.0 ? 1.0 + slack / free_length : 0.0;
+  double reached = 0.0;
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    Link& link = cable.links[i];
+    if (i > 0) reached += cable.segments[i].length * (is_free(i) ? stretch : 1.0);
+    if (link.orientation == 0) {
+      link.material = reached;
+      continue;
+    }
+    link.material = 0.0;
+    link.material = reached - tail_material(cable, i, body_angle(world, link));
+    reached += stored_length(link);
+  }
+  if (!cable.closed) cable.links.back().material = cable.length;
+}
+
+}  // namespace
+
+CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
+  const Cable& given = scene.cables[c];
+  Course course{given, c, overlap_allowed(scene), {}, {}};
+  CableState& cable = course.cable;
+  cable.half_width = given.half_width;
+  if (world.configuration.method == Method::pinch) {
+    cable.least_gap = 2.0 * given.half_width * (1.0 - given.squeeze);
+  }
+  cable.grip = given.grip;
+  cable.closed = given.closed;
+  cable.rod = given.rod;
+  lay_links(scene, world, course);
+  lay_tangents(scene, world, course);
+  lay_wraps(scene, course);
+  lay_layers(world, course);
+  lay_material(world, course);
+  update_wraps_and_rest_lengths(world, cable);
+  for (Segment& segment : cable.segments) {
+    segment.previous_tail = segment.tail;
+    segment.previous_head = segment.head;
+  }
+  return cable;
+}
+
+}  // namespace pinchlab

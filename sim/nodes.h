@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Cables with mass: chains of nodes with massless pieces of cable between them.
+
+#include <vector>
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+/// Of a cable that leaves it open.
+constexpr int most_nodes_chosen = 199;
+
+/// What a cable with mass has become.
+struct NodedCable {
+  int cable = 0;                    // index in the scene before and after: its first piece
+  int first_body = 0, bodies = 0;   // its nodes, in the scene after
+  int first_piece = 0, pieces = 0;  // its other pieces, likewise
+};
+
+/// Replaces every cable of the scene that has a mass by n nodes and n + 1 massless pieces of equal
+/// length l between them: node i has the mass (l_(i-1) + l_i) / 2 times that of a metre, and those next to
+/// an end on a body that can move have the end's half piece too. Nodes are discs as wide as the cable
+/// that do not turn: they lie on walls and bodies, and on one another, with friction.
+///
+/// A cable with slack starts where its chain hangs at rest, exactly; a taut one, or one without gravity,
+/// straight. How many nodes: as many as it says, or so many that pieces are no shorter than
+/// twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension runs in a step,
+/// h sqrt(g L), beyond which nodes vibrate faster than steps can follow.
+///
+/// Throws SceneError where a cable cannot have a mass: closed, with wraps, with more nodes than fit.
+std::vector<NodedCable> spread_nodes(Scene& scene);
+
+}  // namespace pinchlab

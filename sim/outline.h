@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Outlines of bodies: a disc, or a convex polygon whose corners may be rounded.
+
+#include <span>
+
+#include "sim/scene.h"
+
+namespace pinchlab {
+
+/// Corners of a polygon that can be told apart in a contact (Contact::corner) and checked quickly.
+constexpr int most_corners = 64;
+
+inline bool is_polygon(const BodyProperties& body) {
+  return !body.corners.empty();
+}
+
+/// Radius of the circles that the outline consists of: of a disc's only one, or of those about a
+/// polygon's corners (m).
+inline double rim_radius(const BodyProperties& body) {
+  return is_polygon(body) ? body.corner_radius : body.radius;
+}
+
+/// Radius of the largest circle about the body's centre that its outline holds (m).
+double inner_radius(const BodyProperties& body);
+
+/// Vector x turned by `angle` (rad).
+inline Vec2 turned(const Vec2& x, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * x.x() - s * x.y(), s * x.x() + c * x.y()};
+}
+
+/// How far a point is from a polygon.
+struct Outside {
+  double distance = 0.0;     // m; below 0: inside, to the nearest side
+  Vec2 normal = Vec2(1, 0);  // unit, the way out of the polygon
+};
+
+/// Of a point from the polygon of these corners, counter-clockwise, all in one frame.
+Outside outside_of(std::span<const Vec2> corners, const Vec2& point);
+
+/// What a plate of this outline and of unit density has.
+struct Plate {
+  double area = 0.0;           // m^2
+  Vec2 centre = Vec2::Zero();  // m, of mass
+  double second_moment = 0.0;  // m^4, polar, about `centre`
+};
+
+/// Exact, the rounded corners included. The corners are counter-clockwise.
+Plate plate_of(std::span<const Vec2> corners, double corner_radius);
+
+/// Whether corners make a convex polygon, counter-clockwise, that has no straight corner and does
+/// not go round more than once.
+bool is_convex(std::span<const Vec2> corners);
+
+/// Gives the body this outline, and the inertia of an even plate of its mass if it has none of its
+/// own. The plate's centre is to be the origin of the corners' frame: make_world sees to it.
+void make_polygon(BodyProperties& body, std::vector<Vec2> corners, double corner_radius);
+
+}  // namespace pinchlab

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/scene_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/detect/broad_phase.h"
+#include "sim/outline.h"
+#include "sim/scene_error.h"
+#include "sim/touch.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Corners of a polygon (m) where it starts.
+std::vector<Vec2> corners_of(const World& world, int body) {
+  std::vector<Vec2> corners;
+  for (int k = 0; index(k) < at(world.bodies, body).corners.size(); ++k) {
+    corners.push_back(place_of_point(world, body, k));
+  }
+  return corners;
+}
+
+/// Between a line from p to q and a polygon (m); 0 where it runs into it.
+double distance_to(const std::vector<Vec2>& corners, const Vec2& p, const Vec2& q) {
+  const Wall line{p, q};
+  double least = std::min(outside_of(corners, p).distance, outside_of(corners, q).distance);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    least = std::min(least, (nearest_point(line, a) - a).norm());
+    const bool crosses = cross(q - p, a - p) * cross(q - p, b - p) < 0.0 &&
+                         cross(b - a, p - a) * cross(b - a, q - a) < 0.0;
+    if (crosses) return 0.0;
+  }
+  return std::max(least, 0.0);
+}
+
+void refuse_impossible_outline(const BodyProperties& body, const std::string& place) {
+  const auto refuse = [&place](bool wrong, const std::string& message) {
+    if (wrong) throw SceneError(place, message);
+  };
+  refuse(!std::all_of(body.corners.begin(), body.corners.end(),
+                      [](const Vec2& corner) { return corner.allFinite(); }) ||
+             !(body.corner_radius >= 0.0 && body.corner_radius < infinity),
+         "corners and their radius must be finite");
+  refuse(body.corners.size() < 3 || body.corners.size() > most_corners,
+         fmt::format("a polygon has 3 to {} corners", most_corners));
+  refuse(
+      !is_convex(body.corners),
+      "the corners must go round a convex polygon counter-clockwise, with none on a straight side");
+  const Vec2 centre = plate_of(body.corners, body.corner_radius).centre;
+  refuse(centre.norm() > 1e-6 * body.radius,
+         fmt::format(
+             "corners are given from the centre of mass, which lies at [{}, {}] of these; take "
+             "that away from each",
+             centre.x(), centre.y()));
+  refuse(!body.inertia, "a polygon needs its inertia (make_polygon)");
+}
+
+}  // namespace
+
+double overlap_allowed(const Scene& scene) {
+  constexpr double share = 1e-9;
+  double size = 0.0;
+  const auto include = [&size](const Vec2& x) { size = std::max(size, x.cwiseAbs().maxCoeff()); };
+  for (const Body& body : scene.bodies) {
+    include(body.position);
+    size = std::max(size, body.radius);
+  }
+  for (const Cable& cable : scene.cables) {
+    if (cable.closed) continue;
+    include(cable.start.point);
+    include(cable.end.point);
+  }
+  for (const Wall& wall : scene.walls) {
+    include(wall.a);
+    include(wall.b);
+  }
+  return share * size;
+}
+
+std::string in_mm(double metres) {
+  return fmt::format("{:.3g} mm", 1000.0 * metres);
+}
+
+std::string pointer(const char* list, std::size_t i) {
+  return fmt::format("/{}/{}", list, i);
+}
+
+std::string name_of_body(const Scene& scene, int body) {
+  return body < 0 ? "the world" : "body '" + at(scene.bodies, body).name + "'";
+}
+
+void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& broad) {
+  const double allowed = overlap_allowed(scene);
+  for (const BodyPair& pair : broad.body_pairs) {
+    const Body &a = scene.bodies[static_cast<std::size_t>(pair.a)],
+               &b = scene.bodies[static_cast<std::size_t>(pair.b)];
+    const double gap = is_polygon(a) || is_polygon(b)
+                           ? separation(world, pair.a, pair.b)
+                           : (b.position - a.position).norm() - a.radius - b.radius;
+    if (gap < -allowed) {
+      throw SceneError(pointer("bodies", static_cast<std::size_t>(pair.b)),
+                       fmt::format("body '{}' overlaps body '{}' by {}; move them apart", b.name,
+                                   a.name, in_mm(-gap)));
+    }
+  }
+  for (const WallPair& pair : broad.wall_pairs) {
+    const Body& body = at(scene.bodies, pair.body);
+    const Wall& wall = at(scene.walls, pair.wall);
+    const double gap =
+        is_polygon(body)
+            ? distance_to(corners_of(world, pair.body), wall.a, wall.b) - body.corner_radius
+            : (nearest_point(wall, body.position) - body.position).norm() - body.radius;
+    if (gap < -allowed) {
+      throw SceneError(pointer("bodies", index(pair.body)),
+                       fmt::format("body '{}' overlaps wall {} by {}; move it away", body.name,
+                                   pair.wall, in_mm(-gap)));
+    }
+  }
+}
+
+void refuse_cables_through_bodies(const Scene& scene, const World& world, const BroadPhase& broad) {
+  const double allowed = overlap_allowed(scene);
+  for (const SpanPair& pair : broad.span_pairs) {
+    const CableState& cable = world.cables[static_cast<std::size_t>(pair.cable)];
+    const Segment& segment = cable.segments[static_cast<std::size_t>(pair.segment)];
+    const Body& body = scene.bodies[static_cast<std::size_t>(pair.body)];
+    const auto segment_number = static_cast<std::size_t>(pair.segment);
+    const auto tail = static_cast<std::size_t>(previous_link(cable, pair.segment));
+    if (cable.links[segment_number].body == pair.body || cable.links[tail].body == pair.body)
+      continue;
+    const Wall line{segment.tail, segment.head};
+    const double distance = is_polygon(body)
+                                ? distance_to(corners_of(world, pair.body), line.a, line.b)
+                                : (nearest_point(line, body.position) - body.position).norm();
+    const double overlap = rim_radius(body) + cable.half_width - distance;
+    if (overlap > allowed) {
+      throw SceneError(
+          pointer("cables", static_cast<std::size_t>(pair.cable)),
+          fmt::format("the cable runs through body '{}' ({} deep) on its way to {}; add the body "
+                      "to the cable's wraps or move it",
+                      body.name, in_mm(overlap),
+                      name_of_body(scene, cable.links[segment_number].body)));
+    }
+  }
+}
+
+void refuse_squeezed_wraps(const Scene& scene, const World& world) {
+  const double allowed = overlap_allowed(scene);
+  for (const Contact& contact : world.contacts) {
+    if (contact.gap < contact.target - allowed) {
+      const Body &a = scene.bodies[static_cast<std::size_t>(contact.a)],
+                 &b = scene.bodies[static_cast<std::size_t>(contact.b)];
+      throw SceneError(
+          pointer("bodies", static_cast<std::size_t>(contact.b)),
+          fmt::format(
+              "body '{}' squeezes a cable on body '{}': the gap is {} and the cable {} wide; "
+              "move them apart",
+              b.name, a.name, in_mm(contact.gap), in_mm(contact.target)));
+    }
+  }
+}
+
+void refuse_impossible_figures(const Scene& scene) {
+  const auto refuse = [](bool wrong, const std::string& place, const char* message) {
+    if (wrong) throw SceneError(place, message);
+  };
+  const auto positive = [](double x) { return x > 0.0 && x < infinity; };
+  const int bodies = static_cast<int>(scene.bodies.size());
+  refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
+         "frames per second and steps per frame must be at least 1");
+  refuse(!(scene.error >= 0.0), "/error_m", "the error must be a number of at least 0");
+  for (int b = 0; b < bodies; ++b) {
+    const Body& body = at(scene.bodies, b);
+    const std::string place = pointer("bodies", index(b));
+    refuse(!positive(body.radius), place, "the radius must be a number above 0");
+    if (is_polygon(body)) refuse_impossible_outline(body, place);
+    refuse(!positive(body.mass) && body.kind != BodyKind::fixed, place,
+           "the mass must be a number above 0");
+    refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
+    refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
+           "position and velocity must be finite");
+    refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
+    for (std::size_t i = 0; i < body.motor.size(); ++i) {
+      const MotorPoint& point = body.motor[i];
+      const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
+      refuse(!std::isfinite(point.value) || !(point.time < infinity) ||
+                 !(i == 0 ? point.time >= 0.0 : point.time > before),
+             place, "a motor's table must have finite values at ascending times from 0 on");
+    }
+    refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
+           "the rail's axis must have a direction");
+  }
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const Cable& cable = scene.cables[c];
+    const std::string place = pointer("cables", c);
+    refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
+    refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+    refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
+    refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
+    refuse(cable.mass_per_metre != 0.0, place, "a cable with mass needs its nodes (spread_nodes)");
+    refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
+    for (const Attachment* end : {&cable.start, &cable.end}) {
+      const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
+      refuse(!cable.closed && !there, place, "an end is on a body that is not in the scene");
+    }
+    for (const Wrap& wrap : cable.wraps) {
+      refuse(wrap.body < 0 || wrap.body >= bodies, place,
+             "it runs round a body that is not in the scene");
+      refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
+             "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
+    }
+  }
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const double length = (scene.walls[w].b - scene.walls[w].a).norm();
+    refuse(!positive(length), pointer("walls", w), "the wall must have a length");
+  }
+}
+
+}  // namespace pinchlab

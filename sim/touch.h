@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Where polygons touch discs, walls and one another.
+//
+// Whatever touches a polygon, one of the two does so with a point: a corner, a disc's centre, a
+// wall's end (each with its radius), at some distance from the other's outline. So a pair has a
+// contact for every such point that is near enough: a box that lies on a wall has two, and edge on
+// edge the corners that are over the other's side. The distance is exact for any motion, and smooth
+// but where the point passes the other's corner.
+
+#include <vector>
+
+#include "sim/contact.h"
+
+namespace pinchlab {
+
+struct World;
+
+/// Where a contact's two surfaces are now.
+struct Meeting {
+  double gap = 0.0;            // m, below 0: they overlap
+  Vec2 normal = Vec2::Zero();  // unit, from a towards b
+  Vec2 point = Vec2::Zero();   // m, midway between the surfaces
+};
+
+/// Of a contact that is not of circles.
+Meeting meeting_of(const Scene& scene, const World& world, const Contact& contact);
+
+/// Where a corner of a polygon is, or the centre of a disc (whatever `point`).
+Vec2 place_of_point(const World& world, int body, int point);
+
+/// The corner, or the disc's centre, with which a contact of two bodies that is not of circles touches.
+Vec2 touching_point(const World& world, const Contact& contact);
+
+/// Appends the contacts of a pair one of which is a polygon, of gaps up to `most` (m), in the order
+/// of world.contacts.
+void append_touches(const Scene& scene, const World& world, int a, int b, int wall, double most,
+                    std::vector<Contact>& to);
+
+/// By how much the outlines of two bodies one of which is a polygon are apart along the direction
+/// that parts them most (m): below 0 they overlap by that. Where they are apart, their distance is at
+/// least that.
+double separation(const World& world, int a, int b);
+
+}  // namespace pinchlab

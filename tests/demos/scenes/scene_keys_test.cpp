@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys that have an effect only beside others, and what their author is told.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/demos/scenes/scene_files.h"
+
+namespace pinchlab {
+namespace {
+
+using nlohmann::json;
+
+TEST(SceneErrors, KeysWithoutEffectAreRefused) {
+  const auto refused = [](const char* kind, const char* key, const char* value, bool driven) {
+    json scene = small_scene();
+    json& body = scene["bodies"][0];
+    body["kind"] = kind;
+    if (std::string(kind) == "fixed") {
+      body.erase("mass_kg");
+    }
+    if (driven) {
+      body["driven_angular_velocity_rad_s"] = 1;
+    }
+    body[key] = json::parse(value);
+    return error_of(scene.dump());
+  };
+  const auto message = [](const char* key, const char* why) {
+    return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, why);
+  };
+  for (const char* key : {"mass_kg", "inertia_kg_m2", "angular_velocity_rad_s", "torque_n_m",
+                          "driven_angular_velocity_rad_s", "torque_limit_n_m", "linear_drag_per_s",
+                          "angular_drag_per_s"}) {
+    EXPECT_EQ(refused("fixed", key, "1", false), message(key, "a fixed body"));
+  }
+  EXPECT_EQ(refused("fixed", "velocity_m_s", "[0, 0]", false),
+            message("velocity_m_s", "a fixed body"));
+  EXPECT_EQ(refused("fixed_axle", "linear_drag_per_s", "1", false),
+            message("linear_drag_per_s", "a fixed_axle body"));
+  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
+    EXPECT_EQ(refused("fixed_axle", key, "1", true),
+              message(key, "a motor without torque_limit_n_m"));
+  }
+  EXPECT_EQ(
+      refused("fixed_axle", "torque_limit_n_m", "1", false),
+      message("torque_limit_n_m",
+              "a body without driven_angular_velocity_rad_s or a motor of angular velocities"));
+  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
+    EXPECT_EQ(refused("fixed_axle", key, "1", true),
+              message(key, "a body whose angular velocity is driven"));
+  }
+}
+
+TEST(SceneErrors, MotorsAreTablesOfOneThingInOrder) {
+  const auto error = [](const char* key, const char* value) {
+    json scene = small_scene();
+    scene["bodies"][0][key] = json::parse(value);
+    if (std::string(key) != "motor") {
+      scene["bodies"][0]["motor"] = {{{"time_s", 0}, {"angular_velocity_rad_s", 1}}};
+    }
+    return error_of(scene.dump());
+  };
+  const std::string one_thing =
+      "needs time_s and either angular_velocity_rad_s or torque_n_m, the same in all";
+  EXPECT_EQ(error("motor", "[]"), "s.json: /bodies/0/motor: must have 1 to 1000 entries, not 0");
+  EXPECT_EQ(error("motor", R"([{"time_s": 0}])"), "s.json: /bodies/0/motor/0: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1},
+                               {"time_s": 1, "angular_velocity_rad_s": 1}])"),
+            "s.json: /bodies/0/motor/1: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 0, "torque_n_m": 1, "angular_velocity_rad_s": 1}])"),
+            "s.json: /bodies/0/motor/0: " + one_thing);
+  EXPECT_EQ(error("motor", R"([{"time_s": 1, "torque_n_m": 1}, {"time_s": 1, "torque_n_m": 2}])"),
+            "s.json: /bodies/0/motor/1/time_s: must be after the one before, 1; a jump takes two "
+            "points a little apart");
+  EXPECT_EQ(error("motor", R"([{"time_s": -1, "torque_n_m": 1}])"),
+            "s.json: /bodies/0/motor/0/time_s: must be 0 to 3600, not -1");
+  const auto no_effect = [](const char* key, const char* on) {
+    return fmt::format("s.json: /bodies/0/{}: has no effect on {}; leave it out", key, on);
+  };
+  for (const char* key : {"torque_n_m", "angular_drag_per_s"}) {
+    EXPECT_EQ(error(key, "1"), no_effect(key, "a body whose angular velocity is driven"));
+  }
+  for (const char* key : {"inertia_kg_m2", "angular_velocity_rad_s"}) {
+    EXPECT_EQ(error(key, "1"), no_effect(key, "a motor without torque_limit_n_m"));
+  }
+  EXPECT_EQ(error("torque_limit_n_m", "1"), "no error");
+  EXPECT_EQ(error("torque_limit_n_m", "0"),
+            "s.json: /bodies/0/torque_limit_n_m: must be 1e-12 to 1e+12, not 0");
+  EXPECT_EQ(error("driven_angular_velocity_rad_s", "1"),
+            "s.json: /bodies/0/motor: has no effect on a body whose angular velocity is driven; "
+            "leave it out");
+}
+
+TEST(SceneErrors, GripNeedsABodyThatSlips) {
+  json scene = small_scene();
+  for (json& body : scene["bodies"]) body.erase("cable_friction");
+  for (const double grip : {0.0, 1.0}) {
+    scene["cables"][0]["grip"] = grip;
+    EXPECT_EQ(error_of(scene.dump()), "no error");
+  }
+  scene["cables"][0]["grip"] = 0.5;
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /cables/0/grip: has no effect but as 0 or 1 where no body has a "
+            "cable_friction above 0 other than \"no_slip\"; give one to the body that is to slip");
+  scene["bodies"][0]["cable_friction"] = 0.1;
+  EXPECT_EQ(error_of(scene.dump()), "no error");
+  scene["cables"][0]["grip"] = 1.5;
+  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/grip: must be 0 to 1, not 1.5");
+  scene["cables"][0]["squeeze"] = -0.5;
+  scene["cables"][0].erase("grip");
+  EXPECT_EQ(error_of(scene.dump()), "s.json: /cables/0/squeeze: must be 0 to 1, not -0.5");
+}
+
+TEST(SceneErrors, OutlinesAreDiscsOrConvexPolygons) {
+  const auto error = [](const char* changes) {
+    json scene = small_scene();
+    scene["bodies"][0].merge_patch(json::parse(changes));
+    return error_of(scene.dump());
+  };
+  const std::string corners = R"([[-1, -1], [1, -1], [1, 1], [-1, 1]])";
+  const auto polygon = [&](const std::string& rest) {
+    return error((R"({"radius_m": null, "corners_m": )" + corners + rest + "}").c_str());
+  };
+  EXPECT_EQ(error((R"({"corners_m": )" + corners + "}").c_str()),
+            "s.json: /bodies/0: radius_m makes it a disc and corners_m a polygon; leave one out");
+  EXPECT_EQ(error(R"({"radius_m": null})"),
+            "s.json: /bodies/0: radius_m is missing (or corners_m, of a polygon)");
+  EXPECT_EQ(error(R"({"corner_radius_m": 0.1})"),
+            "s.json: /bodies/0/corner_radius_m: has no effect on a disc; leave it out");
+  EXPECT_EQ(error(R"({"density_kg_m2": 3})"),
+            "s.json: /bodies/0: mass_kg and density_kg_m2 both say how heavy it is; leave one out");
+  EXPECT_EQ(polygon(R"(, "corner_radius_m": -1)"),
+            "s.json: /bodies/0/corner_radius_m: must be 0 to 10000, not -1");
+  for (const char* wrong : {"[[0, 0], [1, 0], [2, 0], [1, 1]]", "[[0, 0], [0, 1], [1, 0]]",
+                            "[[0, 0], [0, 0], [0, 0]]"}) {
+    EXPECT_EQ(
+        error((std::string(R"({"radius_m": null, "corners_m": )") + wrong + "}").c_str()),
+        "s.json: /bodies/0/corners_m: must go round a convex polygon counter-clockwise, with no "
+        "corner on a straight side");
+  }
+  EXPECT_EQ(error(R"({"radius_m": null, "corners_m": [[0, 0], [1, 0]]})"),
+            "s.json: /bodies/0/corners_m: must have 3 to 64 entries, not 2");
+  EXPECT_EQ(error(R"({"radius_m": null, "corners_m": [[0, 0], [1], [0, 1]]})"),
+            "s.json: /bodies/0/corners_m/1: must be a list of two numbers, [x, y]");
+  EXPECT_EQ(error(R"({"radius_m": null, "corners_m": [[0, 0], [1, 1e5], [0, 1]]})"),
+            "s.json: /bodies/0/corners_m/1/1: must be -10000 to 10000, not 100000.0");
+}
+
+TEST(SceneErrors, LayersBelongToARim) {
+  const auto error = [](const char* start) {
+    json scene = small_scene();
+    scene["cables"][0]["start"] = json::parse(start);
+    return error_of(scene.dump());
+  };
+  EXPECT_EQ(error(R"({"world_m": [-2, -2], "layers": true})"),
+            "s.json: /cables/0/start/layers: belongs to body, not to world_m; leave one out");
+  EXPECT_EQ(
+      error(R"({"body": "left weight", "layers": true})"),
+      "s.json: /cables/0/start/layers: belongs to an end on a disc's rim; give rim_angle_rad too");
+  EXPECT_EQ(error(R"({"body": "wheel", "rim_angle_rad": 3, "layers": 1})"),
+            "s.json: /cables/0/start/layers: must be true or false, not a number");
+  EXPECT_EQ(error(R"({"body": "wheel", "rim_angle_rad": 3, "layers": true})"), "no error");
+}
+
+json hanging_scene() {
+  json scene = small_scene();
+  scene["cables"] =
+      json::parse(R"([{"name": "chain", "half_width_m": 0.01, "start": {"world_m": [-2, 2]},
+    "end": {"world_m": [2, 2]}, "slack_m": 0.5, "mass_per_metre_kg": 0.3, "nodes": 9}])");
+  return scene;
+}
+
+TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
+  const auto error = [](const char* changes) {
+    json scene = hanging_scene();
+    scene["cables"][0].merge_patch(json::parse(changes));
+    return error_of(scene.dump());
+  };
+  EXPECT_EQ(error("{}"), "no error");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}]})"),
+            "s.json: /cables/0/wraps: a cable with mass_per_metre_kg lies on bodies by its nodes; "
+            "leave out its "
+            "wraps, or its mass");
+  EXPECT_EQ(error(R"({"nodes": 1000})"),
+            "s.json: /cables/0/nodes: pieces of 4.5 mm between nodes are no longer than the cable "
+            "is wide; at most "
+            "224 nodes fit");
+  EXPECT_EQ(
+      error(R"({"mass_per_metre_kg": null})"),
+      "s.json: /cables/0/nodes: has no effect on a cable without mass_per_metre_kg; leave it out");
+  EXPECT_EQ(
+      error(R"({"grip": 0})"),
+      "s.json: /cables/0/grip: has no effect on a cable with mass_per_metre_kg; leave it out");
+  EXPECT_EQ(error(R"({"mass_per_metre_kg": 0})"),
+            "s.json: /cables/0/mass_per_metre_kg: must be 1e-09 to 1e+09, not 0");
+  json many = hanging_scene();
+  for (int i = 0; i < 60; ++i) {
+    json another = many["cables"][0];
+    another["name"] = fmt::format("chain {}", i);
+    another.erase("nodes");
+    many["cables"].push_back(another);
+  }
+  EXPECT_EQ(error_of(many.dump()),
+            "s.json: /cables/51: cables with mass up to this one may have more than 10000 nodes; "
+            "give them fewer "
+            "with nodes");
+  json scene = hanging_scene();
+  scene["bodies"][0]["name"] = "chain:3";
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /bodies/0/name: \"chain:3\" is the name of a node of a cable; choose another");
+}
+
+TEST(SceneJson, NodesFollowTheBodiesOfTheFile) {
+  const SceneFile file = parse_scene(hanging_scene().dump(), "s.json");
+  ASSERT_EQ(file.scene.bodies.size(), 12U);
+  EXPECT_EQ(file.scene.bodies[3].name, "chain:1");
+  EXPECT_TRUE(file.scene.bodies[3].node);
+  EXPECT_EQ(file.scene.cables.size(), 10U);
+  EXPECT_EQ(file.look.bodies.size(), 12U);
+  EXPECT_EQ(file.look.cables.size(), 10U);
+  EXPECT_NEAR(file.scene.bodies[3].mass, 0.3 * 0.45, 1e-12);
+}
+
+TEST(SceneJson, MassAndInertiaFollowFromAnOutlineAndADensity) {
+  json scene = small_scene();
+  json& body = scene["bodies"][0];
+  body.erase("radius_m");
+  body.erase("mass_kg");
+  body["corners_m"] = {{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}};
+  body["density_kg_m2"] = 50;
+  const Body read = parse_scene(scene.dump(), "s.json").scene.bodies[0];
+  EXPECT_NEAR(read.mass, 4.0, 1e-14);
+  EXPECT_NEAR(read.inertia.value(), 4.0 * (0.16 + 0.04) / 12.0, 1e-15);
+  EXPECT_NEAR(read.radius, std::hypot(0.2, 0.1), 1e-15);
+}
+
+}  // namespace
+}  // namespace pinchlab

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Drums that fill in layers, by the area law.
+
+#include <numbers>
+
+#include "demos/scenes/shape_scenes.h"
+#include "sim/cable/cable.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+using build::layered_hoist;
+
+constexpr double pi = std::numbers::pi;
+
+// Lengths of r0 th + w th^2 / 2 pi for r0 = 0.2, w = 0.01 after 1, 5 and 20 turns (outside case).
+TEST(Layers, LengthsAreThoseOfTheSpiral) {
+  const Layers layers{1, 0.2, 0.01 / pi, 0.0};
+  EXPECT_NEAR(layers.length(2.0 * pi), 1.319469, 5e-7);
+  EXPECT_NEAR(layers.length(10.0 * pi), 7.853982, 5e-7);
+  EXPECT_NEAR(layers.length(40.0 * pi), 50.265482, 5e-7);
+  for (const double turned : {0.1, 3.0, 50.0}) {
+    const double l = layers.length(turned), r = layers.radius(turned);
+    EXPECT_NEAR(r * r, 0.2 * 0.2 + 2.0 * 0.01 * l / pi, 1e-14 * r * r);
+  }
+}
+
+/// What is wound, plus what hangs free, is the cable.
+double length_of(const World& world) {
+  const CableState& cable = world.cables[0];
+  double length = 0.0;
+  for (const Link& link : cable.links) length += stored_length(link);
+  for (const Segment& segment : cable.segments) length += segment.length;
+  return length;
+}
+
+TEST(Layers, AreRoundTheDrumFromItsRimOn) {
+  for (const bool from_start : {true, false}) {
+    const Scene scene = layered_hoist(5, 0.02, 1, from_start);
+    const World world = make_world(scene, Method::pinch);
+    const Link& drum = world.cables[0].links[1];
+    EXPECT_GT(drum.wrap, 10.0 * pi);
+    EXPECT_NEAR(drum.radius, 0.22 + 0.02 * drum.wrap / pi, 1e-15);
+    EXPECT_NEAR(length_of(world), world.cables[0].length, 1e-13);
+    // The span is a tangent of the outermost turn.
+    const Segment& span = world.cables[0].segments[from_start ? 2 : 1];
+    const Vec2& foot = from_start ? span.tail : span.head;
+    EXPECT_NEAR(foot.norm(), drum.radius, 1e-15);
+    EXPECT_NEAR(foot.dot(span.direction), 0.0, 1e-15);
+  }
+}
+
+TEST(Layers, EnergyIsKeptAndTheOrderIsTwo) {
+  for (const bool from_start : {true, false}) {
+    double before = 0.0, last = 0.0;
+    std::vector<double> ends;
+    for (int n = 1; n <= 64; n *= 2) {
+      const Scene scene = layered_hoist(8, 0.02, n, from_start);
+      World world = make_world(scene, measured());
+      const double length = world.cables[0].length;
+      Workspace work;
+      double start = 0.0, drift = 0.0;
+      for (int i = 0; i < 60 * n; ++i) {
+        ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+        if (i == 0) start = world.diagnostics.energy;
+        drift = std::max(drift, std::abs(world.diagnostics.energy - start));
+        ASSERT_LT(world.diagnostics.cable_length_error, 1e-12);
+        ASSERT_LT(std::abs(length_of(world) - length), 1e-10);
+      }
+      EXPECT_LT(world.cables[0].links[1].wrap, 15.0 * pi);  // some of it has come off
+      EXPECT_LT(drift, 2e-3 / (n * n));
+      ends.push_back(world.position[1].y());
+      if (ends.size() > 2) {
+        const double now = std::abs(ends[ends.size() - 1] - ends[ends.size() - 2]);
+        before = std::abs(ends[ends.size() - 2] - ends[ends.size() - 3]);
+        EXPECT_GT(std::log2(before / now), 1.9) << n;
+        last = now;
+      }
+    }
+    EXPECT_LT(last, 1e-6);
+  }
+}
+
+// Wound on and off again, the drum is as it was.
+TEST(Layers, WindOnAsTheyWindOff) {
+  Scene scene = layered_hoist(2, 0.03, 4);
+  scene.bodies[0].driven_angular_velocity = 0.0;
+  scene.bodies[0].motor = {{0.0, 0.0}, {0.5, -3.0}, {1.5, -3.0}, {2.0, 0.0},
+                           {2.5, 3.0}, {3.5, 3.0},  {4.0, 0.0}};
+  World world = make_world(scene, Method::pinch);
+  const double y = world.position[1].y(), radius = world.cables[0].links[1].radius;
+  run(scene, world, 480);
+  EXPECT_NEAR(std::abs(world.angle[0]), 4.5, 1e-12);
+  run(scene, world, 480);
+  EXPECT_NEAR(world.angle[0], 0.0, 1e-12);
+  EXPECT_NEAR(world.position[1].y(), y, 1e-9);
+  EXPECT_NEAR(world.cables[0].links[1].radius, radius, 1e-12);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cables with mass: chains of nodes.
+
+#include "sim/nodes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/at.h"
+#include "demos/scenes/shape_scenes.h"
+#include "sim/scene_error.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+using build::catenary;
+using build::folded_chain;
+
+double sag_of(const World& world) {
+  double lowest = 0.0;
+  for (const Vec2& position : world.position) lowest = std::min(lowest, position.y());
+  return -lowest;
+}
+
+// Sags of the lumped chain of N pieces; the catenary's is 0.7963884, its tension at the end 1.0260286 rho
+// g. The first piece bears all of that but for half a piece's weight.
+TEST(Nodes, StartWhereTheChainHangs) {
+  for (const auto& [pieces, sag] : {std::pair(20, 0.798273), {50, 0.796685}, {100, 0.796462}}) {
+    Scene scene = catenary(pieces, 1);
+    spread_nodes(scene);
+    EXPECT_EQ(scene.bodies.size(), static_cast<std::size_t>(pieces) - 1);
+    World world = make_world(scene, measured());
+    EXPECT_NEAR(sag_of(world), sag, 1e-6) << pieces;
+    const std::vector<Vec2> start = world.position;
+    run(scene, world, 60);
+    for (std::size_t b = 0; b < start.size(); ++b) {
+      EXPECT_LT((world.position[b] - start[b]).norm(), 1e-7) << b;
+    }
+    const Segment& first = world.cables[0].segments[1];
+    const Vec2 end = first.tension * -first.direction + Vec2(0.0, g / pieces);
+    EXPECT_NEAR(end.norm() / g, 1.0260286, 0.5 / (pieces * pieces));
+  }
+}
+
+TEST(Nodes, AreAsManyAsStepsCanFollow) {
+  Scene scene = catenary(0, 4);
+  const std::vector<NodedCable> made = spread_nodes(scene);
+  ASSERT_EQ(made.size(), 1U);
+  EXPECT_EQ(made[0].bodies, 107);  // a piece no shorter than h sqrt(g L)
+  EXPECT_NEAR(sag_of(make_world(scene, Method::pinch)), 0.7963884, 1e-4);
+}
+
+// Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g / l
+// times the zeros of the Laguerre polynomial L_N. For L = 1 and N = 10 the lowest is 3.67662 rad/s.
+TEST(Nodes, HangingChainSwingsAsItShould) {
+  const double length = 1.0, frequency = 3.67662;
+  constexpr int pieces = 10;
+  for (const int steps_per_frame : {4, 16}) {
+    Scene scene;
+    scene.steps_per_frame = steps_per_frame;
+    // The lowest mode: L_k(x) at the masses, for the square of the frequency.
+    const double x = frequency * frequency * length / pieces / g;
+    std::vector<double> mode = {1.0, 1.0 - x};  // from the free end
+    for (int k = 1; k + 1 <= pieces; ++k) {
+      mode.push_back(((2.0 * k + 1.0 - x) * mode[index(k)] - k * mode[index(k - 1)]) / (k + 1.0));
+    }
+    const double amplitude = 1e-4;
+    scene.bodies.push_back(body("tip", BodyKind::free, 0.0, 0.0, 0.002, 0.1));
+    scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.002));
+    scene.cables[0].mass_per_metre = 1.0;
+    scene.cables[0].nodes = pieces - 1;
+    scene.bodies[0].position = {0.0, -length};
+    spread_nodes(scene);
+    for (int k = 0; k < pieces; ++k) {  // from the free end; then the nodes from the top down
+      Body& b = k == 0 ? scene.bodies[0] : scene.bodies[index(pieces - k)];
+      b.mass = 0.1;
+      b.position = {amplitude * mode[index(k)], -length * (pieces - k) / pieces};
+    }
+    World world = make_world(scene, Method::pinch);
+    const int steps =
+        static_cast<int>(std::lround(2.0 * std::numbers::pi / frequency * 60.0)) * steps_per_frame;
+    run(scene, world, steps);
+    const double expected = amplitude * std::cos(frequency * world.time());
+    EXPECT_NEAR(world.position[0].x(), expected, 2e-2 * amplitude / steps_per_frame);
+  }
+}
+
+// It falls faster than freely: in 0.847213 sqrt(2 L / g) if no energy is lost (Calkin & March 1989). The
+// lumped chain differs from that as 1 / N.
+TEST(Nodes, FoldedChainFallsFasterThanFreely) {
+  const double unit = std::sqrt(2.0 / g);
+  for (const int pieces : {20, 50, 100}) {
+    const Scene scene = folded_chain(pieces, 64);
+    World world = make_world(scene, measured());
+    Workspace work;
+    double start = 0.0, most = 0.0;
+    for (int i = 0; world.step == 0 || world.velocity[0].y() < 0.0; ++i) {
+      ASSERT_LT(i, 64 * 60);
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      if (i == 0) start = world.diagnostics.energy;
+      most = std::max(most, world.diagnostics.energy - start);
+      EXPECT_LT(world.diagnostics.largest_stretch, 1e-10);
+    }
+    EXPECT_NEAR(world.time() / unit, 0.847213 + 3.6 / pieces, 0.5 / pieces) << pieces;
+    EXPECT_LT(most, 1e-6);
+    EXPECT_EQ(world.diagnostics.fallbacks, 0);
+  }
+}
+
+// A cable that is let go at one end falls over a post and on to the floor, and keeps out of both.
+TEST(Nodes, LieOnFloorsAndBodies) {
+  Scene scene;
+  scene.bodies.push_back(body("post", BodyKind::fixed, 0.0, 0.0, 0.3));
+  scene.bodies.push_back(body("tip", BodyKind::free, 0.9, 0.45, 0.03, 0.05));
+  scene.cables.push_back(cable(at(-0.6, 0.45), {}, on(1), 0.02));
+  scene.cables[0].mass_per_metre = 0.5;
+  scene.walls.push_back({{-3.0, -0.5}, {3.0, -0.5}, 0.5, 0.0});
+  scene.error = 1e-3;
+  spread_nodes(scene);
+  World world = make_world(scene, measured());
+  Workspace work;
+  double start = 0.0;
+  for (int i = 0; i < 60 * scene.steps_per_frame * 4; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    const Diagnostics& d = world.diagnostics;
+    if (i == 0) start = d.energy;
+    ASSERT_LT(d.energy, start + 1e-4);
+    ASSERT_LT(d.largest_stretch, 1e-6);
+    ASSERT_LT(d.largest_gap_violation, 1e-6);
+  }
+  EXPECT_LT(world.position[1].y(), -0.3);
+}
+
+TEST(Nodes, RefuseWhatCannotBe) {
+  const auto refusal = [](auto change) -> std::string {
+    Scene scene = catenary(0, 1);
+    change(scene);
+    try {
+      spread_nodes(scene);
+      make_world(scene, Method::pinch);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal([](Scene&) {}), "");
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].closed = true; }).find("closed"), std::string::npos);
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].nodes = 1000; }).find("at most 499 nodes fit"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].mass_per_metre = infinity; }).find("finite"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Scene& s) {
+              s.bodies.push_back(body("b", BodyKind::fixed, 0.5, 1.0, 0.1));
+              s.cables[0].wraps = {{0, 1, 0}};
+            }).find("wraps"),
+            std::string::npos);
+  Scene scene = catenary(0, 1);
+  EXPECT_THROW(make_world(scene, Method::pinch), SceneError);  // its nodes were forgotten
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
