@@ -129,12 +129,16 @@ bool meets(const Problem& problem, const Trial& trial, double error) {
 
 int cheapest(const Problem& problem, const std::vector<Rung>& rungs, double error, bool lasting) {
   constexpr double tie = 1.15;
-  std::vector<std::size_t> good;
+  std::vector<std::size_t> good;  // from the last to the first
   for (std::size_t i = rungs.size(); i-- > 0;) {
     const bool finer = i + 1 < rungs.size() && rungs[i + 1].setting == rungs[i].setting;
     if (!meets(problem, rungs[i].trial, error)) continue;
-    if (lasting && finer && (good.empty() || good.back() != i + 1)) continue;
-    good.push_back(i);
+    if (lasting && finer) {
+      if (good.empty() || good.back() != i + 1) continue;
+      good.back() = i;
+    } else {
+      good.push_back(i);
+    }
   }
   double least = infinity;
   for (const std::size_t i : good) least = std::min(least, rungs[i].trial.cpu_s_per_s);

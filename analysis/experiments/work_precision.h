@@ -94,9 +94,9 @@ std::vector<Rung> climb(const Problem& problem, const std::string& setting,
 /// Whether a trial is within `error` (relative) even if the reference is as far off as it may be.
 bool meets(const Problem& problem, const Trial& trial, double error);
 
-/// The cheapest rung that meets `error`, or -1. `lasting`: only where all finer steps of its
-/// setting do too, so that none wins by luck. Times within 15 % of the least are a tie, which the
-/// first wins.
+/// The cheapest rung that meets `error`, or -1. `lasting`: of each setting only the fewest steps
+/// that meet it as all finer ones do, so that none wins by luck, nor more steps than are needed
+/// because a clock was disturbed. Times within 15 % of the least are a tie, which the first wins.
 int cheapest(const Problem& problem, const std::vector<Rung>& rungs, double error, bool lasting);
 
 /// The rungs that no other beats both in error and in time, by rising time.

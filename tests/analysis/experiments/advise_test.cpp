@@ -70,12 +70,23 @@ TEST_F(Advise, OneStepIsEnoughForUniformAcceleration) {
 TEST_F(Advise, NamesTheFewestStepsThatMeetTheError) {
   const Question question = ask("pendulum", pendulum_json, 2e-5);
   const Advice advice = advise(question);
-  ASSERT_GE(advice.best, 1) << advice_text(question, advice);
+  ASSERT_GE(advice.best, 0) << advice_text(question, advice);
+  // Which setting is cheapest is the clock's to say; that none could do with fewer steps is not.
+  const auto fewest = [&](std::size_t i) {
+    const bool first = i == 0 || advice.rungs[i - 1].setting != advice.rungs[i].setting;
+    return first || !meets(advice.problem, advice.rungs[i - 1].trial, question.error_m);
+  };
   const auto best = static_cast<std::size_t>(advice.best);
-  EXPECT_GT(advice.rungs[best].steps_per_frame, 1);
   EXPECT_TRUE(meets(advice.problem, advice.rungs[best].trial, question.error_m));
-  EXPECT_EQ(advice.rungs[best - 1].setting, advice.rungs[best].setting);
-  EXPECT_FALSE(meets(advice.problem, advice.rungs[best - 1].trial, question.error_m));
+  EXPECT_TRUE(fewest(best));
+  std::vector<Rung> fixed;
+  for (const Rung& rung : advice.rungs) {
+    if (rung.setting == "pinch direct") fixed.push_back(rung);
+  }
+  const int own = cheapest(advice.problem, fixed, question.error_m, true);
+  ASSERT_GE(own, 1);
+  EXPECT_FALSE(
+      meets(advice.problem, fixed[static_cast<std::size_t>(own) - 1].trial, question.error_m));
   const auto rows = [](const std::string& text) {
     return std::count(text.begin(), text.end(), '\n');
   };

@@ -78,6 +78,14 @@ TEST(WorkPrecision, TiesGoToTheFirstAndFailuresToNobody) {
             -1);
 }
 
+TEST(WorkPrecision, ADisturbedClockDoesNotAskForMoreSteps) {
+  const Problem problem;
+  const std::vector<Rung> rungs{rung("a", 1, 1e-1, 1.0), rung("a", 2, 1e-3, 9.0),
+                                rung("a", 4, 1e-4, 2.0), rung("b", 1, 1e-3, 9.5)};
+  EXPECT_EQ(cheapest(problem, rungs, 1e-2, true), 1);
+  EXPECT_EQ(cheapest(problem, rungs, 1e-2, false), 2);
+}
+
 TEST(WorkPrecision, FrontHoldsWhatNothingBeats) {
   const std::vector<Rung> best =
       front({rung("a", 1, 1e-1, 1.0), rung("a", 2, 1e-3, 4.0), rung("b", 1, 1e-2, 2.0),
