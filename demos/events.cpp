@@ -17,6 +17,12 @@ void EventWatch::hold(const std::string& what, double time) {
 
 void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
   const CableState& cable = world.cables[c];
+  if (cable.joint == Joint::stop && cable.segments[1].tension > 0.0) {
+    hold(fmt::format("{} at its stop",
+                     scene_.bodies[static_cast<std::size_t>(cable.links[1].body)].name),
+         time);
+  }
+  if (cable.joint != Joint::none) return;
   const std::string& name = scene_.cables[c].name;
   const auto body = [&](std::size_t link) -> const std::string& {
     return scene_.bodies[static_cast<std::size_t>(cable.links[link].body)].name;

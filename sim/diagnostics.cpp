@@ -90,7 +90,8 @@ double potential_energy(const Scene& scene, const World& world) {
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];
       if (segment.rest_length <= 0.0) continue;
-      const double stretch = std::max(segment.length - segment.rest_length, 0.0);
+      double stretch = segment.length - segment.rest_length;
+      if (!cable.rod) stretch = std::max(stretch, 0.0);
       energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
     }
   }

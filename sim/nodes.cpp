@@ -16,12 +16,6 @@ namespace pinchlab {
 
 namespace {
 
-Vec2 place_of(const Scene& scene, const Attachment& end) {
-  if (end.body < 0) return end.point;
-  const Body& body = at(scene.bodies, end.body);
-  return body.position + turned(end.point, body.angle);
-}
-
 bool ends_on_mobile(const Scene& scene, const Attachment& end) {
   return end.body >= 0 && can_move(at(scene.bodies, end.body));
 }

@@ -2,6 +2,7 @@
 #pragma once
 // Outlines of bodies: a disc, or a convex polygon whose corners may be rounded.
 
+#include <cmath>
 #include <span>
 
 #include "sim/scene.h"
@@ -28,6 +29,13 @@ double inner_radius(const BodyProperties& body);
 inline Vec2 turned(const Vec2& x, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * x.x() - s * x.y(), s * x.x() + c * x.y()};
+}
+
+/// Where an end is in the world when the scene starts (m).
+inline Vec2 place_of(const Scene& scene, const Attachment& end) {
+  if (end.body < 0) return end.point;
+  const Body& body = scene.bodies[static_cast<std::size_t>(end.body)];
+  return body.position + turned(end.point, body.angle);
 }
 
 /// How far a point is from a polygon.

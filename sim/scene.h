@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -84,6 +86,15 @@ struct Wrap {
   int extra_turns = 0;  ///< whole turns beyond the one wrap in [0, 2 pi) that the tangents ask for
 };
 
+/// What a joint of the scene has become: a cable of one straight segment that nothing hits (joints.h).
+enum class Joint : std::int8_t {
+  none,    ///< a cable
+  bar,     ///< keeps two points at their distance
+  pin,     ///< one of the two bars of a hinge
+  spring,  ///< pulls and pushes
+  stop,    ///< an inextensible cable along a rail, taut where its body may go no further
+};
+
 // squeeze and grip make a pinch weaker by degrees. A sheath that yields to any force surrounds a
 // core that yields to none: bodies that pinch the cable come as near to each other as (1 - squeeze)
 // times its width, and their force N acts there. At 1 it is Method::pinch_no_contact, exactly. The
@@ -101,9 +112,11 @@ struct Cable {
   double slack = 0.0;                 ///< m, total length beyond the taut path at time 0; >= 0,
                                       ///< negative (pre-stretched) only with finite stiffness
   double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
+  double damping = 0.0;               ///< N s/m, of a spring: force per speed of its lengthening
+  Joint joint = Joint::none;
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
-  bool rod = false;      ///< between nodes: keeps its length both ways, and nothing hits it
+  bool rod = false;      ///< bears force both ways, and nothing hits it: between nodes, and joints
   double mass_per_metre = 0.0;    ///< kg/m; above 0 only until spread_nodes (nodes.h)
   int nodes = 0;                  ///< of a cable with mass; 0: as spread_nodes chooses
   double contact_friction = 0.5;  ///< Coulomb coefficient of a cable with mass on bodies and walls
@@ -136,6 +149,9 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Wall> walls;
+  std::vector<std::array<int, 2>>
+      apart;  ///< bodies, the lesser index first, that do not touch each
+              ///< other whatever they do; ascending
   int frame_count = 600;
   int frames_per_second = 60;
   int steps_per_frame = 4;

@@ -81,7 +81,8 @@ struct CableState {
   double grip = 1.0;        // factor on the friction of its pinches
   double length = 0.0;      // m of material, constant
   bool closed = false;
-  bool rod = false;      // a piece between nodes, that keeps its length both ways
+  bool rod = false;  // bears force both ways: a piece between nodes, or a joint
+  Joint joint = Joint::none;
   bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far

@@ -56,7 +56,7 @@ void BodyReader::check_kind() {
     refuse({"velocity_m_s", "linear_drag_per_s"}, "a fixed_axle body");
   }
   if (kind != "rail") {
-    refuse({"rail_axis"}, "a body that is not on a rail");
+    refuse({"rail_axis", "travel_m"}, "a body that is not on a rail");
   }
   if (kind != "fixed" && from_.contains("driven_angular_velocity_rad_s")) {
     refuse({"torque_n_m", "motor", "angular_drag_per_s"},
@@ -106,6 +106,14 @@ void BodyReader::read_rail(Body& body) {
       body.rail_axis.x() * body.velocity.y() - body.rail_axis.y() * body.velocity.x();
   if (std::abs(across) > 1e-9 * body.velocity.norm()) {
     problem(place_ + "/velocity_m_s", "must point along rail_axis");
+  }
+  if (!from_.contains("travel_m")) return;
+  const Vec2 travel = vector_of(from_["travel_m"]);
+  if (!(travel[0] <= 0.0 && travel[1] >= 0.0 && travel[1] - travel[0] >= 1e-6)) {
+    problem(
+        place_ + "/travel_m",
+        "must be [low, high], how far it may go either way from where it starts: low at most 0, "
+        "high at least 0, and room between them");
   }
 }
 

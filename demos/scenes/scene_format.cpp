@@ -38,6 +38,7 @@ const ObjectFormat body_format = {
      {"velocity_m_s", vector, optional, -1e5, 1e5},
      {"angular_velocity_rad_s", number, optional, -1e5, 1e5},
      {"rail_axis", vector, optional, -1e6, 1e6},
+     {"travel_m", vector, optional, -1e6, 1e6},
      {"driven_angular_velocity_rad_s", number, optional, -1e5, 1e5},
      {"torque_n_m", number, optional, -1e12, 1e12},
      {"motor", list, optional, 1, 1'000, {}, &motor_point_format},
@@ -79,6 +80,27 @@ const ObjectFormat cable_format = {"cable",
                                     {"linear_drag_per_s", number, optional, 0, 1e4},
                                     {"look", object, optional, 0, 0, {}, &cable_look_format}}};
 
+const ObjectFormat joint_look_format = {"joint_look", {{"colour", colour, optional}}};
+
+const ObjectFormat joint_end_format = {"joint_end",
+                                       {{"world_m", vector, optional, -1e6, 1e6},
+                                        {"body", name, optional, 1, 64},
+                                        {"point_m", vector, optional, -1e4, 1e4}}};
+
+const ObjectFormat joint_format = {
+    "joint",
+    {{"name", name, required, 1, 64},
+     {"kind", choice, required, 0, 0, {"distance", "hinge", "spring"}},
+     {"start", object, optional, 0, 0, {}, &joint_end_format},
+     {"end", object, optional, 0, 0, {}, &joint_end_format},
+     {"body", name, optional, 1, 64},
+     {"other", name, optional, 1, 64},
+     {"at_m", vector, optional, -1e6, 1e6},
+     {"stiffness_n_m", number, optional, 1e-6, 1e15},
+     {"natural_length_m", number, optional, 1e-6, 1e6},
+     {"damping_n_s_m", number, optional, 0, 1e12},
+     {"look", object, optional, 0, 0, {}, &joint_look_format}}};
+
 const ObjectFormat wall_format = {"wall",
                                   {{"from_m", vector, required, -1e6, 1e6},
                                    {"to_m", vector, required, -1e6, 1e6},
@@ -100,6 +122,7 @@ const ObjectFormat file_format = {"scene",
                                    {"gravity_m_s2", vector, optional, -1e4, 1e4},
                                    {"bodies", list, required, 1, 10'000, {}, &body_format},
                                    {"cables", list, optional, 0, 1'000, {}, &cable_format},
+                                   {"joints", list, optional, 0, 1'000, {}, &joint_format},
                                    {"walls", list, optional, 0, 1'000, {}, &wall_format},
                                    {"duration_s", number, required, 1e-3, 3600},
                                    {"frames_per_second", integer, optional, 1, 1000},

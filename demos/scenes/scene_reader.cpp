@@ -11,6 +11,7 @@
 #include "base/at.h"
 #include "base/did_you_mean.h"
 #include "demos/scenes/body_reader.h"
+#include "demos/scenes/joint_reader.h"
 #include "demos/scenes/json_values.h"
 #include "demos/scenes/look_reader.h"
 #include "demos/scenes/scene_format.h"
@@ -51,6 +52,7 @@ class Reader {
   View read_view(const json& from);
   void read_timing(const json& from, SceneContent& to);
   void spread(SceneContent& to);
+  void read_joints(const json& file, SceneContent& to);
 
   std::vector<SceneProblem>& problems_;
   std::map<std::string, int> body_names_, cable_names_;
@@ -312,6 +314,25 @@ void Reader::spread(SceneContent& to) {
   }
 }
 
+// What joints become has names of its own in tables.
+void Reader::read_joints(const json& file, SceneContent& to) {
+  if (!problems_.empty()) return;
+  const std::size_t before = to.scene.cables.size();
+  pinchlab::read_joints(
+      file, to.scene, to.look,
+      [this](const json& name, const std::string& place) { return body_index(name, place); },
+      problems_);
+  for (std::size_t c = before; c < to.scene.cables.size(); ++c) {
+    const std::string& name = to.scene.cables[c].name;
+    const auto [other, is_new] = cable_names_.emplace(name, static_cast<int>(c));
+    if (is_new) continue;
+    problem("/joints",
+            fmt::format("a part of a joint is called \"{}\" in tables, as something else "
+                        "is; choose another name",
+                        name));
+  }
+}
+
 SceneContent Reader::read(const json& file) {
   SceneContent to;
   Scene& scene = to.scene;
@@ -337,6 +358,7 @@ SceneContent Reader::read(const json& file) {
   for (const json& body : file["bodies"]) to.look.bodies.push_back(read_body_look(body));
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
   spread(to);
+  read_joints(file, to);
   const auto baseline = configuration_from_string(file["baseline"]["method"].get<std::string>());
   scene.baseline = baseline.value().method;
   scene.baseline_reason = file["baseline"]["reason"].get<std::string>();

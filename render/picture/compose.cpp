@@ -60,7 +60,13 @@ class Composer {
       picture_.add(line(wall.a, wall.b, 2.5 * scenery_.line(), theme_.fixed.edge));
     }
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
-    for (const CableState& cable : world_.cables) add_fastenings(cable);
+    for (std::size_t c = 0; c < world_.cables.size(); ++c) {
+      if (world_.cables[c].joint == Joint::none) {
+        add_fastenings(world_.cables[c]);
+      } else {
+        add_joint(c);
+      }
+    }
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_head(i);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_shaft(i);
     for (const SceneryLabel& label : scenery_.labels) {
@@ -81,6 +87,15 @@ class Composer {
       const Vec2 foot = a + (k + 0.75) / count * (b - a);
       picture_.add(line(foot, foot + 0.7 * spacing * (left(along) - along), width, theme_.support));
     }
+  }
+
+  /// A bracket from an axle down to the ground, of a size with a wheel of radius r.
+  void add_bracket(const Vec2& axle, double r) {
+    const Vec2 foot = axle + Vec2(0.0, -0.6 * r), half(0.34 * r, 0.0);
+    for (const double side : {-0.6, 0.6}) {
+      picture_.add(line(axle, foot + side * half, 1.3 * scenery_.line(), theme_.support));
+    }
+    add_hatched(foot + half, foot - half, 0.2 * r);
   }
 
   /// Where the body's centre goes in the clips, with a bracket at each end.
@@ -163,6 +178,7 @@ class Composer {
 
   void add_cable(std::size_t c) {
     const CableState& cable = world_.cables[c];
+    if (cable.joint != Joint::none) return;
     const CableLook look = scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
     Strip strip;
     strip.half_width = cable.half_width;
@@ -185,6 +201,72 @@ class Composer {
       strip.count = begins[i + 1] - begins[i];
       picture_.add(strip);
     }
+  }
+
+  /// A pin through what is joined there.
+  void add_pin(const Vec2& point) {
+    picture_.add(disc(point, 0.75 * scenery_.unit(), theme_.ink));
+    picture_.add(disc(point, 0.3 * scenery_.unit(), paper()));
+  }
+
+  /// A zigzag of eight teeth between two straight ends.
+  void add_coils(const Vec2& from, const Vec2& to, Colour colour) {
+    constexpr int teeth = 8;
+    constexpr double straight = 0.12;  // of the length, at either end
+    const Vec2 along = to - from, across = 1.2 * scenery_.unit() * left(along.normalized());
+    const double half_width = 2.0 * scenery_.line();
+    Vec2 before = from;
+    const auto go_to = [&](const Vec2& point) {
+      picture_.add(line(before, point, half_width, colour));
+      before = point;
+    };
+    go_to(from + straight * along);
+    for (int k = 0; k < 2 * teeth; ++k) {
+      const double share = straight + (1.0 - 2.0 * straight) * (k + 0.5) / (2 * teeth);
+      go_to(from + share * along + (k % 2 == 0 ? 1.0 : -1.0) * across);
+    }
+    go_to(to - straight * along);
+    go_to(to);
+  }
+
+  /// A block at the place where a stop's body runs against it, off the rail's line by the body's radius.
+  void add_stop(const CableState& cable) {
+    const Link& body = cable.links.back();
+    const Vec2 axis = cable.segments[1].direction;
+    const double radius = scene_.bodies[static_cast<std::size_t>(body.body)].radius;
+    const Vec2 foot =
+        cable.links.front().offset + (cable.length + radius) * axis + 1.2 * scenery_.line() * axis;
+    const Vec2 half = std::max(0.5 * radius, 1.5 * scenery_.unit()) * left(axis);
+    picture_.add(line(foot - half, foot + half, 2.4 * scenery_.line(), theme_.support));
+  }
+
+  void add_joint(std::size_t c) {
+    const CableState& cable = world_.cables[c];
+    const Vec2 from = link_centre(world_, cable.links.front());
+    const Vec2 to = link_centre(world_, cable.links.back());
+    const CableLook look = scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
+    const Colour colour = look.colour.value_or(theme_.fixed.edge);
+    switch (cable.joint) {
+      case Joint::none:
+        return;
+      case Joint::stop:
+        return add_stop(cable);
+      case Joint::pin:  // once for the two bars of a hinge
+        if (c > 0 && world_.cables[c - 1].joint == Joint::pin &&
+            link_centre(world_, world_.cables[c - 1].links.front()) == from) {
+          return;
+        }
+        if (cable.links.back().body < 0) add_bracket(from, 5.0 * scenery_.unit());
+        return add_pin(from);
+      case Joint::bar:
+        picture_.add(line(from, to, 0.5 * scenery_.unit(), colour));
+        break;
+      case Joint::spring:
+        add_coils(from, to, colour);
+        break;
+    }
+    add_pin(from);
+    add_pin(to);
   }
 
   /// The background, of which holes are made; opaque even where the page is not.
@@ -270,14 +352,7 @@ class Composer {
     } else {
       picture_.add(Stroke{centre, centre, r, band, fill, edge});
     }
-    if (held) {
-      // A bracket from the axle down to the ground, inside of the rim where no cable runs.
-      const Vec2 foot = centre + Vec2(0.0, -0.6 * r), half(0.34 * r, 0.0);
-      for (const double side : {-0.6, 0.6}) {
-        picture_.add(line(centre, foot + side * half, 1.3 * scenery_.line(), theme_.support));
-      }
-      add_hatched(foot + half, foot - half, 0.2 * r);
-    }
+    if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
     // like none.

@@ -134,6 +134,8 @@ void Rehearsal::look(const World& world, bool keep) {
   snapshot.position = world.position;
   std::vector<StripPoint> points;
   for (const CableState& cable : world.cables) {
+    if (cable.joint == Joint::pin || cable.joint == Joint::stop)
+      continue;  // not where they are shown
     points.clear();
     append_cable_path(scene_, world, cable, 0.1 * cable.half_width, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -305,6 +307,8 @@ std::vector<Anchor> find_anchors(const Scene& scene) {
   const World world = make_world(scene, scene.baseline);
   for (const CableState& cable : world.cables) {
     if (cable.closed || cable.links.size() < 2) continue;
+    if (cable.joint == Joint::pin || cable.joint == Joint::stop)
+      continue;  // not where they are shown
     const Segment &first = cable.segments[1], &last = cable.segments.back();
     if (cable.links.front().body < 0) {
       anchors.push_back({cable.links.front().offset, -first.direction, cable.half_width});

@@ -67,6 +67,11 @@ inline bool yields(const CableState& cable) {
   return cable.least_gap < 2.0 * cable.half_width;
 }
 
+/// Whether bodies pass through it: a piece between nodes, or a joint.
+inline bool is_passed(const CableState& cable) {
+  return cable.rod || cable.joint != Joint::none;
+}
+
 /// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
 inline bool opposite(const Link& a, const Link& b) {
   return a.orientation * b.orientation < 0;

@@ -275,6 +275,7 @@ CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
   cable.grip = given.grip;
   cable.closed = given.closed;
   cable.rod = given.rod;
+  cable.joint = given.joint;
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);
   lay_wraps(scene, course);

@@ -84,7 +84,7 @@ void sort_bodies(BroadPhase& broad) {
   }
 }
 
-void list_body_pairs(const World& world, BroadPhase& broad) {
+void list_body_pairs(const Scene& scene, const World& world, BroadPhase& broad) {
   broad.body_pairs.clear();
   const int axis = broad.axis;
   for (std::size_t i = 0; i < broad.order.size(); ++i) {
@@ -97,6 +97,7 @@ void list_body_pairs(const World& world, BroadPhase& broad) {
       broad.body_pairs.push_back({std::min(a, b), std::max(a, b)});
     }
   }
+  leave_out_apart(scene, broad.body_pairs);
   std::sort(
       broad.body_pairs.begin(), broad.body_pairs.end(),
       [](const BodyPair& p, const BodyPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
@@ -146,7 +147,7 @@ void list_span_pairs(const World& world, BroadPhase& broad) {
       broad.span_boxes.push_back(box);
       const Link& to = cable.links[s];
       const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
-      if (cable.rod || is_side(from, to)) continue;
+      if (is_passed(cable) || is_side(from, to)) continue;
       visit_overlapping(broad, box, [&](int body) {
         if (at(world.bodies, body).node) return;
         if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
@@ -183,6 +184,13 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
 }
 
 }  // namespace
+
+void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs) {
+  if (scene.apart.empty()) return;
+  std::erase_if(pairs, [&scene](const BodyPair& p) {
+    return std::binary_search(scene.apart.begin(), scene.apart.end(), std::array{p.a, p.b});
+  });
+}
 
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes) {
   boxes.resize(world.bodies.size());
@@ -223,7 +231,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   broad.skin = skin_share * radii / static_cast<double>(count);
   update_boxes(scene, world, broad.skin, broad.boxes);
   sort_bodies(broad);
-  list_body_pairs(world, broad);
+  list_body_pairs(scene, world, broad);
   list_wall_pairs(scene, broad);
 }
 

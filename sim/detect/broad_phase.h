@@ -48,6 +48,9 @@ inline bool never_touch(const BodyProperties& a, const BodyProperties& b) {
   return (a.kind == BodyKind::fixed && b.kind == BodyKind::fixed) || (a.node && b.node);
 }
 
+/// Takes the pairs away that Scene::apart names.
+void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs);
+
 /// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
 /// step, with `skin` (m) more round those that can move.
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes);

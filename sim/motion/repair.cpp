@@ -2,6 +2,7 @@
 #include "sim/motion/repair.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -21,7 +22,9 @@ double violation(const Scene& scene, const World& world, const PartSystem& s) {
   double most = 0.0;
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
-    if (row.compliance == 0.0) most = std::max(most, -clearance_of(scene, world, row));
+    if (row.compliance > 0.0) continue;
+    const double clearance = clearance_of(scene, world, row);
+    most = std::max(most, row.clamped ? std::abs(clearance) : -clearance);
   }
   return most;
 }

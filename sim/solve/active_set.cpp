@@ -330,7 +330,7 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     row.speed = row_speed(s, r);
-    if (!is_friction(row)) row.on = row.impulse > 0.0;
+    if (!is_friction(row)) row.on = row.clamped || row.impulse > 0.0;
   }
 }
 

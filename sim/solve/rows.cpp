@@ -92,8 +92,7 @@ void set_segment_values(const World& world, const Segment& segment, const TimeSp
   row.compliance = 0.0;
 }
 
-/// A rod's row is never slack and has nothing to spare. Where lengths are not exact at the end of a step,
-/// rods only pull: what both ways miss would feed back as speed.
+/// A rod's row is never slack and has nothing to spare.
 void hold_both_ways(const TimeSpan& interval, Row& row) {
   row.clamped = row.on = true;
   row.idle = false;
@@ -117,10 +116,16 @@ double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
 // three steps a period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer
 // it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
 
-/// Makes the row of an inextensible segment that of an elastic one (`stiffness` is EA, N). At an
-/// instant its impulse up to then is known: it has acted on the free velocities, and the row idles.
-void make_elastic(const World& world, const Link& from, const Link& to, const Segment& segment,
-                  double stiffness, const TimeSpan& t, PartSystem& s, int number) {
+//
+// A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the lag.
+
+/// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
+/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without a
+/// damper the row idles.
+void make_elastic(const World& world, const Cable& given, const Link& from, const Link& to,
+                  const Segment& segment, const TimeSpan& t, PartSystem& s, int number) {
+  const double stiffness = given.axial_stiffness;
+  const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
   const RowBodies& bodies = at(s.bodies, number);
   const double h = t.length > 0.0 ? t.length : world.step_length;
@@ -132,20 +137,26 @@ void make_elastic(const World& world, const Link& from, const Link& to, const Se
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
   const double b = 0.25 * (1.0 - damped);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                        speed_of(world, to.body, bodies.jb);                       // dC/dt(v-), m/s
-  const double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
+                        speed_of(world, to.body, bodies.jb);                 // dC/dt(v-), m/s
+  double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
     if (damped > 0.0) return;
-    row.idle = true;
-    row.on = false;
-    const double impulse = std::max(0.0, -known / flexibility);
+    const double impulse = both_ways ? -known / flexibility : std::max(0.0, -known / flexibility);
     at(s.free_velocity, bodies.a) += impulse * bodies.ra;
     at(s.free_velocity, bodies.b) += impulse * bodies.rb;
+    const double damper = given.damping * t.kick;  // kg
+    row.idle = damper == 0.0;
+    row.on = row.clamped = !row.idle;
+    row.bias = 0.0;
+    row.compliance = row.idle ? 0.0 : 1.0 / damper;
     return;
   }
-  const double scale = b * h * h + damped * h * t.kick;
+  const double damper = 0.5 * flexibility * given.damping * t.kick;  // s^2
+  known -= damper * before;
+  const double scale = b * h * h + damped * h * t.kick + damper;
   row.idle = false;
-  row.on = !segment.slack;
+  row.clamped = both_ways;
+  row.on = both_ways || !segment.slack;
   row.compliance = flexibility / scale;
   row.bias = known / scale;
 }
@@ -303,7 +314,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     const CableState& cable = at(world.cables, c);
     s.segment_begin.push_back(static_cast<int>(begin));
     if (!again) s.row_of_segment.resize(begin + cable.segments.size(), -1);
-    const double stiffness = at(scene.cables, c).axial_stiffness;
+    const Cable& given = at(scene.cables, c);
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
       const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
       // After a middle link comes the opposite of the row before it: one signed row serves both.
@@ -331,9 +342,11 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       const bool changed = !stands || on_centre_line || s.mobility_changed;
       at(s.changed, number) = changed;
       if (changed) weigh(s, bodies, row);
-      if (cable.rod && exact) hold_both_ways(interval, row);
-      if (stiffness < infinity && !segment.pinched) {
-        make_elastic(world, from, to, segment, stiffness, interval, s, number);
+      // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
+      // feed back as speed: there they only pull.
+      if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
+      if (given.axial_stiffness < infinity && !segment.pinched) {
+        make_elastic(world, given, from, to, segment, interval, s, number);
       }
       if (to.pinch_middle && !three) {
         row.kind = RowKind::pinch_middle;

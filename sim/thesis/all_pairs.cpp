@@ -33,6 +33,7 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
       broad.body_pairs.push_back({a, b});
     }
   }
+  leave_out_apart(scene, broad.body_pairs);
 }
 
 void find_all_span_pairs(const World& world, Workspace& work) {
@@ -42,7 +43,7 @@ void find_all_span_pairs(const World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
-      if (cable.rod) continue;
+      if (is_passed(cable)) continue;
       const Box box = span_box(cable.segments[s]);
       for (int b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);

@@ -46,7 +46,10 @@ SweepRow sweep_row(const PartSystem& system, std::size_t number) {
   r.by_run = false;
   r.clamp = Clamp::tension;
   r.bound = 0.0;
-  if (row.friction >= 0) {
+  if (row.clamped) {
+    r.clamp = Clamp::friction;
+    r.bound = infinity;
+  } else if (row.friction >= 0) {
     const Friction& friction = at(system.frictions, row.friction);
     r.clamp = Clamp::friction;
     r.other = friction.normal;

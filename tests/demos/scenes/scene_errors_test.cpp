@@ -35,7 +35,7 @@ const BadScene bad_scenes[] = {
      "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, corners_m, "
      "corner_radius_m, mass_kg, density_kg_m2, "
      "inertia_kg_m2, "
-     "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, "
+     "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, travel_m, "
      "driven_angular_velocity_rad_s, torque_n_m, motor, torque_limit_n_m, linear_drag_per_s, "
      "angular_drag_per_s, cable_friction, "
      "contact_friction, restitution, look)"},
@@ -48,7 +48,7 @@ const BadScene bad_scenes[] = {
     {"/walls/0/form_m", "[0, 0]", "s.json: /walls/0/form_m: unknown key (did you mean from_m?)"},
     {"/a~1b~0c", "1",
      "s.json: /a~1b~0c: unknown key (known here: $schema, title, notes, gravity_m_s2, bodies, "
-     "cables, "
+     "cables, joints, "
      "walls, duration_s, frames_per_second, steps_per_frame, error_m, poster_time_s, view, "
      "baseline)"},
     // Missing

@@ -210,6 +210,83 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
             "s.json: /bodies/0/name: \"chain:3\" is the name of a node of a cable; choose another");
 }
 
+/// The small scene with one joint: `changes` to a rod from its wheel to a weight.
+std::string joint_error(const char* changes) {
+  json scene = small_scene();
+  scene["joints"] = {{{"name", "rod"},
+                      {"kind", "distance"},
+                      {"start", {{"body", "wheel"}, {"point_m", {0.7, 0}}}},
+                      {"end", {{"body", "left weight"}}}}};
+  scene["joints"][0].merge_patch(json::parse(changes));
+  return error_of(scene.dump());
+}
+
+TEST(SceneErrors, JointsSayWhatTheyLack) {
+  const std::string at = "s.json: /joints/0";
+  EXPECT_EQ(joint_error("{}"), "no error");
+  EXPECT_EQ(joint_error(R"({"end": null})"), at + ": end is missing");
+  EXPECT_EQ(
+      joint_error(R"({"end": {"world_m": [0, 0]}})"),
+      at + "/end: give either world_m (a point that does not move) or body (and point_m on it)");
+  EXPECT_EQ(joint_error(R"({"end": {"body": "left wieght"}})"),
+            at + "/end/body: no body is called \"left wieght\" (did you mean \"left weight\"?)");
+  EXPECT_EQ(joint_error(R"({"end": {"body": "wheel"}})"),
+            at + ": both of its ends are on one body; let one be elsewhere");
+  EXPECT_EQ(joint_error(R"({"start": {"body": null, "point_m": null, "world_m": [-0.55, -2]}})"),
+            at + ": its ends lie in one place; move them apart, or use a hinge");
+  EXPECT_EQ(joint_error(R"({"stiffness_n_m": 1})"),
+            at + "/stiffness_n_m: has no effect on a joint that is no spring; leave it out");
+  EXPECT_EQ(joint_error(R"({"kind": "spring"})"), at + ": stiffness_n_m is missing");
+  EXPECT_EQ(joint_error(R"({"kind": "spring", "stiffness_n_m": 0})"),
+            at + "/stiffness_n_m: must be 1e-06 to 1e+15, not 0");
+  EXPECT_EQ(joint_error(R"({"kind": "hinge"})"),
+            at + "/start: has no effect on a hinge; leave it out\n" + at +
+                "/end: has no effect on a hinge; leave it out\n" + at + ": body is missing\n" + at +
+                ": at_m is missing");
+  EXPECT_EQ(joint_error(R"({"kind": "hinge", "start": null, "end": null, "body": "wheel",
+                            "other": "wheel", "at_m": [0, 0]})"),
+            at + ": both of its ends are on one body; let one be elsewhere");
+  EXPECT_EQ(
+      joint_error(R"({"name": "rope"})"),
+      "s.json: /joints: a part of a joint is called \"rope\" in tables, as something else is; "
+      "choose another name");
+}
+
+TEST(SceneErrors, TravelEndsOnEitherSideOfTheStart) {
+  const auto error = [](int body, const char* travel) {
+    json scene = small_scene();
+    scene["bodies"][static_cast<std::size_t>(body)]["travel_m"] = json::parse(travel);
+    return error_of(scene.dump());
+  };
+  const std::string wrong =
+      "s.json: /bodies/2/travel_m: must be [low, high], how far it may go either way from where it "
+      "starts: low at most 0, high at least 0, and room between them";
+  EXPECT_EQ(error(2, "[-1, 0]"), "no error");
+  EXPECT_EQ(error(2, "[0, 0]"), wrong);
+  EXPECT_EQ(error(2, "[0.1, 1]"), wrong);
+  EXPECT_EQ(error(2, "[1, -1]"), wrong);
+  EXPECT_EQ(
+      error(0, "[-1, 1]"),
+      "s.json: /bodies/0/travel_m: has no effect on a body that is not on a rail; leave it out");
+}
+
+TEST(SceneJson, JointsFollowTheCablesAndTheirNodes) {
+  json scene = hanging_scene();
+  scene["joints"] = {{{"name", "pin"},
+                      {"kind", "hinge"},
+                      {"body", scene["bodies"][0]["name"]},
+                      {"at_m", {0.3, 0.2}},
+                      {"look", {{"colour", "#102030"}}}}};
+  const SceneFile file = parse_scene(scene.dump(), "s.json");
+  ASSERT_EQ(file.scene.cables.size(), 12U);
+  ASSERT_EQ(file.look.cables.size(), 12U);
+  EXPECT_EQ(file.scene.cables[10].name, "pin:x");
+  EXPECT_EQ(file.scene.cables[11].name, "pin:y");
+  EXPECT_EQ(file.scene.cables[11].joint, Joint::pin);
+  EXPECT_EQ(file.look.cables[11].colour->blue, 0x30);
+  EXPECT_FALSE(file.look.cables[9].colour.has_value());
+}
+
 TEST(SceneJson, NodesFollowTheBodiesOfTheFile) {
   const SceneFile file = parse_scene(hanging_scene().dump(), "s.json");
   ASSERT_EQ(file.scene.bodies.size(), 12U);

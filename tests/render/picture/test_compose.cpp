@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/picture/compose.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
+#include "sim/joints.h"
 #include "sim/nodes.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
@@ -425,6 +427,43 @@ TEST(Compose, CablesWithMassAreOneBand) {
     EXPECT_GT(picture.points[i].tangent.dot(picture.points[i - 1].tangent), std::cos(most_turn));
   }
   EXPECT_TRUE(picture.labels.empty());
+}
+
+// A bar and a spring are lines with a pin at either end, a hinge is one pin with a bracket in the world, a
+// stop a block; none of them is drawn as a cable.
+TEST(Compose, JointsAreNoCables) {
+  Scene scene;
+  scene.view = {Vec2(-2.0, -2.0), Vec2(2.0, 2.0)};
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    Body body;
+    body.name = fmt::format("{}", x);
+    body.radius = 0.2;
+    body.position = {x, 0.0};
+    scene.bodies.push_back(body);
+  }
+  scene.bodies[2].kind = BodyKind::rail;
+  const auto strokes = [&scene] {
+    Picture picture;
+    compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
+    EXPECT_TRUE(picture.strips.empty());
+    return picture.strokes;
+  };
+  const std::size_t bare = strokes().size();
+  add_bar(scene, "bar", {0, Vec2::Zero()}, {1, Vec2::Zero()});
+  EXPECT_EQ(strokes().size(), bare + 5);
+  EXPECT_EQ(strokes()[strokes().size() - 5].b, scene.bodies[1].position);
+  add_hinge(scene, "elbow", 0, 1, {-0.5, 0.0});
+  EXPECT_EQ(strokes().size(), bare + 7);
+  EXPECT_EQ(strokes().back().a, Vec2(-0.5, 0.0));
+  add_hinge(scene, "pivot", 1, -1, {0.0, 0.0});
+  EXPECT_GT(strokes().size(), bare + 10);
+  const std::size_t before = strokes().size();
+  add_stops(scene, 2, -0.5, 0.75);
+  ASSERT_EQ(strokes().size(), before + 2);
+  const Stroke low = strokes()[before];
+  EXPECT_NEAR(0.5 * (low.a.y() + low.b.y()), -0.7, 0.01);  // where its rim arrives
+  add_spring(scene, "spring", {1, Vec2::Zero()}, {2, Vec2::Zero()}, 1.0, 0.0, 0.0);
+  EXPECT_EQ(strokes().size(), before + 2 + 19 + 4);
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/scenes/joint_reader.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "demos/scenes/json_values.h"
+#include "demos/scenes/look_reader.h"
+#include "sim/joints.h"
+#include "sim/scene_error.h"
+
+namespace pinchlab {
+namespace {
+
+using nlohmann::json;
+
+class JointReader {
+ public:
+  JointReader(const json& from, std::string place, const BodyIndex& body_index,
+              std::vector<SceneProblem>& problems)
+      : from_(from), place_(std::move(place)), body_index_(body_index), problems_(problems) {}
+
+  void read(Scene& scene) {
+    const std::string kind = from_["kind"].get<std::string>();
+    const std::string name = from_["name"].get<std::string>();
+    if (kind == "hinge") return read_hinge(name, scene);
+    refuse({"body", "other", "at_m"}, "a joint that is no hinge");
+    const bool spring = kind == "spring";
+    need(spring ? std::initializer_list<const char*>{"start", "end", "stiffness_n_m"}
+                : std::initializer_list<const char*>{"start", "end"});
+    if (!spring) {
+      refuse({"stiffness_n_m", "natural_length_m", "damping_n_s_m"}, "a joint that is no spring");
+    }
+    if (wrong_) return;
+    const Attachment start = read_end("start"), end = read_end("end");
+    if (wrong_) return;
+    if (!spring) return add_bar(scene, name, start, end);
+    double natural = 0.0, damping = 0.0;
+    take(from_, "natural_length_m", natural);
+    take(from_, "damping_n_s_m", damping);
+    add_spring(scene, name, start, end, from_["stiffness_n_m"].get<double>(), natural, damping);
+  }
+
+ private:
+  void problem(const std::string& place, std::string message) {
+    problems_.push_back({place, std::move(message)});
+    wrong_ = true;
+  }
+  void need(std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+      if (!from_.contains(key)) problem(place_, fmt::format("{} is missing", key));
+    }
+  }
+  void refuse(std::initializer_list<const char*> keys, const std::string& what) {
+    refuse_keys(from_, place_, keys, what, problems_);
+  }
+
+  int body(const char* key) {
+    const std::size_t before = problems_.size();
+    const int found = body_index_(from_[key], place_ + "/" + key);
+    wrong_ = wrong_ || problems_.size() > before;
+    return found;
+  }
+
+  Attachment read_end(const char* key) {
+    const json& end = from_[key];
+    const std::string place = place_ + "/" + key;
+    Attachment attachment;
+    if (end.contains("world_m") == end.contains("body")) {
+      problem(place,
+              "give either world_m (a point that does not move) or body (and point_m on it)");
+      return attachment;
+    }
+    if (end.contains("world_m")) {
+      if (end.contains("point_m")) {
+        problem(place + "/point_m", "belongs to body, not to world_m; leave one out");
+      }
+      attachment.point = vector_of(end["world_m"]);
+      return attachment;
+    }
+    const std::size_t before = problems_.size();
+    attachment.body = body_index_(end["body"], place + "/body");
+    wrong_ = wrong_ || problems_.size() > before;
+    take(end, "point_m", attachment.point);
+    return attachment;
+  }
+
+  void read_hinge(const std::string& name, Scene& scene) {
+    refuse({"start", "end", "stiffness_n_m", "natural_length_m", "damping_n_s_m"}, "a hinge");
+    need({"body", "at_m"});
+    if (wrong_) return;
+    const int first = body("body");
+    const int other = from_.contains("other") ? body("other") : -1;
+    if (!wrong_) add_hinge(scene, name, first, other, vector_of(from_["at_m"]));
+  }
+
+  const json& from_;
+  std::string place_;
+  const BodyIndex& body_index_;
+  std::vector<SceneProblem>& problems_;
+  bool wrong_ = false;
+};
+
+/// Notes why a joint cannot be, if it can't.
+template <class Add>
+void add_or_note(const std::string& place, std::vector<SceneProblem>& problems, Add add) {
+  try {
+    add();
+  } catch (const SceneError& error) {
+    problems.push_back({place, std::string(error.what()).substr(error.place.size() + 2)});
+  }
+}
+
+}  // namespace
+
+void read_joints(const json& file, Scene& scene, SceneLook& look, const BodyIndex& body_index,
+                 std::vector<SceneProblem>& problems) {
+  const json joints = file.value("joints", json::array());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const std::string place = fmt::format("/joints/{}", i);
+    add_or_note(place, problems,
+                [&] { JointReader(joints[i], place, body_index, problems).read(scene); });
+    look.cables.resize(scene.cables.size(), read_cable_look(joints[i]));
+  }
+  for (std::size_t b = 0; b < file["bodies"].size(); ++b) {
+    if (!file["bodies"][b].contains("travel_m")) continue;
+    const Vec2 travel = vector_of(file["bodies"][b]["travel_m"]);
+    add_stops(scene, static_cast<int>(b), travel[0], travel[1]);
+    look.cables.resize(scene.cables.size());
+  }
+}
+
+}  // namespace pinchlab
