@@ -97,10 +97,12 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double along_before = direction_before.dot(before);
   const double side_before = cross(direction_before, before);
 
-  // What was beside the span's line before has come past its end: it is in front of the cable, not
-  // in its way.
+  // What was within reach of the span's line before, but not beside the span, has come past its end: it is
+  // in front of the cable, not in its way. What was beside it has been pushed into it by a repair.
   constexpr double in_touch = 1e-6;
-  if (locates_events(world.configuration) && std::abs(side_before) < margin * (1.0 - in_touch)) {
+  const bool beside_before = along_before > 0.0 && along_before < length_before;
+  if (locates_events(world.configuration) && !beside_before &&
+      std::abs(side_before) < margin * (1.0 - in_touch)) {
     return hit;
   }
   bool reached = within;
