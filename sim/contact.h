@@ -31,9 +31,13 @@ struct Contact {
   double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0
   int pinch_points = 0;        // cables (or turns of one) that share the contact's force
   bool pinch_linked = false;   // a cable between the two takes the place of bare friction
-  bool touching = false;       // by the active set
-  bool rebounds = false;       // has just rebounded: bears nothing until it has parted; by impact
-  Slip slip = Slip::stick;     // of bare surfaces, by the active set
+  double pressed_friction =
+      0.0;                  // coefficient between a cable that a polygon or layers hold fast and
+                            // what presses it on to them
+  int layers_cable = -1;    // whose layers are pressed, by whose thickness `target` grows; -1: none
+  bool touching = false;    // by the active set
+  bool rebounds = false;    // has just rebounded: bears nothing until it has parted; by impact
+  Slip slip = Slip::stick;  // of bare surfaces, by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
 };

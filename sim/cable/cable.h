@@ -103,6 +103,23 @@ inline bool holds_span(const World& world, const CableState& cable, const Link& 
 /// +1 or -1 where a link is on the drum in layers that holds the cable's start or end; or 0.
 int way_of_layers(const CableState& cable, std::size_t link);
 
+/// The drum's link whose layers a contact presses (Contact::layers_cable): next to one of the ends.
+inline const Link& pressed_layers(const World& world, const Contact& contact) {
+  const std::vector<Link>& links =
+      world.cables[static_cast<std::size_t>(contact.layers_cable)].links;
+  const Link& first = links[1];
+  const bool is_first =
+      first.layers.way > 0 && (first.body == contact.a || first.body == contact.b);
+  return is_first ? first : links[links.size() - 2];
+}
+
+/// The least gap of a contact as its layers now lie (m).
+inline double target_of(const World& world, const Contact& contact) {
+  if (contact.layers_cable < 0 || contact.target == 0.0) return contact.target;
+  const CableState& cable = world.cables[static_cast<std::size_t>(contact.layers_cable)];
+  return cable.least_gap + thickness_of_layers(pressed_layers(world, contact));
+}
+
 /// Makes it lie in layers, of way_of_layers, the tangents being up to date.
 void begin_layers(const World& world, CableState& cable, std::size_t link, int way);
 

@@ -107,12 +107,27 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
 
 /// A drum's layers keep others out as far as the outermost reaches.
 void note_cable_between(const CableState& cable, const Link& link, Contact& contact) {
-  contact.target = std::max(contact.target, cable.least_gap + thickness_of_layers(link));
+  if (cable.least_gap > 0.0) {
+    contact.target = std::max(contact.target, cable.least_gap + thickness_of_layers(link));
+  }
   contact.pinch_linked = true;
 }
 
-/// Whether a contact of a polygon has the cable on link i between its bodies. It presses the cable
-/// without friction.
+/// The same for a cable on a link that its body holds without slip, so that what presses it on to the
+/// body rolls on it, or rubs on it as on the body. Where the body lets it slip, too, it is pressed without
+/// friction.
+void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
+                     Contact& contact) {
+  note_cable_between(cable, link, contact);
+  if (link.layers.way != 0) {
+    contact.layers_cable = static_cast<int>(&cable - world.cables.data());
+  }
+  if (at(world.bodies, link.body).cable_friction < infinity || cable.grip == 0.0) return;
+  const double mu = cable.grip * at(world.bodies, presser).cable_friction;
+  contact.pressed_friction = std::max(contact.pressed_friction, mu);
+}
+
+/// Whether a contact of a polygon has the cable on link i between its bodies.
 bool presses_arc(const CableState& cable, const Contact& contact, std::size_t i, const Vec2& u) {
   const Link& link = cable.links[i];
   // What touches with a corner does so there; where something touches its side, `u` tells.
@@ -153,8 +168,11 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
     if (arc > link.wrap && arc < link.wrap + end) arc = link.wrap;
     if (after_other && arc < near_end) continue;
     if (before_other && link.wrap - arc < near_end) continue;
+    if (link.layers.way != 0) {  // they are held as they lie
+      note_cable_held(world, cable, link, other, contact);
+      return;
+    }
     note_cable_between(cable, link, contact);
-    if (link.layers.way != 0) return;  // they are held as they lie
     if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }
@@ -341,8 +359,9 @@ void configure_pinches(World& world, Workspace& work) {
         const Vec2 u = is_a ? contact.normal : Vec2(-contact.normal);
         if (contact.touch == Touch::circles) {
           find_pinches_on(world, cable, contact, i, other, u, found);
-        } else if (presses_arc(cable, contact, i, u) ||
-                   over_adjacent_span(world, cable, contact, i, other)) {
+        } else if (presses_arc(cable, contact, i, u)) {
+          note_cable_held(world, cable, link, other, contact);
+        } else if (over_adjacent_span(world, cable, contact, i, other)) {
           note_cable_between(cable, link, contact);
         }
       }

@@ -2,6 +2,7 @@
 #include "sim/motion/clearance.h"
 
 #include "base/at.h"
+#include "sim/cable/cable.h"
 #include "sim/touch.h"
 
 namespace pinchlab {
@@ -13,7 +14,7 @@ double clearance_of(const Scene& scene, const World& world, const Row& row) {
   }
   const Contact& contact = at(world.contacts, row.index);
   if (contact.touch != Touch::circles) {
-    return meeting_of(scene, world, contact).gap - contact.target;
+    return meeting_of(scene, world, contact).gap - target_of(world, contact);
   }
   const Vec2& a = at(world.position, contact.a);
   const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
@@ -23,7 +24,7 @@ double clearance_of(const Scene& scene, const World& world, const Row& row) {
   // What has gone through the other is on its far side.
   const Vec2 d = b - a;
   const double distance = d.dot(contact.normal) < 0.0 ? -d.norm() : d.norm();
-  return distance - radii - contact.target;
+  return distance - radii - target_of(world, contact);
 }
 
 double reach_at(const World& world, int body) {

@@ -177,9 +177,20 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   set_clearance(std::max(segment.rest_length, 0.0) - overlap, interval, row);
 }
 
+/// The radius (m) of the layers that a contact presses, `later` s from now.
+double radius_of_layers(const World& world, const Link& drum, double later) {
+  const double turning = at(world.angular_velocity, drum.body);
+  return drum.radius - later * drum.layers.way * drum.orientation * drum.layers.growth * turning;
+}
+
 /// Levers of a row's forces where a contact's surfaces meet, on bodies one of which is a polygon.
 void set_levers(const Scene& scene, const World& world, const Contact& contact, RowBodies& bodies) {
-  const Vec2 point = meeting_of(scene, world, contact).point;
+  Vec2 point = meeting_of(scene, world, contact).point;
+  if (contact.layers_cable >= 0) {  // on the centre line of the outermost
+    const Link& drum = pressed_layers(world, contact);
+    const double way = drum.body == contact.a ? 1.0 : -1.0;
+    point = at(world.position, drum.body) + way * drum.radius * contact.normal;
+  }
   bodies.ja.z() = cross(point - at(world.position, contact.a), bodies.ja.head<2>());
   if (contact.b < 0) return;
   bodies.jb.z() = cross(point - at(world.position, contact.b), bodies.jb.head<2>());
@@ -193,7 +204,13 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
   if (contact.touch != Touch::circles) set_levers(scene, world, contact, bodies);
-  const double clearance = contact.gap - contact.target;
+  if (contact.layers_cable >= 0 &&
+      contact.target > 0.0) {  // a drum that winds lifts what lies on it, and bears the work
+    const Link& drum = pressed_layers(world, contact);
+    Eigen::Vector3d& j = drum.body == contact.a ? bodies.ja : bodies.jb;
+    j.z() += drum.layers.way * drum.orientation * drum.layers.growth;
+  }
+  const double clearance = contact.gap - target_of(world, contact);
   set_clearance(clearance, interval, row);
   if (contact.rebounds && interval.reach < infinity) {
     row.idle = true;
@@ -216,7 +233,7 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
 /// Both forces of bare friction act at one point, a share of the gap off the surfaces, so that they
 /// have no moment.
 void set_tangent_bodies(const Scene& scene, const World& world, const Contact& contact,
-                        RowBodies& bodies) {
+                        const TimeSpan& interval, RowBodies& bodies) {
   const Vec2 t = left(contact.normal);
   if (contact.touch != Touch::circles) {
     bodies.ja = {-t.x(), -t.y(), 0.0};
@@ -228,8 +245,26 @@ void set_tangent_bodies(const Scene& scene, const World& world, const Contact& c
   const double radius_b = contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0;
   const double radii = radius_a + radius_b;
   const double reach = (radii + contact.gap) / radii;
-  bodies.ja = {-t.x(), -t.y(), -radius_a * reach};
-  bodies.jb = {t.x(), t.y(), -radius_b * reach};
+  double lever_a = radius_a * reach, lever_b = radius_b * reach;
+  if (contact.layers_cable >= 0) {  // at the centre line of the outermost, in the interval's middle
+    const Link& drum = pressed_layers(world, contact);
+    const bool is_a = drum.body == contact.a;
+    const double radius = radius_of_layers(world, drum, 0.5 * interval.length);
+    const double other = radii + contact.gap - drum.radius;
+    lever_a = is_a ? radius : other;
+    lever_b = is_a ? other : radius;
+  }
+  bodies.ja = {-t.x(), -t.y(), -lever_a};
+  bodies.jb = {t.x(), t.y(), -lever_b};
+}
+
+/// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that cable's
+/// own rows have it.
+double coefficient_of(const Scene& scene, const World& world, const Contact& contact) {
+  if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
+  const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
+                                      : at(scene.walls, contact.wall).contact_friction;
+  return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);
 }
 
 /// A new last row between two places.
@@ -375,17 +410,14 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
     weigh(s, s.bodies.back(), s.rows.back());
 
-    if (contact.pinch_linked) continue;
-    const double mu = contact_coefficient(
-        body.contact_friction,
-        other ? other->contact_friction : at(scene.walls, contact.wall).contact_friction);
+    const double mu = coefficient_of(scene, world, contact);
     if (mu == 0.0) continue;
     const int tangent = append_row(s, a, b);
     Row& row = s.rows.back();
     row.kind = RowKind::tangent;
     row.index = number;
     row.slip = contact.slip;
-    set_tangent_bodies(scene, world, contact, s.bodies.back());
+    set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
     weigh(s, s.bodies.back(), row);
     add_friction(s, contact_friction(tangent, normal, mu));
   }

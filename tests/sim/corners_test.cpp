@@ -241,5 +241,85 @@ TEST(Corners, TenBoxesStandOnOneAnother) {
   }
 }
 
+/// A disc on a cable that lies along the top of a fixed box, without slip on it; gravity slopes.
+Scene disc_on_cable_on_box(double slope, double friction) {
+  Scene scene;
+  scene.gravity = g * Vec2(std::sin(slope), -std::cos(slope));
+  scene.bodies.push_back(
+      polygon("box", BodyKind::fixed, Vec2::Zero(), box_corners(6.0, 0.4), 1.0, 0.02));
+  scene.bodies.push_back(body("disc", BodyKind::free, -2.0, 0.22 + 0.1 + 0.3, 0.3, 2.0));
+  scene.bodies[1].cable_friction = friction;
+  scene.cables.push_back(cable(build::at(-4.0, -0.5), {{0, -1, 0}}, build::at(4.0, -0.5)));
+  return scene;
+}
+
+// At a pinch a cable rolls by its centre line: without slip v = omega (r + w), and a = g sin(slope) /
+// (1 + I / m (r + w)^2); with little friction it slides, at a = g (sin - mu cos).
+TEST(Corners, WhatPressesACableOnASideRollsOnItOrRubs) {
+  const double slope = 0.3, inertia = 0.5 * 2.0 * 0.3 * 0.3, lever = 0.35;
+  for (const double friction : {infinity, 0.5, 0.04, 0.0}) {
+    const Scene scene = disc_on_cable_on_box(slope, friction);
+    World world = make_world(scene, measured());
+    run(scene, world, 240);
+    const double t = world.time(), v = world.velocity[1].x(), w = world.angular_velocity[1];
+    const bool rolls = friction > 0.2;
+    const double a = rolls ? g * std::sin(slope) / (1.0 + inertia / (2.0 * lever * lever))
+                           : g * (std::sin(slope) - friction * std::cos(slope));
+    EXPECT_NEAR(world.position[1].x(), -2.0 + 0.5 * a * t * t, 1e-9) << friction;
+    EXPECT_NEAR(world.position[1].y(), 0.62, 1e-12);
+    if (rolls) {
+      EXPECT_NEAR(v, -w * lever, 1e-9) << friction;
+    }
+    if (friction == 0.0) {
+      EXPECT_EQ(w, 0.0);
+    }
+  }
+}
+
+// A crate on the cable of a drum stands on it as on rubber: it turns with the drum about its axle.
+TEST(Corners, ACrateStandsOnACableOnADisc) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 1.0));
+  scene.bodies[0].driven_angular_velocity = -0.1;
+  scene.bodies.push_back(
+      polygon("crate", BodyKind::free, {0.0, 0.6 + 0.15}, box_corners(0.4, 0.3)));
+  scene.cables.push_back(cable(build::at(-0.55, -3.0), {{0, -1, 0}}, build::at(0.55, -3.0)));
+  scene.cables[0].slack = 4.0;  // enough to run
+  World world = make_world(scene, Method::pinch);
+  run(scene, world, 120);
+  // Where it touches, the crate's side and the cable's centre line have one speed.
+  const double lever = 0.55;
+  const Vec2 n = Vec2(-std::sin(world.angle[1]), std::cos(world.angle[1]));
+  const Vec2 along(n.y(), -n.x());
+  const double crate = along.dot(world.velocity[1]) - world.angular_velocity[1] * -(0.15 + 0.05);
+  EXPECT_NEAR(crate, 0.1 * lever, 0.02);
+}
+
+// Ten boxes, each with a slack cable over its top on which the next one stands.
+TEST(Corners, TenBoxesStandOnCablesOnOneAnother) {
+  const double w = 0.01;
+  Scene scene;
+  scene.walls.push_back({{-3.0, 0.0}, {3.0, 0.0}, 0.5, 0.0});
+  for (int i = 0; i < 10; ++i) {
+    const double y = 0.15 + (0.3 + 2.0 * w) * i;
+    scene.bodies.push_back(
+        polygon("box", BodyKind::free, {0.02 * (i % 3), y}, box_corners(0.5, 0.3)));
+    scene.bodies.back().name += std::to_string(i);
+    if (i == 9) continue;
+    scene.cables.push_back(
+        cable(build::at(-1.0, y - 0.1), {{i, -1, 0}}, build::at(1.0, y - 0.1), w));
+    scene.cables.back().name = std::to_string(i);
+    scene.cables.back().slack = 0.01;
+  }
+  World world = make_world(scene, measured());
+  run(scene, world, 720);
+  for (std::size_t b = 0; b < 10; ++b) {
+    EXPECT_LT(world.velocity[b].norm(), 1e-9) << b;
+    EXPECT_LT(std::abs(world.angular_velocity[b]), 1e-9) << b;
+    EXPECT_NEAR(world.position[b].y(), 0.15 + (0.3 + 2.0 * w) * static_cast<double>(b), 1e-6 * w)
+        << b;
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::testing

@@ -98,5 +98,38 @@ TEST(Layers, WindOnAsTheyWindOff) {
   EXPECT_NEAR(world.cables[0].links[1].radius, radius, 1e-12);
 }
 
+// It rolls on the outermost layer, omega (r + w) = Omega R, with its centre (r + w) + R from the drum's, or
+// is dragged along by mu N.
+TEST(Layers, WhatIsPressedOnThemRollsOnTheOutermost) {
+  for (const double friction : {infinity, 0.1}) {
+    for (const Method method : {Method::pinch, Method::pinch_no_contact}) {
+      Scene scene;
+      scene.gravity = {0.0, -g};
+      scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2, 3.0));
+      scene.bodies[0].driven_angular_velocity = -3.0;
+      scene.bodies.push_back(body("load", BodyKind::rail, -0.3, -8.0, 0.1, 2.0));
+      scene.cables.push_back(cable(on(1), {{0, -1, 3}}, {0, {0.22, 0.0}, true}, 0.02));
+      const double thick = make_world(scene, method).cables[0].links[1].radius + 0.02;
+      scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, thick + 0.1, 0.1, 1.0));
+      scene.bodies[2].cable_friction = friction;
+      World world = make_world(scene, method);
+      run(scene, world, 240);
+      const double outer = world.cables[0].links[1].radius;
+      EXPECT_GT(outer, thick - 0.02 + 0.015);
+      if (method == Method::pinch_no_contact) {
+        EXPECT_NEAR(world.position[2].y(), 0.3, 1e-9);  // down to the drum itself
+        continue;
+      }
+      EXPECT_NEAR(world.position[2].y(), outer + 0.12, 1e-9) << friction;
+      // It goes up by the layers' growth, so slowly that its weight is what presses.
+      const double torque = friction * 1.0 * g * (0.1 + 0.02) / (0.5 * 0.1 * 0.1);
+      const double turning = friction < infinity
+                                 ? std::min(torque * world.time(), 3.0 * outer / 0.12)
+                                 : 3.0 * outer / 0.12;
+      EXPECT_NEAR(world.angular_velocity[2], turning, 1e-3 * turning) << friction;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::testing
