@@ -199,6 +199,41 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
+json joint_end(Choices& choices, std::size_t bodies) {
+  if (choices.one_in(3))
+    return {{"world_m", {choices.between(-4.0, 4.0), choices.between(-4.0, 4.0)}}};
+  return {{"body", fmt::format("b{}", choices.byte() % bodies)},
+          {"point_m", {choices.between(0.0, 0.6), choices.between(-0.6, 0.6)}}};
+}
+
+/// Bars, hinges and springs between bodies, and stops on rails.
+void add_joints(json& scene, Choices& choices) {
+  const std::size_t bodies = scene["bodies"].size();
+  const unsigned joints = choices.below(6);
+  for (unsigned i = 0; i < joints; ++i) {
+    const char* kinds[] = {"distance", "hinge", "spring"};
+    json joint = {{"name", fmt::format("j{}", i)}, {"kind", kinds[choices.below(3)]}};
+    if (joint["kind"] == "hinge") {
+      joint["body"] = fmt::format("b{}", choices.byte() % bodies);
+      if (choices.one_in(2)) joint["other"] = fmt::format("b{}", choices.byte() % bodies);
+      joint["at_m"] = {choices.between(-2.0, 2.0), choices.between(-2.0, 2.0)};
+    } else {
+      joint["start"] = joint_end(choices, bodies);
+      joint["end"] = joint_end(choices, bodies);
+    }
+    if (joint["kind"] == "spring") {
+      joint["stiffness_n_m"] = choices.magnitude(-6.0, 15.0);
+      if (choices.one_in(2)) joint["natural_length_m"] = choices.magnitude(-3.0, 1.0);
+      if (choices.one_in(2)) joint["damping_n_s_m"] = choices.magnitude(-6.0, 12.0);
+    }
+    scene["joints"].push_back(joint);
+  }
+  for (json& body : scene["bodies"]) {
+    if (body["kind"] != "rail" || !choices.one_in(2)) continue;
+    body["travel_m"] = {-choices.between(0.0, 1.0), choices.between(0.01, 1.0)};
+  }
+}
+
 /// Every number that leaves the simulator.
 bool is_finite(const World& world) {
   for (std::size_t b = 0; b < world.position.size(); ++b) {
@@ -236,7 +271,10 @@ std::string scene_of(std::string_view bytes) {
   bytes = after_word(bytes);
   Choices choices(bytes.substr(std::min<std::size_t>(1, bytes.size())));
   json made = scene(choices);
-  if (shapes) add_shapes(made, choices);
+  if (shapes) {
+    add_shapes(made, choices);
+    add_joints(made, choices);
+  }
   return made.dump(1);
 }
 
