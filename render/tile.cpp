@@ -239,8 +239,12 @@ class Print {
   float right_, down_;  // of a px
 };
 
-std::uint8_t whole_level(float value) {
-  return static_cast<std::uint8_t>(value + 0.5f);
+/// Pixels as RGBA of 8 bits, by their channels.
+template <typename Channel>
+Mask packed(const Channel& channel) {
+  const auto level = [](Lanes value) { return __builtin_convertvector(value + 0.5f, Mask); };
+  return level(channel(0)) | level(channel(1)) << 8 | level(channel(2)) << 16 |
+         level(channel(3) * 255.0f) << 24;
 }
 
 using Corner = std::array<float, 2>;
@@ -414,7 +418,7 @@ void Tile::blend_each(const Stain& stain) {
   }
 }
 
-static_assert(std::endian::native == std::endian::little, "store() packs red first");
+static_assert(std::endian::native == std::endian::little, "packed() puts red first");
 
 void Tile::store(std::uint8_t* frame, int width, const PixelRect& part) const {
   const int left = std::max(left_, part.left), top = std::max(top_, part.top);
@@ -424,22 +428,11 @@ void Tile::store(std::uint8_t* frame, int width, const PixelRect& part) const {
   const auto first = static_cast<std::size_t>(left - left_) * 4;
   const auto bytes = static_cast<std::size_t>(right - left) * 4;
   std::array<Mask, groups> pixels;
-  if (flat_) {
-    const std::array<std::uint8_t, 4> one = {whole_level(colour_[0]), whole_level(colour_[1]),
-                                             whole_level(colour_[2]),
-                                             whole_level(255.0f * colour_[3])};
-    std::int32_t packed = 0;
-    std::memcpy(&packed, one.data(), one.size());
-    pixels.fill(Mask{packed, packed, packed, packed});
-  }
+  if (flat_) pixels.fill(packed([this](std::size_t k) { return splat(colour_[k]); }));
   for (int y = top; y < bottom; ++y) {
     const auto row = static_cast<std::size_t>(y - top_);
     for (std::size_t group = 0; !flat_ && group < groups; ++group) {
-      const auto level = [&](std::size_t k, float scale) {
-        return __builtin_convertvector(planes_[k][row][group] * scale + 0.5f, Mask);
-      };
-      pixels[group] =
-          level(0, 1.0f) | level(1, 1.0f) << 8 | level(2, 1.0f) << 16 | level(3, 255.0f) << 24;
+      pixels[group] = packed([&](std::size_t k) { return planes_[k][row][group]; });
     }
     std::uint8_t* const to =
         frame + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +

@@ -292,9 +292,9 @@ class PathBuilder {
     const double from = b.tail_angle + hidden * turned;
     add(from, unit_vector(from));
     const double sense = std::copysign(1.0, turned), least = 0.02;  // of a piece
-    const double first = std::floor(sense * from / piece + least) + 1.0;
-    const double last = std::ceil(sense * b.head_angle / piece - least) - 1.0;
-    for (double k = first; k <= last; ++k) {
+    const int first = static_cast<int>(std::floor(sense * from / piece + least)) + 1;
+    const int last = static_cast<int>(std::ceil(sense * b.head_angle / piece - least)) - 1;
+    for (int k = first; k <= last; ++k) {
       const double place = sense * std::remainder(k, pieces_a_turn);
       add(sense * k * piece, unit_vector(place * piece));
     }
