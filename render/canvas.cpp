@@ -23,7 +23,8 @@ std::unique_ptr<Painter> make_painter(int width, int height) {
   return make_gl_painter(width, height);
 #else
   throw std::runtime_error(
-      "PINCHLAB_GL: this program was built without OpenGL; leave it unset: it draws as well");
+      "PINCHLAB_GL: there is no OpenGL in this program; leave it unset, or build with Debian's "
+      "libosmesa6-dev or libegl-dev");
 #endif
 }
 
