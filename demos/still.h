@@ -30,7 +30,7 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& t
 /// One frame of a scene as PNG, SVG or PDF, or, for several times or methods, a contact sheet with
 /// a label under each frame. A # in the name of a PNG file stands for the frame's number: each
 /// frame is a file of its own. Throws std::invalid_argument for a time outside of the clip or
-/// another ending, std::runtime_error where the simulation, OpenGL or the file fails.
+/// another ending, std::runtime_error where the simulation, the drawing or the file fails.
 void write_still(const SceneFile& file, const StillOptions& options);
 
 }  // namespace pinchlab

@@ -19,8 +19,9 @@ struct WorkerPoolEvents {
 };
 
 /// Does all of `work`, in this order, up to `jobs` pieces at a time, each in a freshly forked
-/// process (OSMesa draws one frame at a time a process, so that threads would not help). Workers
-/// die with the process that called. The caller must have made no OpenGL context before.
+/// process: a clip that fails takes no other with it, and OSMesa, where it is asked for, draws one
+/// frame at a time a process. Workers die with the process that called. The caller must have made
+/// no OpenGL context before.
 ///
 /// Returns 0, or the number of the signal (SIGINT, SIGTERM, SIGHUP) that stopped it: then the
 /// workers have been ended and the signals' former handlers are back in place.

@@ -15,15 +15,15 @@ namespace pinchlab {
 constexpr int smallest_frame = 16;   // px
 constexpr int largest_frame = 8192;  // px
 
-/// Draws pictures into a frame of its own. The same picture gives the same bytes in every run on a
+/// Draws pictures into a frame of its own. The same picture gives the same bytes in every run on any
 /// machine.
 ///
-/// One canvas draws at a time in a process: use worker processes for more, and fork them before the
-/// first canvas is made.
+/// Where the environment variable PINCHLAB_GL asks for OpenGL, its driver draws instead
+/// (gl_context.h): bytes that differ by a level or two, and one canvas at a time in a process.
 class Canvas {
  public:
-  /// Throws std::runtime_error if the size is not within smallest_frame..largest_frame, or no
-  /// OpenGL 3.3 context can be made.
+  /// Throws std::runtime_error if the size is not within smallest_frame..largest_frame, or where
+  /// OpenGL is asked for and cannot be had.
   Canvas(int width, int height);
   ~Canvas();
   Canvas(const Canvas&) = delete;
@@ -34,7 +34,7 @@ class Canvas {
 
   /// RGBA, 8 bits each, alpha premultiplied (opaque where the background is), top row first, width
   /// * 4 bytes a row; valid until the next draw. Throws std::runtime_error if the font is missing
-  /// or the driver reports an error.
+  /// or OpenGL reports an error.
   const std::uint8_t* draw(const Picture& picture);
 
   /// The same for several pictures side by side, left to right, each in an equal share of the

@@ -7,11 +7,13 @@
 #include <limits>
 #include <optional>
 
+#include "render/tile.h"
+
 namespace pinchlab {
 
 namespace {
 
-constexpr int tile_width = 16, tile_height = 16;  // px, even
+constexpr int tile_width = 16, tile_height = 8;  // px, even
 
 /// Whether both have the same shapes, each of as many pieces as it may be.
 bool same_shapes(const Mesh& a, const Mesh& b) {
@@ -242,9 +244,10 @@ void mark_moved_marks(const Vertex* before, const Vertex* now, Tiles& tiles) {
 }
 
 /// Where the drawing of a quad has changed.
-void mark_change(Program program, const Vertex* before, const Vertex* now, Tiles& tiles) {
-  if (std::equal(before, before + quad_corners, now)) return;
-  if (program == Program::strip && only_marks_differ(before, now)) {
+void mark_change(Program program, const Vertex* before, const Vertex* now, bool same_frame,
+                 Tiles& tiles) {
+  if (same_frame && std::equal(before, before + quad_corners, now)) return;
+  if (program == Program::strip && same_frame && only_marks_differ(before, now)) {
     mark_moved_marks(before, now, tiles);
   } else if (program == Program::stroke && same_disc(before, now)) {
     mark_moved_disc(before, now, tiles);
@@ -265,8 +268,7 @@ int area(const PixelRect& r) {
 }
 
 /// Fewer and larger rectangles, for each costs a canvas as much as some pixels do; no two overlap.
-void join(std::vector<PixelRect>& parts) {
-  constexpr int cost = 2000;  // px
+void join(std::vector<PixelRect>& parts, int cost) {
   for (bool joined = true; joined;) {
     joined = false;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -300,7 +302,8 @@ PixelRect quad_bounds(const Vertex* quad, int width, int height) {
   return {first, row, within(right + margin, width) - first, within(bottom + margin, height) - row};
 }
 
-std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int width, int height) {
+std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int width, int height,
+                                     int cost) {
   if (!same_shapes(before, now)) return {{0, 0, width, height}};
   Tiles tiles(width, height);
   const auto end_of = [](const Mesh& mesh, std::size_t shape) {
@@ -312,7 +315,7 @@ std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int wi
     for (std::size_t k = 0; k < std::max(old_count, count); ++k) {
       if (old_count == count) {
         mark_change(now.shapes()[i].program, before.quad(old_first + k), now.quad(first + k),
-                    tiles);
+                    before.frame(old_first + k) == now.frame(first + k), tiles);
       } else {
         if (k < old_count) tiles.mark(corners_of(before.quad(old_first + k)));
         if (k < count) tiles.mark(corners_of(now.quad(first + k)));
@@ -320,7 +323,7 @@ std::vector<PixelRect> frame_changes(const Mesh& before, const Mesh& now, int wi
     }
   }
   std::vector<PixelRect> parts = tiles.rectangles();
-  join(parts);
+  if (cost > 0) join(parts, cost);
   return parts;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The OpenGL 3.3 core functions that the canvas uses, and its shader programs.
+// The OpenGL 3.3 core functions that the OpenGL painter uses, and its shader programs.
 
 #include <GL/glcorearb.h>
 

@@ -21,9 +21,9 @@ class GlContext {
 };
 
 /// A context of the kind that the environment variable PINCHLAB_GL names, "osmesa" or "egl", and
-/// current. Without it OSMesa's, or EGL's where the program was built without OSMesa. Both draw
-/// with Mesa's llvmpipe and give the same pixels. One kind a process. Throws std::runtime_error
-/// with the cure if there is none.
+/// current. Empty: OSMesa's, or EGL's where the program was built without OSMesa. Both draw with
+/// Mesa's llvmpipe and give the same pixels. One kind a process. Throws std::runtime_error with the
+/// cure if there is none.
 std::unique_ptr<GlContext> make_gl_context();
 
 std::unique_ptr<GlContext> make_osmesa_context();  ///< not yet current

@@ -16,6 +16,10 @@ float narrow(double value) {
   return static_cast<float>(value);
 }
 
+std::array<float, 2> narrow(const Vec2& p) {
+  return {narrow(p.x()), narrow(p.y())};
+}
+
 }  // namespace
 
 Piece::Piece(const Vec2& from, const Vec2& to, const Vec2& from_tangent, const Vec2& to_tangent)
@@ -41,6 +45,7 @@ Fit::Fit(const View& view, int left, int width, int height) {
 
 void Mesh::clear() {
   vertices_.clear();
+  frames_.clear();
   batches_.clear();
   sheets_.clear();
   shapes_.clear();
@@ -61,12 +66,13 @@ void Mesh::begin(Program program, std::uint32_t texture) {
 }
 
 void Mesh::add_quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
-                    const Vertex& common) {
+                    const Vertex& common, const Frame& frame) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     Vertex& v = vertices_.emplace_back(common);
-    v.position = {narrow(positions[i].x()), narrow(positions[i].y())};
-    v.place = {narrow(places[i].x()), narrow(places[i].y())};
+    v.position = narrow(positions[i]);
+    v.place = narrow(places[i]);
   }
+  frames_.push_back(frame);
   ++batches_.back().count;
 }
 
@@ -86,7 +92,11 @@ void Mesh::add(const Stroke& stroke, const Fit& fit) {
     places[i] = {i < 2 ? -reach : length + reach, i % 2 == 0 ? -reach : reach};
     positions[i] = a + places[i].x() * along + places[i].y() * across;
   }
-  add_quad(positions, places, common);
+  Frame frame;
+  frame.origin = narrow(a);
+  frame.x_axis = narrow(along);
+  frame.y_axis = narrow(across);
+  add_quad(positions, places, common, frame);
 }
 
 // Neighbouring pieces share the corners between them, so that no pixel is missed or drawn twice. On
@@ -151,7 +161,17 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
     const double length = piece.radius > 0.0 ? piece.radius * std::abs(piece.turn) : piece.length;
     common.curve = {narrow(piece.radius), narrow(middle - std::floor(middle)),
                     length > 0.0 ? narrow((to - from) / length) : 0.0f};
-    add_quad(positions, places, common);
+    Frame frame;
+    frame.origin = narrow(piece.middle);
+    frame.x_axis = narrow(outwards);
+    frame.y_axis = narrow(piece.along);
+    frame.centre = narrow(piece.radius * std::cos(0.5 * piece.turn));
+    frame.half_chord = narrow(0.5 * piece.length);
+    frame.from = narrow(fit.point(first[i].position));
+    frame.from_along = narrow(Fit::vector(first[i].tangent));
+    frame.to = narrow(fit.point(first[i + 1].position));
+    frame.to_along = narrow(Fit::vector(first[i + 1].tangent));
+    add_quad(positions, places, common, frame);
   }
 }
 
@@ -166,7 +186,7 @@ void Mesh::add(const Patch& patch, const std::vector<Vec2>& corners, const Fit& 
   for (std::size_t i = 1; i + 1 < patch.count; ++i) {
     const Vec2 last = fit.point(first[i + 1]);
     add_quad({fit.point(first[0]), fit.point(first[i]), last, last},
-             {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}, common);
+             {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()}, common, {});
   }
 }
 
@@ -180,7 +200,9 @@ void Mesh::add(const Label& label, const LabelImage& image, const Fit& fit) {
     places[i] = {i < 2 ? 0.0 : 1.0, i % 2 == 0 ? 0.0 : 1.0};
     positions[i] = corner + Vec2(places[i].x() * image.width, places[i].y() * image.height);
   }
-  add_quad(positions, places, common);
+  Frame frame;
+  frame.origin = narrow(corner);
+  add_quad(positions, places, common, frame);
 }
 
 }  // namespace pinchlab

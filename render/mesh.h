@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A picture's shapes as triangles for the canvas' programs, in px.
+// A picture's shapes as quads for a painter, in px.
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ struct Fit {
   static Vec2 vector(const Vec2& v) { return {v.x(), -v.y()}; }
 };
 
-/// The canvas' shader programs (gl.cpp).
+/// How a quad is drawn: OpenGL's shader programs (gl.cpp), and what tile.cpp does likewise.
 enum class Program : std::uint8_t { stroke, strip, label };
 
 /// The one vertex layout; gl.cpp says what `place`, `shape` and `curve` mean to each program.
@@ -33,6 +33,20 @@ struct Vertex {
   std::array<float, 3> curve;
   Colour fill, edge, mark;
   bool operator==(const Vertex&) const = default;
+};
+
+/// Where a quad's shape lies in the frame: the tile painter works from it, in places that do not lose
+/// digits far from an arc's centre.
+struct Frame {
+  std::array<float, 2> origin{};  ///< px: a stroke's start, a text's corner, a chord's middle
+  std::array<float, 2> x_axis{};  ///< unit: along a stroke; outwards from an arc's centre
+  std::array<float, 2> y_axis{};  ///< unit: to the left of x_axis, or along a strip
+  float centre = 0.0f;            ///< px from an arc's centre to the middle of its chord
+  float half_chord = 0.0f;        ///< px
+  /// The ends of a strip's piece: a point, px, and a unit vector along the strip. Neighbours share
+  /// them, so that each pixel is within one piece.
+  std::array<float, 2> from{}, from_along{}, to{}, to_along{};
+  bool operator==(const Frame&) const = default;
 };
 
 /// The columns of the frame that one picture takes, and its background.
@@ -73,7 +87,7 @@ struct Piece {
   Piece(const Vec2& from, const Vec2& to, const Vec2& from_tangent, const Vec2& to_tangent);
 };
 
-/// A text's image on the graphics side.
+/// A text's image, by its painter's name for it.
 struct LabelImage {
   std::uint32_t texture = 0;
   int width = 0, height = 0;              // px
@@ -98,18 +112,20 @@ class Mesh {
   const std::vector<Shape>& shapes() const { return shapes_; }
   std::size_t quad_count() const { return vertices_.size() / quad_corners; }
   const Vertex* quad(std::size_t index) const { return vertices_.data() + index * quad_corners; }
+  const Frame& frame(std::size_t quad) const { return frames_[quad]; }
 
  private:
   void find_sides(double reach);
   void begin(Program program, std::uint32_t texture = 0);
   void add_quad(const std::array<Vec2, 4>& positions, const std::array<Vec2, 4>& places,
-                const Vertex& common);
+                const Vertex& common, const Frame& frame);
 
   struct Side {  // of a strip's point: how far its triangles reach across, px
     double left, right;
   };
 
   std::vector<Vertex> vertices_;
+  std::vector<Frame> frames_;  // one a quad
   std::vector<Batch> batches_;
   std::vector<Sheet> sheets_;
   std::vector<Shape> shapes_;

@@ -101,9 +101,12 @@ class PathBuilder {
     return std::max(cable_.segments[i].rest_length - cable_.segments[i].length, 0.0);
   }
 
-  /// Hands on what a short span cannot show to the slack spans beside it, so that the drawn cable
-  /// keeps its length when the link between them goes. Most goes past the link with the smaller
-  /// wrap: that is the one about to go. A span that is taut takes nothing.
+  /// Share of another span's slack that span i can take: none if it is pulled.
+  double taking(std::size_t i) const { return cable_.segments[i].tension > 0.0 ? 0.0 : room(i); }
+
+  /// Hands on what a short span cannot show to the spans beside it, so that the drawn cable keeps
+  /// its length when the link between them goes, or when the span is pinched. Most goes past the
+  /// link with the smaller wrap, which is the one about to go, if the span there can take it.
   void share_slack() {
     const std::size_t count = cable_.links.size(), first = first_segment(cable_);
     for (std::size_t i = first; i < count; ++i) spans_[i].slack = room(i) * slack(i);
@@ -111,15 +114,23 @@ class PathBuilder {
       const double hidden = (1.0 - room(i)) * slack(i);
       if (hidden <= 0.0) continue;
       const std::size_t before = tail_link(i), after = (i + 1) % count;
-      const double tail_wrap = arc(before), head_wrap = arc(i), both = tail_wrap + head_wrap;
-      const auto hand_on = [&](std::size_t to, double share) {
-        const double enough = 0.1 * cable_.half_width;
-        spans_[to].slack += hidden * share * room(to) * std::min(1.0, slack(to) / enough);
-      };
+      const double to_before = cable_.closed || before >= first ? taking(before) : 0.0;
+      const double to_after = cable_.closed || after > i ? taking(after) : 0.0;
+      const double tail_wrap = arc(before), head_wrap = arc(i);
+      const double both = head_wrap * to_before + tail_wrap * to_after;
       if (both <= 0.0) continue;
-      if (cable_.closed || before >= first) hand_on(before, head_wrap / both);
-      if (cable_.closed || after > i) hand_on(after, tail_wrap / both);
+      const double handed = hidden * std::max(to_before, to_after) / both;
+      const double back = handed * head_wrap * to_before, on = handed * tail_wrap * to_after;
+      spans_[before].slack += back;
+      spans_[after].slack += on;
+      // The cable on the link between runs along with it.
+      move(bounds_[before], back);
+      move(bounds_[i], -on);
     }
+  }
+  static void move(Bounds& bounds, double material) {
+    bounds.tail_material += material;
+    bounds.head_material += material;
   }
 
   /// m of cable on link i.
@@ -281,9 +292,9 @@ class PathBuilder {
     const double from = b.tail_angle + hidden * turned;
     add(from, unit_vector(from));
     const double sense = std::copysign(1.0, turned), least = 0.02;  // of a piece
-    const double first = std::floor(sense * from / piece + least) + 1.0;
-    const double last = std::ceil(sense * b.head_angle / piece - least) - 1.0;
-    for (double k = first; k <= last; ++k) {
+    const int first = static_cast<int>(std::floor(sense * from / piece + least)) + 1;
+    const int last = static_cast<int>(std::ceil(sense * b.head_angle / piece - least)) - 1;
+    for (int k = first; k <= last; ++k) {
       const double place = sense * std::remainder(k, pieces_a_turn);
       add(sense * k * piece, unit_vector(place * piece));
     }

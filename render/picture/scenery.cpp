@@ -30,7 +30,7 @@ struct Snapshot {
     Vec2 a, b;          // m
     double half_width;  // m
   };
-  std::vector<Line> lines;  // the cables' centre lines
+  std::vector<Line> lines;  // the cables' centre lines, walls and rails
 };
 
 struct Box {
@@ -94,6 +94,7 @@ class Rehearsal {
     }
   }
 
+  void see_rails();
   void fit_view();
   void fit_labels();
   void place_arrows();
@@ -132,6 +133,9 @@ void Rehearsal::look(const World& world, bool keep) {
   if (!keep) return;
   Snapshot snapshot;
   snapshot.position = world.position;
+  for (const Wall& wall : scene_.walls) {
+    snapshot.lines.push_back({wall.a, wall.b, 2.5 * scenery_.line()});
+  }
   std::vector<StripPoint> points;
   for (const CableState& cable : world.cables) {
     if (cable.joint == Joint::pin || cable.joint == Joint::stop)
@@ -145,6 +149,19 @@ void Rehearsal::look(const World& world, bool keep) {
     }
   }
   snapshots_.push_back(std::move(snapshot));
+}
+
+/// Rails, once it is known how far they go, are in the way of labels, too.
+void Rehearsal::see_rails() {
+  for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+    const Body& body = scene_.bodies[i];
+    if (body.kind != BodyKind::rail || !scenery_.travel[i].own) continue;
+    const Vec2 low = body.position + (scenery_.travel[i].low - body.radius) * body.rail_axis;
+    const Vec2 high = body.position + (scenery_.travel[i].high + body.radius) * body.rail_axis;
+    for (Snapshot& snapshot : snapshots_) {
+      snapshot.lines.push_back({low, high, 1.5 * scenery_.line()});
+    }
+  }
 }
 
 /// The motion's extent with a margin of a twentieth.
@@ -172,8 +189,8 @@ void Rehearsal::fit_labels() {
   scenery_.view = {frame.low, frame.high};
 }
 
-/// Share of the snapshots in which a box that goes with a body would lie on a cable or on another
-/// body; out of the view counts three times.
+/// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail or
+/// another body; out of the view counts three times.
 double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
                           double own_radius) const {
   const Box frame{scenery_.view.low, scenery_.view.high};
@@ -320,23 +337,31 @@ std::vector<Anchor> find_anchors(const Scene& scene) {
   return anchors;
 }
 
-/// Bodies on one line run on one rail.
+/// Whether bodies are on one line, as far as `near` (m) tells.
+bool on_one_line(const Body& a, const Body& b, double near) {
+  constexpr double same = 1e-6;
+  return a.kind == BodyKind::rail && b.kind == BodyKind::rail &&
+         std::abs(cross(a.rail_axis, b.rail_axis)) <= same &&
+         std::abs(cross(a.rail_axis, b.position - a.position)) <= same * near;
+}
+
+/// Bodies on one line whose ways meet run on one rail.
 void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
+    for (std::size_t j = 0; j < i;) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];
-      if (a.kind != BodyKind::rail || b.kind != BodyKind::rail || !travel[j].own) continue;
-      constexpr double same = 1e-6;
-      const Vec2 d = b.position - a.position;
-      if (std::abs(cross(a.rail_axis, b.rail_axis)) > same ||
-          std::abs(cross(a.rail_axis, d)) > same * near) {
-        continue;
-      }
-      const double shift = a.rail_axis.dot(d), sense = a.rail_axis.dot(b.rail_axis);
+      const double shift = a.rail_axis.dot(b.position - a.position);
+      const double sense = a.rail_axis.dot(b.rail_axis), reach = a.radius + b.radius;
       const double low = std::min(sense * travel[j].low, sense * travel[j].high) + shift;
       const double high = std::max(sense * travel[j].low, sense * travel[j].high) + shift;
+      if (!travel[j].own || !on_one_line(a, b, near) || low - reach > travel[i].high ||
+          high + reach < travel[i].low) {
+        ++j;
+        continue;
+      }
       travel[i] = {std::min(travel[i].low, low), std::max(travel[i].high, high), true};
       travel[j].own = false;
+      j = 0;  // the longer way may meet others
     }
   }
 }
@@ -367,6 +392,7 @@ Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& them
   Rehearsal rehearsal(scene, scenery);
   for (const Configuration& configuration : configurations) rehearsal.play(configuration, on_step);
   share_rails(scene, scenery.travel, scenery.unit());
+  rehearsal.see_rails();
   if (look.fit_view) rehearsal.fit_view();
   rehearsal.place_arrows();
   rehearsal.place_labels();

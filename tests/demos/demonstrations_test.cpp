@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "demos/scenes/scene_json.h"
+#include "render/picture/cable_path.h"
 #include "render/picture/scenery.h"
 #include "sim/step.h"
 #include "tests/sim/same_state.h"
@@ -215,6 +218,58 @@ INSTANTIATE_TEST_SUITE_P(All, Demonstration, ::testing::ValuesIn(goldens), [](co
   for (char& c : name) c = c == '-' ? '_' : c;
   return name;
 });
+
+/// Where the first cable is drawn, at fixed places of its material.
+std::vector<Vec2> drawn_places(const Scene& scene, const World& world, double smallest_sag) {
+  std::vector<StripPoint> points;
+  const CableState& cable = world.cables[0];
+  append_cable_path(scene, world, cable, smallest_sag, points);
+  std::vector<Vec2> places;
+  std::size_t k = 1;
+  constexpr int count = 500;
+  for (int i = 0; i < count; ++i) {
+    const double material = cable.length * (i + 0.5) / count;
+    while (k + 1 < points.size() && points[k].material < material) ++k;
+    const StripPoint &a = points[k - 1], &b = points[k];
+    const double share = (material - a.material) / std::max(b.material - a.material, 1e-9);
+    places.emplace_back((1.0 - share) * a.position + share * b.position);
+  }
+  return places;
+}
+
+/// By how much a place's step from a frame to the next differs from its steps before and after, at
+/// most: a jump. In shares of the view.
+double largest_jump(const SceneFile& file, const Configuration& method) {
+  const Scenery scenery = set_scenery(file.scene, file.look);
+  World world = make_world(file.scene, method);
+  Workspace work;
+  std::vector<std::vector<Vec2>> frames;
+  double largest = 0.0;
+  for (int frame = 0; frame < file.scene.frame_count; ++frame) {
+    frames.push_back(drawn_places(file.scene, world, 5e-3 * scenery.unit()));
+    for (std::size_t n = frames.size(), i = 0; n >= 4 && i < frames[0].size(); ++i) {
+      const Vec2 before = frames[n - 3][i] - frames[n - 4][i];
+      const Vec2 jump = frames[n - 2][i] - frames[n - 3][i];
+      const Vec2 after = frames[n - 1][i] - frames[n - 2][i];
+      largest = std::max(largest, std::min((jump - before).norm(), (jump - after).norm()));
+    }
+    for (int s = 0; s < file.scene.steps_per_frame; ++s) step(file.scene, world, work);
+  }
+  return largest / (100.0 * scenery.unit());
+}
+
+// Where a body is about to press a slack span against another, the slack is drawn on its way past
+// them, before the pinch moves it there at once. What is left is a rope that goes taut (its sag is the
+// root of its slack), and in 05 slack that a pinch moves into a span that bore a load.
+TEST(Drawing, SlackDoesNotJumpWhereASpanIsPinched) {
+  const auto jump = [](const char* name) {
+    const SceneFile file =
+        read_scene_file(std::string(PINCHLAB_SOURCE_DIR "/demos/") + name + ".json");
+    return largest_jump(file, Method::pinch);
+  };
+  EXPECT_LT(jump("02-stack"), 0.012);
+  EXPECT_LT(jump("05-notch"), 0.030);
+}
 
 }  // namespace
 }  // namespace pinchlab

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <regex>
 
 #include "render/picture/compose.h"
@@ -43,16 +44,37 @@ TEST(Scenery, RailsReachAsFarAsTheBodyGoes) {
   EXPECT_NEAR(scenery.travel[0].low, -0.5 * 9.81 * last * last, 0.01);
 }
 
-TEST(Scenery, BodiesOnOneLineShareARail) {
+TEST(Scenery, BodiesOnOneLineWhoseWaysMeetShareARail) {
   Scene scene = falling();
-  scene.bodies.push_back(body("other", BodyKind::rail, {0.0, 1.0}, 0.2));
+  scene.bodies.push_back(body("other", BodyKind::rail, {0.0, 2.0}, 0.2));
   scene.bodies[1].rail_axis = {0.0, -1.0};
   const Scenery scenery = set_scenery(scene);
   EXPECT_FALSE(scenery.travel[0].own);
   EXPECT_TRUE(scenery.travel[1].own);
   // From the other's highest place to its own lowest, along its own axis, which points down.
-  EXPECT_NEAR(scenery.travel[1].low, -2.0, 1e-9);
+  EXPECT_NEAR(scenery.travel[1].low, -1.0, 1e-9);
   EXPECT_GT(scenery.travel[1].high, 1.0);
+
+  scene.bodies[1].position.y() = 1.0;
+  const Scenery apart = set_scenery(scene);
+  EXPECT_TRUE(apart.travel[0].own);
+  EXPECT_TRUE(apart.travel[1].own);
+
+  // One between them whose way meets both, wherever in the list it stands.
+  scene.bodies.push_back(body("between", BodyKind::rail, {0.0, 2.0}, 0.2));
+  const Scenery joined = set_scenery(scene);
+  EXPECT_FALSE(joined.travel[0].own || joined.travel[1].own);
+  EXPECT_TRUE(joined.travel[2].own);
+}
+
+TEST(Scenery, LabelsKeepOffWallsAndRails) {
+  Scene scene = falling();
+  Scenery scenery = set_scenery(scene);
+  EXPECT_GT(std::abs(scenery.labels[0].offset.x()), 0.2) << "not on the rail";
+  EXPECT_GT(scenery.labels[0].offset.x(), 0.0);
+  scene.walls.push_back({{0.5, -2.0}, {0.5, 4.0}});
+  scenery = set_scenery(scene);
+  EXPECT_LT(scenery.labels[0].offset.x(), 0.0) << "not on the wall";
 }
 
 TEST(Scenery, AFittedViewShowsEverythingAllTheTime) {
