@@ -354,10 +354,17 @@ TEST(Http, Hosts) {
   }
 }
 
+bool has_ipv6() {
+  const int socket = ::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ::close(socket);
+  return socket >= 0;
+}
+
 TEST(Http, AnAddressForAllIsToldAsOneThatCanBeOpened) {
   EXPECT_EQ(openable_host("127.0.0.1"), "127.0.0.1");
   EXPECT_EQ(openable_host("::1"), "::1");
-  for (const char* all : {"0.0.0.0", "::"}) {
+  for (const std::string all : {"0.0.0.0", "::"}) {
+    if (all == "::" && !has_ipv6()) continue;
     Desk desk(desk_options(scratch_folder()));
     ServerOptions options;
     options.host = all;
