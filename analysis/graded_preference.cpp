@@ -69,6 +69,7 @@ GradedPreference summary(const std::string& name, const std::vector<const Graded
     ++count;
   }
   std::vector<double> means;
+  means.reserve(sums.size());
   for (const auto& [participant, sum] : sums) means.push_back(sum.first / sum.second);
   result.participants = means.size();
   for (const double mean : means) result.mean += mean / static_cast<double>(means.size());
