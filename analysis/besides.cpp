@@ -232,6 +232,7 @@ Places places_of(const std::vector<BesidesAnswer>& answers, std::uint64_t seed) 
     scores[answer.participant] += is_first ? 1 : -1;
   }
   std::vector<std::int64_t> values;
+  values.reserve(scores.size());
   for (const auto& [participant, score] : scores) values.push_back(score);
   result.p_sign_flip = sign_flip_test(std::move(values), RandomUse::sign_flip, seed).p;
   return result;

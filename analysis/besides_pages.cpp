@@ -26,6 +26,7 @@ struct Quartiles {
 
 Quartiles quartiles_of(const std::vector<ClickedPlace>& clicks, double ClickedPlace::*part) {
   std::vector<double> values;
+  values.reserve(clicks.size());
   for (const ClickedPlace& click : clicks) values.push_back(click.*part);
   std::ranges::sort(values);
   const auto at = [&](double f) {

@@ -35,7 +35,8 @@ double continued_fraction(double x, double a, double b) {
   double c = 1.0;
   double d = 1.0 / away_from_0(1.0 - (a + b) * x / (a + 1.0));
   double fraction = d;
-  for (double m = 1.0; m < 1e7; ++m) {
+  for (int term_pair = 1; term_pair < 10'000'000; ++term_pair) {
+    const double m = term_pair;
     for (const double term : {m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m)),
                               -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0))}) {
       d = 1.0 / away_from_0(1.0 + term * d);

@@ -36,6 +36,13 @@ std::string playback_text(const Circumstances& all) {
   return text + ".";
 }
 
+// Widens a range of widths, which is 0 while there is none, by another.
+void widen(int& narrowest, int& widest, int other_narrowest, int other_widest) {
+  if (other_narrowest <= 0) return;
+  narrowest = narrowest == 0 ? other_narrowest : std::min(narrowest, other_narrowest);
+  widest = std::max(widest, other_widest);
+}
+
 }  // namespace
 
 void note(const AnswerFile& file, Session& session) {
@@ -51,13 +58,8 @@ void note(const AnswerFile& file, Session& session) {
       session.screen_width_px = trial.screen_width_px;
       session.screen_height_px = trial.screen_height_px;
     }
-    if (trial.clip_width_px > 0) {
-      const bool is_first = session.narrowest_clips_px == 0;
-      session.narrowest_clips_px = is_first
-                                       ? trial.clip_width_px
-                                       : std::min(session.narrowest_clips_px, trial.clip_width_px);
-      session.widest_clips_px = std::max(session.widest_clips_px, trial.clip_width_px);
-    }
+    widen(session.narrowest_clips_px, session.widest_clips_px, trial.clip_width_px,
+          trial.clip_width_px);
   }
   session.refresh_rate_hz = file.refresh_rate_hz;
   session.free_text = file.free_text;
@@ -86,13 +88,8 @@ Circumstances circumstances(const NamedSessions& sessions, bool recorded) {
     if (session.screen_width_px > 0) {
       ++all.screens[{session.screen_width_px, session.screen_height_px}];
     }
-    if (session.narrowest_clips_px > 0) {
-      const bool is_first = all.narrowest_clips_px == 0;
-      all.narrowest_clips_px = is_first
-                                   ? session.narrowest_clips_px
-                                   : std::min(all.narrowest_clips_px, session.narrowest_clips_px);
-      all.widest_clips_px = std::max(all.widest_clips_px, session.widest_clips_px);
-    }
+    widen(all.narrowest_clips_px, all.widest_clips_px, session.narrowest_clips_px,
+          session.widest_clips_px);
     if (session.refresh_rate_hz <= 0) continue;
     ++all.screens_measured;
     if (shows_60_evenly(session.refresh_rate_hz)) continue;

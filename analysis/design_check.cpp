@@ -7,16 +7,14 @@
 #include <cmath>
 
 #include "analysis/answers_table.h"
+#include "base/answer_file.h"
 #include "base/input_error.h"
-#include "base/strict_json.h"
 
 namespace pinchlab::analysis {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
 struct NamedJson {
   std::string participant;
@@ -34,7 +32,7 @@ std::vector<NamedJson> all_files(const std::vector<fs::path>& inputs) {
     }
     for (const fs::path& path :
          fs::is_directory(input) ? files_of_folder(input) : std::vector<fs::path>{input}) {
-      json file = read_json_file(path, largest_file);
+      json file = read_answer_json(path);
       std::string participant = parse_answer_file(file, path.string()).participant;
       files.push_back({std::move(participant), std::move(file)});
     }

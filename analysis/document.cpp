@@ -97,6 +97,7 @@ class Writer {
                     "Bayes factor",
                     "JOD"};
     std::vector<double> exact;
+    exact.reserve(rows.size());
     for (const Row* row : rows) exact.push_back(row->p_exact);
     const std::vector<double> by_holm = holm(exact);
     const std::vector<double> by_bh = benjamini_hochberg(exact);

@@ -19,8 +19,9 @@ std::vector<std::size_t> doubled_ranks(const std::vector<double>& sizes) {
   std::vector<double> sorted = sizes;
   std::ranges::sort(sorted);
   std::vector<std::size_t> ranks;
+  ranks.reserve(sizes.size());
   for (const double size : sizes) {
-    const auto [begin, end] = std::ranges::equal_range(sorted, size);
+    const auto [begin, end] = std::equal_range(sorted.begin(), sorted.end(), size);
     ranks.push_back(static_cast<std::size_t>((begin - sorted.begin()) + (end - sorted.begin())) +
                     1);
   }
@@ -68,6 +69,7 @@ GradedPreference summary(const std::string& name, const std::vector<const Graded
     ++count;
   }
   std::vector<double> means;
+  means.reserve(sums.size());
   for (const auto& [participant, sum] : sums) means.push_back(sum.first / sum.second);
   result.participants = means.size();
   for (const double mean : means) result.mean += mean / static_cast<double>(means.size());

@@ -59,6 +59,7 @@ std::string line_of(const std::vector<std::string>& cells, std::size_t columns) 
 std::string table_of(const TableBlock& table, std::size_t number) {
   const std::size_t columns = table.header.size();
   std::vector<std::string> header;
+  header.reserve(columns);
   for (const std::string& cell : table.header) header.push_back(escaped(cell));
   std::string text = fmt::format(
       "\\begin{{table}}\n  \\centering\n  \\caption{{{}}}\n  \\label{{tab:pinchlab-{}}}\n"
@@ -67,6 +68,7 @@ std::string table_of(const TableBlock& table, std::size_t number) {
   text += line_of(header, columns) + "  \\midrule\n";
   for (const std::vector<TextCell>& row : table.rows) {
     std::vector<std::string> cells;
+    cells.reserve(row.size());
     for (const TextCell& cell : row) {
       cells.push_back(cell.bold ? "\\textbf{" + escaped(cell.text) + "}" : escaped(cell.text));
     }

@@ -298,7 +298,9 @@ ScaleFit fit_scale(ScaleModel model, std::size_t methods, const std::vector<Pair
     longest = 0.0;
     for (const double part : step) longest = std::max(longest, std::abs(part));
     // A step that loses is halved.
-    for (double share = 1.0; share > 1e-6; share /= 2) {
+    constexpr int most_halvings = 20;
+    for (int halvings = 0; halvings < most_halvings; ++halvings) {
+      const double share = std::ldexp(1.0, -halvings);
       std::vector<double> next = parameters;
       for (std::size_t j = 0; j < next.size(); ++j) next[j] += share * step[j];
       const bool is_law =

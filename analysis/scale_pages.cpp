@@ -274,9 +274,10 @@ Figure scale_figure(const ScaleReport& report, const ComparisonsTable& table) {
     all += fmt::format("{:.6f} {:.6f} {:.6f} {}\n", value.value.value, value.low.value,
                        value.high.value, i + 1);
     for (const Scale& one : report.demonstrations) {
-      if (one.values[method].value)
+      if (one.values[method].value) {
         each += fmt::format("{:.6f} {:.2f}\n", one.values[method].value.value,
                             static_cast<double>(i) + 1.22);
+      }
     }
   }
   script += ") tc rgb '#333333'\n$all << EOD\n" + all + "EOD\n";
@@ -284,10 +285,11 @@ Figure scale_figure(const ScaleReport& report, const ComparisonsTable& table) {
   script += fmt::format(
       "plot $all using 1:4:2:3 with xerrorbars pt 7 ps 1.1 lw 2.5 lc rgb '#0072b2' title {}",
       gnuplot_quote(fmt::format("all answers, {} interval", level_text(report))));
-  if (!each.empty())
+  if (!each.empty()) {
     script +=
         ", \\\n  $each using 1:2 with points pt 6 ps 0.8 lc rgb '#777777' title 'single "
         "demonstrations'";
+  }
   return {"scale",
           fmt::format("Values of the methods on the {} scale; dots with bars: all answers with {} "
                       "intervals{}.",

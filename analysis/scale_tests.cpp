@@ -156,6 +156,7 @@ EqualScale equal_scale(std::size_t methods, const std::vector<PairChoices>& choi
     return result;
   }
   std::vector<std::vector<double>> wins;
+  wins.reserve(participants);
   for (auto& [participant, own] : by_participant) wins.push_back(std::move(own));
   constexpr std::size_t most_exact = 16;
   result.exact = participants <= most_exact;

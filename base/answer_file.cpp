@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr size_t answer_file_limit_bytes = size_t{16} << 20;
+constexpr size_t largest_answer_file = size_t{16} << 20;  // bytes
 constexpr long billion = 1000000000;
 constexpr const char* format_cure = "; see analysis/README.md for the format";
 
@@ -315,11 +315,15 @@ void check_plan(const AnswerFile& file, const std::string& name, bool allow_miss
 
 }  // namespace
 
+nlohmann::json read_answer_json(const fs::path& path) {
+  return read_json_file(path, largest_answer_file);
+}
+
 AnswersKind kind_of_answers(const fs::path& path) {
   try {
     const fs::path file = fs::is_directory(path) ? files_of_folder(path).front() : path;
     if (file.extension() != ".json") return AnswersKind::none;
-    const nlohmann::json document = read_json_file(file, answer_file_limit_bytes);
+    const nlohmann::json document = read_answer_json(file);
     const nlohmann::json plan = document.value("plan", nlohmann::json());
     if (!plan.is_object()) return AnswersKind::none;
     return plan.contains("graded_hit") ? AnswersKind::graded
@@ -359,7 +363,7 @@ std::vector<NamedAnswerFile> read_answer_files(
   for (const fs::path& place :
        fs::is_directory(path) ? files_of_folder(path) : std::vector<fs::path>{path}) {
     const std::string name = place.string();
-    AnswerFile file = parse_answer_file(read_json_file(place, answer_file_limit_bytes), name);
+    AnswerFile file = parse_answer_file(read_answer_json(place), name);
     if (excluded(file.participant)) continue;
     same_study.check(file, name);
     check_plan(file, name, allow_missing);

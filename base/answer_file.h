@@ -70,6 +70,10 @@ struct AnswerFile {
 /// Within 2 %, which is more than browsers' clocks are off.
 bool shows_60_evenly(double hz);
 
+/// The JSON of an answer file, or of a session that will be one. Throws InputError if it is none, or
+/// larger than an answer file can be.
+nlohmann::json read_answer_json(const std::filesystem::path& path);
+
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
 /// Unknown keys, wrong types and answers that contradict the plan throw InputError.
 AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& file);

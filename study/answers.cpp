@@ -9,7 +9,6 @@
 #include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/read_file.h"
-#include "base/strict_json.h"
 #include "study/secrets.h"
 
 namespace pinchlab::study {
@@ -17,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
@@ -140,7 +137,7 @@ std::string withdraw(const fs::path& folder, const std::string& code) {
         "`{}` is no withdrawal code; it looks like 7K3M-9Q2X-0BVA", code.substr(0, 60)));
   }
   for (const fs::path& path : answer_files(folder)) {
-    const nlohmann::json file = read_json_file(path, largest_file);
+    const nlohmann::json file = read_answer_json(path);
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
       return path.stem().string();

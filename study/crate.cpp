@@ -15,7 +15,6 @@
 #include "base/input_error.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
-#include "base/strict_json.h"
 #include "study/tables.h"
 
 namespace pinchlab::study {
@@ -25,7 +24,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 constexpr const char* process_run = "https://w3id.org/ro/wfrun/process/0.4";
 
 struct Shown {
@@ -37,7 +35,7 @@ struct Shown {
 Shown what_was_shown(const fs::path& answers) {
   Shown shown;
   for (const fs::path& path : answer_files(answers)) {
-    const json file = read_json_file(path, largest_file);
+    const json file = read_answer_json(path);
     shown.last_day = std::max(shown.last_day, file["saved_utc"].get<std::string>().substr(0, 10));
     const json hashes = file.value("clips_sha256", json::object());
     for (const auto& [demonstration, variants] : hashes.items()) {

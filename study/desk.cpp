@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/sha256.h"
-#include "base/strict_json.h"
 #include "study/adaptive.h"
 #include "study/answers.h"
 #include "study/secrets.h"
@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
 // "<id>.<secret>"
 std::pair<std::string, std::string> split(const std::string& token) {
@@ -300,7 +298,7 @@ std::string Desk::saved_code(const std::string& id, const std::string& secret) c
   if (!fs::exists(path)) {
     return "";
   }
-  const json file = read_json_file(path, largest_file);
+  const json file = read_answer_json(path);
   const std::string code = withdrawal_code(secret);
   const json kept = file.is_object() ? file.value("withdrawal_code_sha256", json()) : json();
   return kept.is_string() && equal_in_constant_time(kept.get<std::string>(), withdrawal_hash(code))

@@ -11,7 +11,6 @@
 #include "base/json_object.h"
 #include "base/partial_file.h"
 #include "base/sha256.h"
-#include "base/strict_json.h"
 #include "study/adaptive.h"
 #include "study/answers.h"
 #include "study/desk.h"
@@ -24,14 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t largest_file = 16U << 20U;       // bytes
 constexpr std::chrono::minutes longest_unanswered{5};  // without a sign, where places are short
 
 }  // namespace
 
 void Desk::read_finished() {
   for (const fs::path& path : answer_files(options_.answers)) {
-    const json file = read_json_file(path, largest_file);
+    const json file = read_answer_json(path);
     if (!file.is_object() || file.value("format", json()) != "pinchlab-answers") {
       throw std::runtime_error(
           fmt::format("{}: is no answer file; keep other files elsewhere", path.string()));
@@ -67,7 +65,7 @@ void Desk::read_running() {
     }
     auto entry = std::make_shared<Entry>();
     try {
-      entry->session = session_from_json(read_json_file(path, largest_file));
+      entry->session = session_from_json(read_answer_json(path));
     } catch (const InputError& error) {
       throw std::runtime_error(
           fmt::format("{}: {}; remove the file to go on without this participant", path.string(),

@@ -10,7 +10,6 @@
 #include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/folder_lock.h"
-#include "base/strict_json.h"
 #include "study/answers.h"
 #include "study/shown.h"
 #include "study/study_file.h"
@@ -21,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
-
 // Nobody may have taken part, or be taking part.
 void check_nobody(const fs::path& answers) {
   if (fs::exists(design_path(answers))) {
@@ -31,7 +28,7 @@ void check_nobody(const fs::path& answers) {
                     answers.string()));
   }
   for (const fs::path& path : answer_files(answers)) {
-    const json file = read_json_file(path, largest_file);
+    const json file = read_answer_json(path);
     const bool is_pilot = file.is_object() && file.value("pilot", false);
     throw std::runtime_error(
         is_pilot
@@ -57,7 +54,7 @@ void check_nobody(const fs::path& answers) {
 std::size_t count_pilot(const fs::path& folder) {
   const std::vector<fs::path> files = answer_files(folder);
   for (const fs::path& path : files) {
-    const json file = read_json_file(path, largest_file);
+    const json file = read_answer_json(path);
     if (!file.is_object() || !file.value("pilot", false)) {
       throw std::runtime_error(
           fmt::format("{}: is no answer of a pilot (study serve --pilot)", path.string()));

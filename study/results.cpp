@@ -5,7 +5,6 @@
 #include <set>
 
 #include "base/answer_file.h"
-#include "base/strict_json.h"
 
 namespace pinchlab::study {
 namespace {
@@ -13,7 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 constexpr double many_dropped = 0.02, nearly_always = 0.9;
 constexpr int small_clip = 900;  // CSS px, both clips together
 constexpr int often_away = 5, fewest_for_sides = 8;
@@ -93,8 +91,8 @@ json Results::read(bool reveal) {
   for (const fs::path& path : answer_files(answers_)) {
     const std::string name = path.filename().string();
     const auto known = summaries_.find(name);
-    present[name] = known != summaries_.end() ? std::move(known->second)
-                                              : summary_of(read_json_file(path, largest_file));
+    present[name] =
+        known != summaries_.end() ? std::move(known->second) : summary_of(read_answer_json(path));
   }
   summaries_ = std::move(present);
   json demonstrations = json::object(), warnings = json::array();

@@ -11,7 +11,6 @@
 #include "base/answer_file.h"
 #include "base/csv.h"
 #include "base/durable_file.h"
-#include "base/strict_json.h"
 #include "study/answers.h"
 #include "study/participants_table.h"
 
@@ -21,8 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
-
-constexpr std::size_t largest_file = 16U << 20U;  // bytes
 
 // A text that a spreadsheet would take for a formula gets an apostrophe before it, which
 // spreadsheets do not show; numbers stay as they are.
@@ -240,7 +237,7 @@ Answers read_folder(const fs::path& folder) {
   Answers answers;
   SameStudy same_study;
   for (const fs::path& path : answer_files(folder)) {
-    json file = read_json_file(path, largest_file);
+    json file = read_answer_json(path);
     same_study.check(parse_answer_file(file, path.string()), path.string());
     answers.participants.emplace_back(std::move(file), std::vector<Cells>());
   }

@@ -59,8 +59,12 @@ void tell_what_is_kept(const json& own, const TextOptions& options, Texts& texts
     if (name.empty()) continue;
     std::string text = texts.at(key);
     const std::size_t slot = text.find("{name}");
-    text = slot == std::string::npos ? text + " " + name : text.replace(slot, 6, name);
-    texts["information_rights"] += "\n\n" + text;
+    if (slot == std::string::npos) {
+      text.append(" ").append(name);
+    } else {
+      text.replace(slot, 6, name);
+    }
+    texts["information_rights"].append("\n\n").append(text);
   }
 }
 
@@ -93,7 +97,7 @@ Texts read_texts(const json& own, const std::string& file, const std::string& po
   std::erase_if(texts, [&](const auto& text) { return !is_used(text.first, options); });
   for (const std::string& key : known) {
     if (is_used(key, options) && !texts.contains(key)) {
-      throw InputError(file + ": " + pointer,
+      throw InputError(fmt::format("{}: {}", file, pointer),
                        fmt::format("no texts are delivered in the language `{}`, so all must be "
                                    "given; `{}` is missing (English: \"{}\")",
                                    language, key, english.at(key)));

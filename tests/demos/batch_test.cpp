@@ -6,12 +6,11 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <set>
-#include <thread>
 
 #include "demos/scenes/find_scenes.h"
 #include "demos/version.h"
@@ -344,18 +343,15 @@ TEST(Batch, FullDiskLeavesNoHalfFile) {
   }
 }
 
-// Waits until the folder has a file with this ending; false if none comes.
-bool wait_for_file(const fs::path& folder, const std::string& ending) {
-  for (int i = 0; i < 2000; ++i) {
+// Waits until the folder has a file with this ending; false if the program ends before.
+bool wait_for_file(pid_t process, const fs::path& folder, const std::string& ending) {
+  return wait_until(process, [&] {
     std::error_code none;
-    for (const auto& entry : fs::directory_iterator(folder, none)) {
-      if (entry.path().string().ends_with(ending)) {
-        return true;
-      }
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return false;
+    const fs::directory_iterator files(folder, none);
+    return std::any_of(begin(files), end(files), [&](const fs::directory_entry& entry) {
+      return entry.path().string().ends_with(ending);
+    });
+  });
 }
 
 fs::path folder_with_long_demo() {
@@ -367,19 +363,18 @@ fs::path folder_with_long_demo() {
 TEST(Batch, KilledRunLeavesNoHalfFile) {
   const fs::path folder = folder_with_long_demo();
   const pid_t process = start_program(folder, render);
-  ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
+  ASSERT_TRUE(
+      wait_for_file(process, folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
   ::kill(process, SIGKILL);
   EXPECT_EQ(wait_for_program(folder, process).signal, SIGKILL);
   EXPECT_FALSE(fs::exists(folder / "clips/01-long.pinch.mp4"));
 
-  // The workers are gone too: they hold the folder's lock, so that the next run can begin only
-  // then.
+  // The workers die too: they hold the folder's lock, which can be had only then.
+  const int clips = ::open((folder / "clips").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(::flock(clips, LOCK_EX), 0);
+  ::close(clips);
   write_scene(folder / "demos/01-long.json", 2.0);
-  RunResult again;
-  for (int i = 0; i < 100 && again.exit_code != 0; ++i) {
-    again = run_program(folder, render);
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  const RunResult again = run_program(folder, render);
   EXPECT_EQ(again.exit_code, 0) << again.err;
   ASSERT_EQ(run_program(folder, render_with({"--out", "fresh"})).exit_code, 0);
   EXPECT_EQ(files_in(folder / "clips"), files_in(folder / "fresh"));
@@ -389,7 +384,8 @@ TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path folder = folder_with_long_demo();
     const pid_t process = start_program(folder, render);
-    ASSERT_TRUE(wait_for_file(folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
+    ASSERT_TRUE(
+        wait_for_file(process, folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
     ::kill(process, signal);
     EXPECT_EQ(wait_for_program(folder, process).signal, signal);
     for (const std::string& name : names_in(folder / "clips")) {
@@ -402,7 +398,7 @@ TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
 TEST(Batch, OneRunAtATimeInAFolder) {
   const fs::path folder = folder_with_long_demo();
   const pid_t first = start_program(folder, render);
-  ASSERT_TRUE(wait_for_file(folder / "clips", ".partial"));
+  ASSERT_TRUE(wait_for_file(first, folder / "clips", ".partial"));
   fs::create_directory(folder / "other");
   const RunResult second =
       run_program(folder / "other", {"render", "../demos", "--out", "../clips"});

@@ -8,33 +8,42 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "tests/base/scratch_folder.h"
 
 namespace pinchlab {
 
 struct RunResult {
   int exit_code = -1;  // -1: ended by a signal
   int signal = 0;
-  std::string out, err;
+  std::string out, err;  // err without how far the work is
 };
+
+/// What the program says on standard error without the lines of base/progress.h: a slow machine has
+/// them, a fast one has none.
+inline std::string without_progress(const std::string& text) {
+  std::string kept;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool has_share = line.find(" %") != std::string::npos;
+    const bool is_progress =
+        has_share && (line.ends_with(" left") || line.find(", after ") != std::string::npos);
+    if (!is_progress) kept += line + (lines.eof() ? "" : "\n");
+  }
+  return kept;
+}
 
 inline std::string text_of(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A folder of this test's own, empty at first.
-inline std::filesystem::path scratch_folder() {
-  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pinchlab" /
-                                 (std::string(test->test_suite_name()) + "." + test->name());
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 /// Starts the program in `folder`; its output goes to stdout.txt and stderr.txt there. No file that
@@ -69,7 +78,21 @@ inline RunResult wait_for_program(const std::filesystem::path& folder, pid_t pro
   int status = 0;
   EXPECT_EQ(::waitpid(process, &status, 0), process);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, WIFSIGNALED(status) ? WTERMSIG(status) : 0,
-          text_of(folder / "stdout.txt"), text_of(folder / "stderr.txt")};
+          text_of(folder / "stdout.txt"), without_progress(text_of(folder / "stderr.txt"))};
+}
+
+/// Waits until `has_happened()`; false if the program has ended without.
+template <class Happened>
+bool wait_until(pid_t process, const Happened& has_happened) {
+  for (;;) {
+    siginfo_t ended = {};
+    const bool has_ended =
+        ::waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        ended.si_pid == process;
+    if (has_happened()) return true;
+    if (has_ended) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 inline RunResult run_program(const std::filesystem::path& folder,

@@ -67,7 +67,11 @@ ServerProcess::~ServerProcess() {
 }
 
 std::string ServerProcess::address() const {
-  for (int i = 0; i < 3000; ++i) {
+  for (bool has_ended = false; !has_ended;) {
+    siginfo_t ended = {};
+    has_ended =
+        ::waitid(P_PID, static_cast<id_t>(process_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+        ended.si_pid == process_;
     std::ostringstream text;
     text << std::ifstream(out_).rdbuf();
     const std::string out = text.str();

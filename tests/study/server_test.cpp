@@ -11,7 +11,6 @@
 #include <array>
 #include <atomic>
 #include <barrier>
-#include <csignal>
 #include <random>
 #include <thread>
 
@@ -279,21 +278,21 @@ TEST(Server, SlowConnectionsHoldUpNobodyAndEnd) {
   const std::string post =
       "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9\r\n\r\n";
   std::vector<std::unique_ptr<RawConnection>> slow;
+  const auto begin = std::chrono::steady_clock::now();
   for (int i = 0; i < 100; ++i) {
     slow.push_back(std::make_unique<RawConnection>(running.server.address()));
     slow.back()->send(i % 3 == 0 ? "" : i % 3 == 1 ? get : post);
   }
   HttpClient client(running.server.address());
   EXPECT_EQ(client.get("/api/study")->status, 200);
-  const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < 300 && !std::ranges::all_of(slow, &RawConnection::has_ended); ++i) {
+  while (!std::ranges::all_of(slow, &RawConnection::has_ended)) {
     for (const auto& connection : slow) {
       connection->send("x");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  EXPECT_TRUE(std::ranges::all_of(slow, &RawConnection::has_ended));
-  EXPECT_GT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, options.limits.header_time)
+      << "the last was cut off before its time";
 }
 
 TEST(Server, FourHundredFetchesAtOnceAreAllServed) {
@@ -355,10 +354,17 @@ TEST(Http, Hosts) {
   }
 }
 
+bool has_ipv6() {
+  const int socket = ::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ::close(socket);
+  return socket >= 0;
+}
+
 TEST(Http, AnAddressForAllIsToldAsOneThatCanBeOpened) {
   EXPECT_EQ(openable_host("127.0.0.1"), "127.0.0.1");
   EXPECT_EQ(openable_host("::1"), "::1");
-  for (const char* all : {"0.0.0.0", "::"}) {
+  for (const std::string all : {"0.0.0.0", "::"}) {
+    if (all == "::" && !has_ipv6()) continue;
     Desk desk(desk_options(scratch_folder()));
     ServerOptions options;
     options.host = all;
@@ -394,8 +400,12 @@ struct Participant {
   std::string token, code;  // the code once the server has confirmed
 };
 
-// Everybody saves at the same time, over and over until it is confirmed or the server is gone.
-void save_all(const std::string& address, std::vector<Participant>& people) {
+// Everybody saves at the same time; the server is killed `delay` after so many of them have got an
+// answer.
+void save_all_and_kill(ServerProcess& server, std::vector<Participant>& people, int answers,
+                       std::chrono::microseconds delay) {
+  const std::string address = server.address();
+  std::atomic<int> answered = 0;
   std::vector<std::thread> threads;
   threads.reserve(people.size());
   for (Participant& person : people) {
@@ -405,8 +415,15 @@ void save_all(const std::string& address, std::vector<Participant>& people) {
       if (result && result->status == 200) {
         person.code = json::parse(result->body)["code"];
       }
+      ++answered;
+      answered.notify_one();
     });
   }
+  for (int now = 0; now < answers; now = answered) {
+    answered.wait(now);
+  }
+  std::this_thread::sleep_for(delay);
+  server.kill();
   for (std::thread& thread : threads) {
     thread.join();
   }
@@ -432,14 +449,8 @@ TEST(Server, KilledAtAHundredRandomMomentsWhileSaving) {
       HttpClient client(address);
       person.token = take_part(client, false);
     }
-    const auto delay = std::chrono::microseconds(random() % 12000);
-    std::thread killer([&] {
-      std::this_thread::sleep_for(delay);
-      ::kill(server.id(), SIGKILL);
-    });
-    save_all(address, people);
-    killer.join();
-    server.kill();
+    const int answers = static_cast<int>(random() % people.size());
+    save_all_and_kill(server, people, answers, std::chrono::microseconds(random() % 4000));
     for (const Participant& person : people) {
       (person.code.empty() ? cut_off : told) += 1;
       if (!person.code.empty()) {

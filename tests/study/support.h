@@ -17,21 +17,12 @@
 #include "study/http_client.h"
 #include "study/secrets.h"
 #include "study/server.h"
+#include "tests/base/scratch_folder.h"
 #include "tests/study/server_process.h"
 
 namespace pinchlab::study {
 
 inline const std::vector<std::string> demonstrations = {"01-first", "02-second", "03-third"};
-
-/// A folder of this test's own, empty at first.
-inline std::filesystem::path scratch_folder() {
-  const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-  std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pinchlab-study" /
-                                 (std::string(test->test_suite_name()) + "." + test->name());
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
 
 inline void write_text(const std::filesystem::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;

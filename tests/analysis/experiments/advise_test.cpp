@@ -57,7 +57,9 @@ class Advise : public ::testing::Test {
 // solves one row exactly; the first of the list wins.
 TEST_F(Advise, OneStepIsEnoughForUniformAcceleration) {
   const Question question = ask("atwood", atwood_json, 1e-6);
-  const Advice advice = advise(question);
+  Advice advice = advise(question);
+  for (Rung& rung : advice.rungs) rung.trial.cpu_s_per_s = rung.steps_per_frame;  // no clock's
+  advice.best = cheapest(advice.problem, advice.rungs, question.error_m, true);
   ASSERT_GE(advice.best, 0);
   const Rung& best = advice.rungs[static_cast<std::size_t>(advice.best)];
   EXPECT_EQ(best.steps_per_frame, 1);

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "demos/scenes/scene_format.h"
 #include "demos/scenes/scene_json.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
@@ -354,8 +354,8 @@ TEST(SceneErrors, FilesThatCannotBeRead) {
   };
   EXPECT_EQ(read_error("no-such.json"), "no-such.json: No such file or directory");
   EXPECT_EQ(read_error("/tmp"), "/tmp: is not a file");
-  const std::string large = testing::TempDir() + "/large.json";
-  std::ofstream(large) << std::string(max_scene_bytes + 1, ' ');
+  const test::TemporaryFolder folder;
+  const std::string large = folder.write("large.json", std::string(max_scene_bytes + 1, ' '));
   EXPECT_EQ(read_error(large), large + ": is larger than 4000000 bytes");
 }
 

@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "demos/scenes/find_scenes.h"
+#include "tests/base/temporary_folder.h"
 #include "tests/demos/scenes/scene_files.h"
 
 namespace pinchlab {
@@ -164,8 +163,8 @@ TEST(SceneJson, LimitsThemselvesAreAllowed) {
 }
 
 TEST(SceneJson, Sha256IsTheFiles) {
-  const std::string path = testing::TempDir() + "/08-hash.json";
-  std::ofstream(path) << small_scene();
+  const test::TemporaryFolder folder;
+  const std::string path = folder.write("08-hash.json", small_scene().dump());
   EXPECT_EQ(read_scene_file(path).sha256, sha256_of_file(path));
 }
 

@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, browse, consent, demonstrations, killServers, open, scratch, serve, telling } from './support.mjs';
+import { answer, answersIn, browse, consent, demonstrations, killServers, open, save, scratch, serve, telling } from './support.mjs';
 
 // Takes the whole study and returns all that the browser received and what is left in it.
 async function takePart(server) {
@@ -31,9 +31,7 @@ async function takePart(server) {
       await answer(page);
     }
     documents.push(await page.evaluate(() => JSON.stringify([{ ...localStorage }, { ...sessionStorage }, document.cookie])));
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await save(page);
     documents.push(await page.content());
     assert.deepEqual(await context.cookies(), []);
     return { received: await Promise.all(received), documents, media };

@@ -7,7 +7,7 @@ import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { jatosStudy } from './jatos_study.mjs';
-import { answer, browse, consent, demonstrations, open, picture, program, telling } from './support.mjs';
+import { answer, browse, consent, demonstrations, open, picture, program, save, telling } from './support.mjs';
 
 const { folder, run, entries, study, assets, jatos } = await jatosStudy({ repetitions: 2 }, 2);
 after(jatos.close);
@@ -101,9 +101,7 @@ test('who leaves gives the plan back; who starts anew too; then the study is ful
     await page.waitForSelector('#start');
     await consent(page);
     await answerRest(page);
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await save(page);
     assert.deepEqual(page.problems, []);
   });
   assert.equal(jatos.runs.get('second').result.number, 1);

@@ -6,7 +6,7 @@ import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, test } from 'node:test';
 import { jatosStudy } from './jatos_study.mjs';
-import { answer, browse, consent, demonstrations, open } from './support.mjs';
+import { answerTrials, browse, consent, demonstrations, open, save } from './support.mjs';
 
 const { folder, run, jatos } = await jatosStudy({
   preference: 'graded', confidence: 3, click_where: true, reason: 50,
@@ -36,9 +36,7 @@ test('everything is asked, kept over a reload, and brought back', async () => {
       await page.keyboard.press('Enter');
     }
     await page.fill('#question-words', 'Nothing');
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await save(page);
     assert.deepEqual(page.problems, []);
   } finally {
     await browser.close();
@@ -66,13 +64,8 @@ test('the language is the participant\'s', async () => {
     await page.waitForSelector('#continue');
     assert.equal(await page.textContent('#continue'), 'Fortsätt');
     await page.click('#continue');
-    for (let i = 0; i < demonstrations.length; ++i) {
-      await page.waitForSelector('#left');
-      await answer(page);
-    }
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await answerTrials(page);
+    await save(page);
     assert.deepEqual(page.problems, []);
   } finally {
     await browser.close();

@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, consent, open, openSessions, picture, withStudy } from './support.mjs';
+import { answer, answersIn, answerTrials, assertAccessible, consent, open, openSessions, picture, save, withStudy } from './support.mjs';
 
 test('practice and an attention check, by their names alone', () => withStudy({ training: ['01-roll-over'], attention_checks: ['03-drop'] }, async (server, context) => {
   const page = await open(context, server.address);
@@ -19,9 +19,7 @@ test('practice and an attention check, by their names alone', () => withStudy({ 
     await picture(page, `16-trial-${i}`);
     await answer(page);
   }
-  await page.click('#next');
-  await page.click('#save');
-  await page.waitForSelector('#code');
+  await save(page);
   const [{ trials }] = answersIn(server);
   assert.deepEqual(trials.map(({ kind }) => kind).sort(), ['attention', 'main', 'main', 'main', 'training']);
   assert.equal(trials[0].kind, 'training');
@@ -56,13 +54,8 @@ test('one-time links: who has one starts, once', () => withStudy({ one_time_link
   assert.match(await refusal(links[1]), /used already/, 'while it is running');
   await page.reload();
   await page.click('#continue');
-  for (let i = 0; i < 3; ++i) {
-    await page.waitForSelector('#left');
-    await answer(page);
-  }
-  await page.click('#next');
-  await page.click('#save');
-  await page.waitForSelector('#code');
+  await answerTrials(page);
+  await save(page);
   assert.equal(answersIn(server)[0].participant_number, 1, 'the number is the link’s');
   assert.match(await refusal(links[1]), /used already/, 'after it was saved');
   assert.match(await refusal(new URL(`?link=${'0'.repeat(32)}`, server.address).href), /used already/, 'a link that nobody was given');
@@ -92,13 +85,8 @@ for (const [width, height] of [[1920, 1080], [1366, 768], [1280, 720]]) {
     assert.equal(await language(), 'en', 'what was chosen stays');
     assert.equal(await page.textContent('#continue'), 'Go on');
     await page.click('#continue');
-    for (let i = 0; i < 3; ++i) {
-      await page.waitForSelector('#left');
-      await answer(page);
-    }
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await answerTrials(page);
+    await save(page);
     const [file] = answersIn(server);
     assert.equal(file.language, 'en');
     assert.equal(file.study.language, 'en, sv');
@@ -125,9 +113,7 @@ test('chosen levels: one clip at a time, and a reload goes on', () => {
       assert.equal(fetched.size, i + 1, 'which clip comes next is not known before');
       await (i < 3 ? answer(page, i % 2 === 0 ? 'left' : 'right') : page.click('#left'));
     }
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await save(page);
     const [file] = answersIn(server);
     assert.equal(file.plan.adaptive, 'psi');
     assert.equal(file.trials.length, 4);

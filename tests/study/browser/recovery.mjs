@@ -6,13 +6,10 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, answerTrials, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
 
-async function answerAll(page, count = demonstrations.length) {
-  for (let i = 0; i < count; ++i) {
-    await page.waitForSelector('#left');
-    await answer(page);
-  }
+async function answerAll(page, count) {
+  await answerTrials(page, count);
   await page.click('#next');
   await page.waitForSelector('#save');
 }

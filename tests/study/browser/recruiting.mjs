@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, browse, consent, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, answerTrials, assertAccessible, browse, consent, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
 
 const site = 'https://app.example.org';
 const recruiting = {
@@ -47,10 +47,7 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
       await answer(page);
       await page.reload();  // the session is found by the id
       await page.click('#continue');
-      for (let i = 1; i < 3; ++i) {
-        await page.waitForSelector('#left');
-        await answer(page);
-      }
+      await answerTrials(page, 2);
       await page.click('#next');
       await page.click('#save');
       await page.waitForSelector('#back-completed');

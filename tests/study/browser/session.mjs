@@ -3,18 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
-
-async function withStudy(options, body) {
-  const server = await serve(scratch(), options);
-  const { browser, context } = await browse(options.context);
-  try {
-    await body(server, context);
-  } finally {
-    await browser.close();
-    killServers();
-  }
-}
+import { answer, answersIn, answerTrials, assertAccessible, consent, demonstrations, open, openSessions, picture, save, withStudy } from './support.mjs';
 
 test('with the mouse, from beginning to end, every page accessible', () => withStudy({}, async (server, context) => {
   const page = await open(context, server.address);
@@ -78,7 +67,7 @@ test('with the mouse, from beginning to end, every page accessible', () => withS
   assert.deepEqual(page.problems, []);
 }));
 
-test('with the keyboard only', () => withStudy({ config: { language: 'sv' } }, async (server, context) => {
+test('with the keyboard only', () => withStudy({ language: 'sv' }, async (server, context) => {
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   assert.equal(await page.getAttribute('html', 'lang'), 'sv');
@@ -125,34 +114,40 @@ test('with the keyboard only', () => withStudy({ config: { language: 'sv' } }, a
   assert.deepEqual(page.problems, []);
 }));
 
-test('no buttons and no keys before the first loop has ended', () => withStudy({}, async (server, context) => {
-  // What the page shows is written down at every frame of the video, before anything else sees it.
-  await context.addInitScript(() => {
-    window.seen = [];
-    const callback = HTMLVideoElement.prototype.requestVideoFrameCallback;
-    const watched = new WeakSet();
-    HTMLVideoElement.prototype.requestVideoFrameCallback = function request(handler) {
-      if (!watched.has(this)) {
-        watched.add(this);
-        const note = (now, { mediaTime }) => {
-          window.seen.push({ mediaTime, buttons: document.querySelectorAll('#left, #right').length });
-          callback.call(this, note);
-        };
+// Holds the first clip at its third frame until `release`, however slow the machine is. What the page shows is written down
+// at every frame, before anything else sees it.
+const holdFirstClip = (context) => context.addInitScript(() => {
+  window.seen = [];
+  const callback = HTMLVideoElement.prototype.requestVideoFrameCallback;
+  const watched = new WeakSet();
+  HTMLVideoElement.prototype.requestVideoFrameCallback = function request(handler) {
+    if (!watched.has(this)) {
+      watched.add(this);
+      const note = (now, { mediaTime }) => {
+        window.seen.push({ mediaTime, buttons: document.querySelectorAll('#left, #right').length });
+        if (window.seen.length === 3) this.playbackRate = 0;
         callback.call(this, note);
-      }
-      return callback.call(this, handler);
-    };
-  });
+      };
+      callback.call(this, note);
+    }
+    return callback.call(this, handler);
+  };
+});
+const release = (page) => page.$eval('video', (video) => { video.playbackRate = 1; });
+
+test('no buttons and no keys before the first loop has ended', () => withStudy({}, async (server, context) => {
+  await holdFirstClip(context);
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
   await page.waitForFunction(() => window.seen.length > 2);
   for (const key of ['ArrowLeft', 'ArrowRight', 'Enter', 'Space']) await page.keyboard.press(key);
+  await release(page);
   await page.waitForSelector('#left');
   const seen = await page.evaluate(() => window.seen);
   const loopEnd = seen.findIndex(({ mediaTime }, i) => i > 0 && mediaTime < seen[i - 1].mediaTime);
   const until = loopEnd < 0 ? seen : seen.slice(0, loopEnd + 1);
-  assert.ok(until.length > 10, 'frames were seen');
+  assert.ok(until.length > 3, 'frames were seen');
   assert.ok(until.every(({ buttons }) => buttons === 0), 'no button while the first loop plays');
   assert.equal(await page.textContent('#remaining'), '3 left to answer', 'keys did nothing');
   await page.keyboard.press('ArrowLeft');
@@ -185,24 +180,24 @@ test('leaving asks once and keeps nothing', () => withStudy({}, async (server, c
   assert.deepEqual(page.problems, []);
 }));
 
-test('a small screen is told kindly', () => withStudy({ context: { viewport: { width: 800, height: 500 } } }, async (server, context) => {
+test('a small screen is told kindly', () => withStudy({}, async (server, context) => {
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   assert.match(await page.textContent('#stage'), /too small/);
   assert.equal(await page.isDisabled('#start'), true);
   await assertAccessible(page, 'small');
   await picture(page, '10-small');
-}));
+}, { viewport: { width: 800, height: 500 } }));
 
-test('a touch screen is told kindly', () => withStudy({ context: { viewport: { width: 1400, height: 900 }, hasTouch: true, isMobile: true } }, async (server, context) => {
+test('a touch screen is told kindly', () => withStudy({}, async (server, context) => {
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   assert.match(await page.textContent('#stage'), /computer with a mouse or a keyboard/);
   assert.equal(await page.isDisabled('#start'), true);
   await picture(page, '18-touch');
-}));
+}, { viewport: { width: 1400, height: 900 }, hasTouch: true, isMobile: true }));
 
-test('a browser without H.264 plays the other encoding; practice comes first', () => withStudy({ config: { training: ['03-drop'] } }, async (server, context) => {
+test('a browser without H.264 plays the other encoding; practice comes first', () => withStudy({ training: ['03-drop'] }, async (server, context) => {
   await context.addInitScript(() => {
     const canPlayType = HTMLMediaElement.prototype.canPlayType;
     HTMLMediaElement.prototype.canPlayType = function canPlay(type) {
@@ -222,9 +217,7 @@ test('a browser without H.264 plays the other encoding; practice comes first', (
     await answer(page);
   }
   assert.equal(sizes.size, 1, 'practice has the size of the rest');
-  await page.click('#next');
-  await page.click('#save');
-  await page.waitForSelector('#code');
+  await save(page);
   const [file] = answersIn(server);
   assert.deepEqual(file.trials.map(({ kind }) => kind), ['training', 'main', 'main', 'main']);
   for (const { clip } of file.trials) assert.match(clip, /\.webm$/);
@@ -237,25 +230,38 @@ const hide = (page, isHidden) => page.evaluate((value) => {
   document.dispatchEvent(new Event('visibilitychange'));
 }, isHidden);
 
+// Jumps to the middle of the clip, and returns how many buttons there are once it has begun anew.
+const jump = (page) => page.$eval('video', (video) => new Promise((resolve) => {
+  let last = 0;
+  video.requestVideoFrameCallback(function note(now, { mediaTime }) {
+    // What the page does at this frame, it has done before the timeout.
+    if (mediaTime < last) return setTimeout(() => resolve(document.querySelectorAll('#left, #right').length));
+    last = mediaTime;
+    return video.requestVideoFrameCallback(note);
+  });
+  video.currentTime = video.duration / 2;
+  video.playbackRate = 1;
+}));
+
 test('what is not seen does not count: a hidden page waits, and a jump is no loop', () => withStudy({}, async (server, context) => {
+  await holdFirstClip(context);
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
-  await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.2);
+  await page.waitForFunction(() => window.seen.length > 2);
+  const { at, share } = await page.evaluate(() => (
+    { at: document.querySelector('video').currentTime, share: document.querySelector('.wait progress').value }));
+  assert.ok(share > 0 && share < 1, `the first loop's progress: ${share}`);
   await hide(page, true);
-  const at = await page.$eval('video', (video) => video.currentTime);
+  await release(page);
   await page.waitForTimeout(4000);  // two loops
   assert.equal(await page.$eval('video', (video) => video.paused), true);
-  assert.ok(await page.$eval('video', (video) => video.currentTime) - at < 0.5, 'it did not play');
+  assert.ok(await page.$eval('video', (video) => video.currentTime) - at < 0.1, 'it did not play');
   assert.equal(await page.locator('#left').count(), 0);
+  await page.$eval('video', (video) => { video.playbackRate = 0; });
   await hide(page, false);
   await page.waitForFunction(() => !document.querySelector('video').paused);
-  const share = () => page.$eval('.wait progress', (bar) => bar.value);
-  const before = await share();
-  await page.$eval('video', (video) => { video.currentTime = video.duration - 0.2; });
-  await page.waitForFunction(() => document.querySelector('video').currentTime < 1);
-  assert.equal(await page.locator('#left').count(), 0, 'the end of a loop that was jumped over');
-  assert.ok(before > 0 && before < 1, `the first loop's progress: ${before}`);
+  assert.equal(await jump(page), 0, 'the end of a loop that was jumped over');
   await page.waitForSelector('#left');
   await answer(page);
   assert.deepEqual(page.problems, []);
@@ -263,43 +269,42 @@ test('what is not seen does not count: a hidden page waits, and a jump is no loo
 
 for (const [width, height] of [[1920, 1080], [1366, 768], [1280, 720]]) {
   for (const language of ['en', 'sv']) {
-    test(`the page at ${width} x ${height}, ${language}`, () => withStudy(
-      { config: { language }, context: { viewport: { width, height } } }, async (server, context) => {
-        const page = await open(context, server.address);
-        const name = `look-${width}-${language}`;
-        await page.waitForSelector('#start');
-        await picture(page, `${name}-information`);
-        await consent(page);
-        await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.5);
-        await picture(page, `${name}-first-loop`);
-        await page.waitForSelector('#left');
-        await picture(page, `${name}-choice`);
-        const boxes = await page.evaluate(() => Object.fromEntries(['#left', '#right', '.arrows', 'video', 'h1'].map((selector) => {
-          const { left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
-          return [selector, { left, right, top, bottom, middle: (left + right) / 2 }];
-        })));
-        const { video } = boxes;
-        const quarter = (video.right - video.left) / 4;
-        assert.ok(Math.abs(boxes['#left'].middle - video.left - quarter) < 1, 'the left button is under the left clip');
-        assert.ok(Math.abs(boxes['#right'].middle - video.right + quarter) < 1, 'the right button is under the right clip');
-        assert.ok(boxes['#left'].right < boxes['.arrows'].left && boxes['.arrows'].right < boxes['#right'].left, 'nothing lies over another');
-        assert.ok(boxes.h1.bottom <= video.top && boxes['#left'].top >= video.bottom && boxes['#left'].bottom <= height, 'all is on the screen');
-        await server.kill();
-        await page.click('#left');
-        await page.waitForFunction(() => document.querySelector('#notice').textContent !== '');
-        await picture(page, `${name}-lost`);
-        const { notice, question, bottom } = await page.evaluate(() => ({
-          notice: document.querySelector('#notice').getBoundingClientRect().bottom,
-          question: document.querySelector('h1').getBoundingClientRect().top,
-          bottom: document.querySelector('.choices').getBoundingClientRect().bottom,
-        }));
-        assert.ok(notice <= question, 'the banner is off the question');
-        assert.ok(bottom <= height, 'and nothing is pushed off the screen');
+    test(`the page at ${width} x ${height}, ${language}`, () => withStudy({ language }, async (server, context) => {
+      const page = await open(context, server.address);
+      const name = `look-${width}-${language}`;
+      await page.waitForSelector('#start');
+      await picture(page, `${name}-information`);
+      await consent(page);
+      await page.waitForFunction(() => document.querySelector('video')?.currentTime > 0.5);
+      await picture(page, `${name}-first-loop`);
+      await page.waitForSelector('#left');
+      await picture(page, `${name}-choice`);
+      const boxes = await page.evaluate(() => Object.fromEntries(['#left', '#right', '.arrows', 'video', 'h1'].map((selector) => {
+        const { left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
+        return [selector, { left, right, top, bottom, middle: (left + right) / 2 }];
+      })));
+      const { video } = boxes;
+      const quarter = (video.right - video.left) / 4;
+      assert.ok(Math.abs(boxes['#left'].middle - video.left - quarter) < 1, 'the left button is under the left clip');
+      assert.ok(Math.abs(boxes['#right'].middle - video.right + quarter) < 1, 'the right button is under the right clip');
+      assert.ok(boxes['#left'].right < boxes['.arrows'].left && boxes['.arrows'].right < boxes['#right'].left, 'nothing lies over another');
+      assert.ok(boxes.h1.bottom <= video.top && boxes['#left'].top >= video.bottom && boxes['#left'].bottom <= height, 'all is on the screen');
+      await server.kill();
+      await page.click('#left');
+      await page.waitForFunction(() => document.querySelector('#notice').textContent !== '');
+      await picture(page, `${name}-lost`);
+      const { notice, question, bottom } = await page.evaluate(() => ({
+        notice: document.querySelector('#notice').getBoundingClientRect().bottom,
+        question: document.querySelector('h1').getBoundingClientRect().top,
+        bottom: document.querySelector('.choices').getBoundingClientRect().bottom,
       }));
+      assert.ok(notice <= question, 'the banner is off the question');
+      assert.ok(bottom <= height, 'and nothing is pushed off the screen');
+    }, { viewport: { width, height } }));
   }
 }
 
-test('a few clips are fetched ahead, not all', () => withStudy({ config: { repetitions: 4 } }, async (server, context) => {
+test('a few clips are fetched ahead, not all', () => withStudy({ repetitions: 4 }, async (server, context) => {
   const page = await open(context, server.address);
   const fetched = new Set();
   page.on('request', (request) => { if (request.url().includes('/media/')) fetched.add(request.url()); });
@@ -321,10 +326,7 @@ test('who has saved in another window is told so, not that nothing is kept', () 
   const page = await open(context, server.address);
   await page.waitForSelector('#start');
   await consent(page);
-  for (let i = 0; i < demonstrations.length; ++i) {
-    await page.waitForSelector('#left');
-    await answer(page);
-  }
+  await answerTrials(page);
   await page.waitForSelector('#next');
   // The other window saves just before this one leaves.
   const code = await page.evaluate(async () => {

@@ -77,7 +77,7 @@ test('seen and pressed: everything that can be asked', () => withStudy({ prefere
   assert.deepEqual(trials.map(({ choice, preference, confidence }) => [choice, preference, confidence]), [['right', 2, 4], ['tie', 0, 1], ['left', -3, 5]]);
   for (const { loops_watched: loops, frame_count: frames, reaction_time_s: seconds, clip_width_px: width } of trials) {
     assert.ok(loops >= 1 && frames > 30 && width > 0, 'the clip was really shown');
-    assert.ok(seconds >= 0.2 && seconds < 5, `${seconds} s`);
+    assert.ok(seconds >= 0.2, `${seconds} s`);
   }
 }, {}, { isPilot: true }));
 

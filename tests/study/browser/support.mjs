@@ -164,6 +164,21 @@ export async function answer(page, side = 'left') {
   await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
 }
 
+/** Answers so many trials, one after the other. */
+export async function answerTrials(page, count = demonstrations.length) {
+  for (let i = 0; i < count; ++i) {
+    await page.waitForSelector('#left');
+    await answer(page);
+  }
+}
+
+/** Leaves the questions after the trials, saves, and waits for the withdrawal code. */
+export async function save(page) {
+  await page.click('#next');
+  await page.click('#save');
+  await page.waitForSelector('#code');
+}
+
 /** Says that the page has nothing that keeps people out. */
 export async function assertAccessible(page, where) {
   // By the debugger, which the content security policy does not bind.
@@ -175,19 +190,22 @@ export async function assertAccessible(page, where) {
 
 /**
  * Waits until `wanted` loops of the clip that is shown were seen. A loop of which the machine, being busy, showed less than
- * nine tenths (frames half a second of the clip apart show nothing between) is none, on the page as here.
+ * nine tenths (frames half a second of the clip apart show nothing between) is none, on the page as here. Resolves to all
+ * frames that were seen: when they are in the clip, s, and when they were shown, ms.
  */
 export function watchLoops(page, wanted) {
   return page.evaluate((count) => new Promise((resolve) => {
     const video = document.querySelector('video');
+    const frames = [];
     let last = null, shown = 0, loops = 0;
-    video.requestVideoFrameCallback(function note(now, { mediaTime }) {
+    video.requestVideoFrameCallback(function note(now, { mediaTime, presentationTime }) {
+      frames.push({ mediaTime, presentationTime });
       const isEnd = last !== null && mediaTime < last;
       const step = last === null ? 0 : mediaTime - last + (isEnd ? video.duration : 0);  // s
       if (step <= 0.5) shown += step;
       if (isEnd) {
         if (shown >= 0.9 * video.duration) ++loops;
-        if (loops === count) return resolve();
+        if (loops === count) return resolve(frames);
         shown = 0;
       }
       last = mediaTime;

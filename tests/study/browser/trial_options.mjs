@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answersIn, assertAccessible, consent, open, picture, withStudy } from './support.mjs';
+import { answersIn, assertAccessible, consent, open, picture, save, withStudy } from './support.mjs';
 
 // Says that nothing is cut off, and that the clips have not changed their size.
 async function assertFits(page, video) {
@@ -79,9 +79,7 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
       await page.keyboard.press('1');
       await page.click('#where-none');
       await page.click('#reason-next');
-      await page.click('#next');
-      await page.click('#save');
-      await page.waitForSelector('#code');
+      await save(page);
       const [{ trials, study }] = answersIn(server);
       assert.match(study.options_sha256, /^[0-9a-f]{64}$/);
       assert.deepEqual(trials.map(({ choice, preference, confidence, reason, input }) => [choice, preference, confidence, reason, input]), [
@@ -119,9 +117,7 @@ test('confidence alone, after a choice of two; a reload asks the trial again', (
     await page.keyboard.press('9');
     await page.waitForFunction(() => !document.querySelector('#confidence-9'));
   }
-  await page.click('#next');
-  await page.click('#save');
-  await page.waitForSelector('#code');
+  await save(page);
   const [{ trials }] = answersIn(server);
   assert.deepEqual(trials.map(({ choice, confidence }) => [choice, confidence]), [['right', 9], ['left', 9], ['right', 9]]);
   assert.deepEqual(page.problems, []);

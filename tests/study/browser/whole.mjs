@@ -8,7 +8,7 @@ import { readFileSync, readdirSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { answer, answersIn, assertAllIsOnTheScreen, browse, consent, killServers, open, picture, program, root, scratch, serve, watchLoops } from './support.mjs';
+import { answer, answersIn, assertAllIsOnTheScreen, browse, consent, killServers, open, picture, program, root, save, scratch, serve, watchLoops } from './support.mjs';
 
 const loops = 5;
 const milliseconds = (seconds) => (1000 * seconds).toFixed(1).padStart(7);
@@ -31,9 +31,7 @@ async function takePart(server, [width, height], wanted) {
       await picture(page, `whole-${width}-trial-${i + 1}`);
       await answer(page, i % 2 === 0 ? 'left' : 'right');
     }
-    await page.click('#next');
-    await page.click('#save');
-    await page.waitForSelector('#code');
+    await save(page);
     await picture(page, `whole-${width}-thanks`);
     assert.deepEqual(page.problems, []);
   } finally {
