@@ -2,6 +2,8 @@
 #include "sim/motion/advance.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -25,6 +27,10 @@ namespace {
 
 constexpr int most_rebounds = 24;  // of a step's events: what comes after them does not rebound
 constexpr int most_events = 48;    // that are located in one step
+
+// Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round what they
+// are in without end, each change making more, and steps last minutes.
+constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part) {
@@ -91,6 +97,12 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
   strike_all(scene, world, work, time, rebounds);
 }
 
+StepStatus fail_by_changes(World& world) {
+  world.failure = "step " + std::to_string(world.step) + " (t = " + std::to_string(world.time()) +
+                  " s): cables meet and leave bodies without end; move apart what they are in";
+  return StepStatus::not_finite;
+}
+
 /// Moves the world by an interval of at most `left` (s), to its next event; its length, in which
 /// `met` is as for find_interval.
 double move(const Scene& scene, World& world, Workspace& work, double left, bool locate, bool& met,
@@ -118,6 +130,8 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   Diagnostics& d = world.diagnostics;
   d.active_set_solves = 0;
   const std::int64_t fallbacks = d.fallbacks;
+  const std::int64_t allowed = changes_of_cables(world) + most_changes +
+                               most_changes_a_body * static_cast<std::int64_t>(world.bodies.size());
   double left = world.step_length;
   int events = 0;
   // Velocities that the scene starts with need not fit its cables: they meet them at once.
@@ -146,6 +160,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
       ++d.events;
       catch_up(scene, world, now, work);
       change_courses(world, work);
+      if (changes_of_cables(world) > allowed) return fail_by_changes(world);
     }
     for (const Part& part : work.parts.list) {
       if (left == 0.0 && !part.asleep) note_rest(scene, work.parts, part, world);
