@@ -66,6 +66,7 @@ std::vector<LevelCell> totals_of(const Series& series) {
     }
   }
   std::vector<LevelCell> totals;
+  totals.reserve(sums.size());
   for (const auto& [level, sum] : sums) totals.push_back(sum);
   return totals;
 }

@@ -108,7 +108,7 @@ QuestionColumns question_columns(const std::vector<json>& files) {
     if (!file.contains("questionnaires")) continue;
     for (const auto& [part, answers] : file["questionnaires"].items()) {
       for (const auto& [name, entry] : answers.items()) {
-        columns[part + "_" + name] = entry["question"];
+        columns[std::string(part).append("_").append(name)] = entry["question"];
       }
     }
   }

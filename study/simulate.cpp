@@ -283,7 +283,9 @@ void simulate(Desk& desk, const Truth& truth, const SimulationOptions& options) 
   std::mutex mutex;
   std::exception_ptr problem;
   std::vector<std::thread> threads;
-  for (int i = 0; i < std::min(options.at_once, options.participants); ++i) {
+  const int at_once = std::min(options.at_once, options.participants);
+  threads.reserve(static_cast<std::size_t>(std::max(at_once, 0)));
+  for (int i = 0; i < at_once; ++i) {
     threads.emplace_back([&] {
       for (int who = next++; who < options.participants; who = next++) {
         try {

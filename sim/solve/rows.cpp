@@ -294,6 +294,32 @@ int presser_of(const World& world, const SolveScratch& scratch, const Row& row) 
   return at(scratch.normal_row_of_contact, segment.contact);
 }
 
+/// Empties the part's rows, but for those of segments where they are for the same links and kick as
+/// before; whether they are.
+bool begin_segment_rows(const World& world, const Parts& parts, const Part& part, double kick,
+                        PartSystem& s) {
+  RowsMade made{0, kick};
+  for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
+  const bool again = made == s.made;
+  s.made = made;
+  s.same_rows = again && part.contacts_begin == part.contacts_end;
+  s.rows_stand = s.same_rows && !s.mobility_changed;
+  if (again) {
+    s.rows.resize(index(s.first_contact_row));
+    s.bodies.resize(index(s.first_contact_row));
+    s.changed.resize(index(s.first_contact_row));
+  } else {
+    s.rows.clear();
+    s.bodies.clear();
+    s.changed.clear();
+    s.assembled.clear();
+    s.row_of_segment.clear();
+  }
+  s.frictions.clear();
+  s.segment_begin.clear();
+  return again;
+}
+
 }  // namespace
 
 double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
@@ -325,25 +351,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   const bool plain = world.configuration.method == Method::cable;
   const bool exact = locates_events(world.configuration);
-  RowsMade made{0, interval.kick};
-  for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
-  const bool again = made == s.made;
-  s.made = made;
-  s.same_rows = again && part.contacts_begin == part.contacts_end;
-  s.rows_stand = s.same_rows && !s.mobility_changed;
-  if (again) {
-    s.rows.resize(index(s.first_contact_row));
-    s.bodies.resize(index(s.first_contact_row));
-    s.changed.resize(index(s.first_contact_row));
-  } else {
-    s.rows.clear();
-    s.bodies.clear();
-    s.changed.clear();
-    s.assembled.clear();
-    s.row_of_segment.clear();
-  }
-  s.frictions.clear();
-  s.segment_begin.clear();
+  const bool again = begin_segment_rows(world, parts, part, interval.kick, s);
   std::size_t begin = 0;  // of the cable, in row_of_segment
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
