@@ -137,10 +137,11 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
     const auto row_of = [row_of_segment](int segment) { return row_of_segment[segment]; };
     const int count = static_cast<int>(cable.links.size());
     // Start a closed cable outside of any pinch, an open one at the first segment that bears
-    // tension.
+    // tension: before it it may lie along many sides of the polygon that holds its start.
     int start = cable.closed ? 0 : 1;
     while (cable.closed && begins_within_run(cable, start)) ++start;
-    if (row_of(start) < 0) ++start;
+    while (start < count && row_of(start) < 0) ++start;
+    if (start == count) continue;
     int run_before = -1;
     const std::size_t first_of_cable = s.segments.size();
     for (int segment = start, seen = 0; seen < count; ++seen) {

@@ -241,6 +241,34 @@ TEST(Corners, TenBoxesStandOnOneAnother) {
   }
 }
 
+// A cable that starts on a square winch, lies over two of its corners and then slides over a pulley: the
+// pulley's two tensions are e^(mu theta) apart while the winch holds and the weight is let down.
+TEST(Corners, ACableWoundOverCornersSlidesElsewhere) {
+  const double mu = 0.3;
+  for (const bool from_start : {true, false}) {
+    Scene scene;
+    scene.bodies.push_back(
+        polygon("winch", BodyKind::fixed_axle, Vec2::Zero(), box_corners(0.4, 0.4), 5.0));
+    scene.bodies[0].driven_angular_velocity = 0.5;
+    scene.bodies.push_back(body("pulley", BodyKind::fixed, 3.0, 0.25, 0.3));
+    scene.bodies[1].cable_friction = mu;
+    scene.bodies.push_back(body("weight", BodyKind::free, 3.35, -2.0, 0.1, 2.0));
+    const Attachment rim{0, {0.0, -0.25}};
+    scene.cables.push_back(from_start ? cable(rim, {{0, -1, 0}, {1, -1, 0}}, on(2))
+                                      : cable(on(2), {{1, 1, 0}, {0, 1, 0}}, rim));
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 20);
+    const std::vector<Segment>& s = world.cables[0].segments;
+    const std::size_t last = s.size() - 1;
+    const double hangs = s[from_start ? last : 1].tension;
+    const double winch = s[from_start ? last - 1 : 2].tension;
+    const Link& pulley = world.cables[0].links[from_start ? last - 1 : 1];
+    EXPECT_NEAR(hangs, 2.0 * g, 0.5);
+    EXPECT_EQ(world.cables[0].links.size(), 5U);
+    EXPECT_NEAR(std::max(hangs / winch, winch / hangs), std::exp(mu * pulley.wrap), 1e-9);
+  }
+}
+
 /// A disc on a cable that lies along the top of a fixed box, without slip on it; gravity slopes.
 Scene disc_on_cable_on_box(double slope, double friction) {
   Scene scene;
