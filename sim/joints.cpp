@@ -55,13 +55,9 @@ void add_bar(Scene& scene, const std::string& name, const Attachment& start,
   scene.cables.push_back(bar);
 }
 
-double arm_of_hinge(const Scene& scene, int body, int other) {
-  return at(scene.bodies, other >= 0 ? other : body).radius;
-}
-
 void add_hinge(Scene& scene, const std::string& name, int body, int other, const Vec2& point) {
   refuse_idle(name, body, other);
-  const double arm = arm_of_hinge(scene, body, other);
+  const double arm = at(scene.bodies, other >= 0 ? other : body).radius;
   for (const Vec2& axis : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
     Cable bar =
         segment_of(scene, name + (axis.x() > 0.0 ? ":x" : ":y"), Joint::pin,

@@ -19,12 +19,9 @@ void add_bar(Scene& scene, const std::string& name, const Attachment& start, con
 
 /// Holds two bodies together at a point of the world (m), about which they turn; `other` may be -1,
 /// the world. They no longer touch each other. Two bars do it, `name`:x and `name`:y, from the point on
-/// `body` to two points of `other` that lie `arm_of_hinge` off it along the axes of the start: both keep
-/// their length just where the point is the same on both bodies.
+/// `body` to two points of `other` (or of the world) that lie its radius (or the body's) off it along the
+/// axes of the start: both keep their length just where the point is the same on both bodies.
 void add_hinge(Scene& scene, const std::string& name, int body, int other, const Vec2& point);
-
-/// m, length of either bar of a hinge.
-double arm_of_hinge(const Scene& scene, int body, int other);
 
 /// A force k (l - l0) + c dl/dt along the line between the two points, l their distance: `stiffness` k >
 /// 0 (N/m), natural length l0 (m; 0: the distance that they start with), `damping` c >= 0 (N s/m).

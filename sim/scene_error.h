@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace pinchlab {
 
@@ -10,9 +11,9 @@ namespace pinchlab {
 /// the message says what is wrong and how to cure it. Whoever knows the file adds its name.
 class SceneError : public std::runtime_error {
  public:
-  SceneError(std::string place_, const std::string& message)
-      : std::runtime_error(place_ + ": " + message), place(std::move(place_)) {}
-  std::string place;
+  SceneError(std::string place_, const std::string& message_)
+      : std::runtime_error(place_ + ": " + message_), place(std::move(place_)), message(message_) {}
+  std::string place, message;
 };
 
 }  // namespace pinchlab

@@ -56,9 +56,9 @@ class JointReader {
     refuse_keys(from_, place_, keys, what, problems_);
   }
 
-  int body(const char* key) {
+  int read_body(const json& from, const char* key, const std::string& place) {
     const std::size_t before = problems_.size();
-    const int found = body_index_(from_[key], place_ + "/" + key);
+    const int found = body_index_(from[key], place + "/" + key);
     wrong_ = wrong_ || problems_.size() > before;
     return found;
   }
@@ -79,9 +79,7 @@ class JointReader {
       attachment.point = vector_of(end["world_m"]);
       return attachment;
     }
-    const std::size_t before = problems_.size();
-    attachment.body = body_index_(end["body"], place + "/body");
-    wrong_ = wrong_ || problems_.size() > before;
+    attachment.body = read_body(end, "body", place);
     take(end, "point_m", attachment.point);
     return attachment;
   }
@@ -90,8 +88,8 @@ class JointReader {
     refuse({"start", "end", "stiffness_n_m", "natural_length_m", "damping_n_s_m"}, "a hinge");
     need({"body", "at_m"});
     if (wrong_) return;
-    const int first = body("body");
-    const int other = from_.contains("other") ? body("other") : -1;
+    const int first = read_body(from_, "body", place_);
+    const int other = from_.contains("other") ? read_body(from_, "other", place_) : -1;
     if (!wrong_) add_hinge(scene, name, first, other, vector_of(from_["at_m"]));
   }
 
@@ -102,16 +100,6 @@ class JointReader {
   bool wrong_ = false;
 };
 
-/// Notes why a joint cannot be, if it can't.
-template <class Add>
-void add_or_note(const std::string& place, std::vector<SceneProblem>& problems, Add add) {
-  try {
-    add();
-  } catch (const SceneError& error) {
-    problems.push_back({place, std::string(error.what()).substr(error.place.size() + 2)});
-  }
-}
-
 }  // namespace
 
 void read_joints(const json& file, Scene& scene, SceneLook& look, const BodyIndex& body_index,
@@ -119,8 +107,11 @@ void read_joints(const json& file, Scene& scene, SceneLook& look, const BodyInde
   const json joints = file.value("joints", json::array());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const std::string place = fmt::format("/joints/{}", i);
-    add_or_note(place, problems,
-                [&] { JointReader(joints[i], place, body_index, problems).read(scene); });
+    try {
+      JointReader(joints[i], place, body_index, problems).read(scene);
+    } catch (const SceneError& error) {
+      problems.push_back({place, error.message});
+    }
     look.cables.resize(scene.cables.size(), read_cable_look(joints[i]));
   }
   for (std::size_t b = 0; b < file["bodies"].size(); ++b) {

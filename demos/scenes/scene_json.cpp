@@ -102,11 +102,7 @@ World start_world(const Scene& scene, const std::filesystem::path& path,
   try {
     return make_world(scene, configuration);
   } catch (const SceneError& error) {
-    std::string message = error.what();
-    if (message.starts_with(error.place + ": ")) {
-      message.erase(0, error.place.size() + 2);
-    }
-    throw SceneFileError(path.string(), {{error.place, message}});
+    throw SceneFileError(path.string(), {{error.place, error.message}});
   }
 }
 

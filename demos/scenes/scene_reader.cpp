@@ -310,7 +310,7 @@ void Reader::spread(SceneContent& to) {
                             at(to.look.cables, made.cable));
     }
   } catch (const SceneError& error) {
-    problem(error.place, std::string(error.what()).substr(error.place.size() + 2));
+    problem(error.place, error.message);
   }
 }
 

@@ -231,6 +231,71 @@ double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
   return arc;
 }
 
+namespace {
+
+/// Of a pair they come in their order, those of walls after all of pairs.
+bool comes_before(const Contact& p, const Contact& q) {
+  if (p.a != q.a) return p.a < q.a;
+  if (p.b != q.b) return p.b < q.b;
+  return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
+}
+
+/// Between bodies that are where they were, what was a contact is one; how many there are.
+std::size_t keep(const std::vector<Contact>& old, int a, int b, int wall,
+                 std::vector<Contact>& to) {
+  Contact wanted;
+  wanted.a = a;
+  wanted.b = b;
+  wanted.wall = wall;
+  const std::size_t before = to.size();
+  auto it = std::lower_bound(old.begin(), old.end(), wanted, comes_before);
+  for (; it != old.end() && it->a == a && it->b == b && it->wall == wall; ++it) to.push_back(*it);
+  return to.size() - before;
+}
+
+/// A polygon may come nearer by turning as well.
+double speed_of(const World& world, int body) {
+  const BodyProperties& b = at(world.bodies, body);
+  const double rim = is_polygon(b) ? b.radius * std::abs(at(world.angular_velocity, body)) : 0.0;
+  return at(world.velocity, body).norm() + rim;
+}
+
+/// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre lies by
+/// `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than `most` (m).
+void add_contacts(const Scene& scene, World& world, int a, int b, int wall, const Vec2& d,
+                  double radii, double most) {
+  const double distance = d.norm();
+  if (distance - radii > most) return;
+  if (is_polygon(at(world.bodies, a)) || (b >= 0 && is_polygon(at(world.bodies, b)))) {
+    append_touches(scene, world, a, b, wall, most, world.contacts);
+    return;
+  }
+  const Vec2 somewhere = b >= 0 ? Vec2(1.0, 0.0) : Vec2(0.0, -1.0);
+  Contact contact;
+  contact.a = a;
+  contact.b = b;
+  contact.wall = wall;
+  contact.normal = distance > 0.0 ? Vec2(d / distance) : somewhere;
+  contact.gap = distance - radii;
+  world.contacts.push_back(contact);
+}
+
+/// What the last solve left of the contacts that there were.
+void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts) {
+  auto previous = old.begin();
+  for (Contact& contact : contacts) {
+    while (previous != old.end() && comes_before(*previous, contact)) ++previous;
+    if (previous != old.end() && !comes_before(contact, *previous)) {
+      contact.touching = previous->touching;
+      contact.slip = previous->slip;
+      contact.normal_force = previous->normal_force;
+      contact.tangent_force = previous->tangent_force;
+    }
+  }
+}
+
+}  // namespace
+
 void find_contacts(const Scene& scene, World& world, Workspace& work) {
   bool& all_kept = work.contacts.contacts_kept;
   std::vector<Contact>& old = work.contacts.old_contacts;
@@ -246,89 +311,35 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   world.contacts.clear();
   std::size_t kept = 0;
   const double width = full_width(world);
-  const auto less = [](const Contact& p, const Contact& q) {
-    if (p.a != q.a) return p.a < q.a;
-    if (p.b != q.b) return p.b < q.b;
-    return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
-  };
-  // Between bodies that are where they were, what was a contact is one.
-  const auto keep = [&](int a, int b, int wall) {
-    Contact wanted;
-    wanted.a = a;
-    wanted.b = b;
-    wanted.wall = wall;
-    auto it = std::lower_bound(old.begin(), old.end(), wanted, less);
-    for (; it != old.end() && it->a == a && it->b == b && it->wall == wall; ++it) {
-      world.contacts.push_back(*it);
-      ++kept;
-    }
-  };
-  // A polygon may come nearer by turning as well.
-  const auto speed_of = [&world](std::size_t b) {
-    const BodyProperties& body = world.bodies[b];
-    const double rim = is_polygon(body) ? body.radius * std::abs(world.angular_velocity[b]) : 0.0;
-    return world.velocity[b].norm() + rim;
-  };
   for (const BodyPair& pair : broad.body_pairs) {
     if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
-      keep(pair.a, pair.b, -1);
+      kept += keep(old, pair.a, pair.b, -1, world.contacts);
       continue;
     }
-    const auto a = static_cast<std::size_t>(pair.a), b = static_cast<std::size_t>(pair.b);
-    const Vec2 d = world.position[b] - world.position[a];
-    const double distance = d.norm();
-    const double radii = world.bodies[a].radius + world.bodies[b].radius;
-    const double least = std::min(world.bodies[a].radius, world.bodies[b].radius);
+    const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
     // Bodies that move together have no speed between them until one is stopped within the step.
-    const double speed = speed_of(a) + speed_of(b);
-    const double most = width + reach(scene, world, speed, least);
-    if (distance - radii > most) continue;
-    if (is_polygon(world.bodies[a]) || is_polygon(world.bodies[b])) {
-      append_touches(scene, world, pair.a, pair.b, -1, most, world.contacts);
-      continue;
-    }
-    Contact contact;
-    contact.a = pair.a;
-    contact.b = pair.b;
-    contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(1.0, 0.0);
-    contact.gap = distance - radii;
-    world.contacts.push_back(contact);
+    const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
+    const double most = width + reach(scene, world, speed, std::min(a, b));
+    const Vec2 d = at(world.position, pair.b) - at(world.position, pair.a);
+    add_contacts(scene, world, pair.a, pair.b, -1, d, a + b, most);
   }
   for (const WallPair& pair : broad.wall_pairs) {
     if (!can_move(at(world.bodies, pair.body))) continue;
     if (is_still(work.parts, pair.body)) {
-      keep(pair.body, -1, pair.wall);
+      kept += keep(old, pair.body, -1, pair.wall, world.contacts);
       continue;
     }
-    const auto b = static_cast<std::size_t>(pair.body);
-    const Vec2 d = nearest_point(at(scene.walls, pair.wall), world.position[b]) - world.position[b];
-    const double distance = d.norm(), radius = world.bodies[b].radius;
-    const double most = reach(scene, world, speed_of(b), radius);
-    if (distance - radius > most) continue;
-    if (is_polygon(world.bodies[b])) {
-      append_touches(scene, world, pair.body, -1, pair.wall, most, world.contacts);
-      continue;
-    }
-    Contact contact;
-    contact.a = pair.body;
-    contact.wall = pair.wall;
-    contact.normal = distance > 0.0 ? Vec2(d / distance) : Vec2(0.0, -1.0);
-    contact.gap = distance - radius;
-    world.contacts.push_back(contact);
+    const Vec2& x = at(world.position, pair.body);
+    const Vec2 d = nearest_point(at(scene.walls, pair.wall), x) - x;
+    const double radius = at(world.bodies, pair.body).radius;
+    const double most = reach(scene, world, speed_of(world, pair.body), radius);
+    add_contacts(scene, world, pair.body, -1, pair.wall, d, radius, most);
   }
-  // Those of a pair come in their order, those of walls after all of pairs.
-  if (!broad.wall_pairs.empty()) std::sort(world.contacts.begin(), world.contacts.end(), less);
+  if (!broad.wall_pairs.empty()) {
+    std::sort(world.contacts.begin(), world.contacts.end(), comes_before);
+  }
   all_kept = kept == world.contacts.size() && kept == old.size();
-  auto previous = old.begin();
-  for (Contact& contact : world.contacts) {
-    while (previous != old.end() && less(*previous, contact)) ++previous;
-    if (previous != old.end() && !less(contact, *previous)) {
-      contact.touching = previous->touching;
-      contact.slip = previous->slip;
-      contact.normal_force = previous->normal_force;
-      contact.tangent_force = previous->tangent_force;
-    }
-  }
+  carry_over(old, world.contacts);
 }
 
 void configure_pinches(World& world, Workspace& work) {

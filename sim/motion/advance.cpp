@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/motion/advance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
-#include <string>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -98,8 +99,9 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
 }
 
 StepStatus fail_by_changes(World& world) {
-  world.failure = "step " + std::to_string(world.step) + " (t = " + std::to_string(world.time()) +
-                  " s): cables meet and leave bodies without end; move apart what they are in";
+  world.failure = fmt::format(
+      "step {} (t = {} s): cables meet and leave bodies without end; move apart what they are in",
+      world.step, world.time());
   return StepStatus::not_finite;
 }
 

@@ -95,6 +95,24 @@ bool begins_within_run(const CableState& cable, int link) {
   return to.pinch_middle || from.pinch_middle || is_side(from, to);
 }
 
+/// The last link of the run that begins with link `first`; adds the links after that to `seen`.
+int last_of_run(const CableState& cable, int first, bool link_by_link, int& seen) {
+  int last = first;
+  while (true) {
+    const int after = next_link(cable, last);
+    const Link& link = at(cable.links, after);
+    if (link.pinch_middle && !link_by_link) {
+      last = next_link(cable, after);
+      seen += 2;
+    } else if (link.corner >= 0 && link.body == at(cable.links, last).body) {
+      last = after;  // along a side
+      seen += 1;
+    } else {
+      return last;
+    }
+  }
+}
+
 /// Takes friction off all runs that may slide.
 void smooth(CapstanScratch& s) {
   for (Passage& passage : s.passages) {
@@ -148,21 +166,8 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
       s.segments.push_back(row_of(segment));
       s.run_before.push_back(run_before);
       const int first = segment;
-      int last = first;
       if (cable.links[index(first)].orientation == 0) break;  // the end of an open cable
-      while (true) {
-        const int after = next_link(cable, last);
-        const Link& link = cable.links[index(after)];
-        if (link.pinch_middle && !link_by_link) {
-          last = next_link(cable, after);
-          seen += 2;
-        } else if (link.corner >= 0 && link.body == cable.links[index(last)].body) {
-          last = after;  // along a side
-          seen += 1;
-        } else {
-          break;
-        }
-      }
+      const int last = last_of_run(cable, first, link_by_link, seen);
       segment = next_link(cable, last);
       if (row_of(segment) < 0) break;  // wound up here: the end is fast
       Run run = make_run(world, c, first, last);

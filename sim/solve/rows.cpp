@@ -204,8 +204,8 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
   if (contact.touch != Touch::circles) set_levers(scene, world, contact, bodies);
-  if (contact.layers_cable >= 0 &&
-      contact.target > 0.0) {  // a drum that winds lifts what lies on it, and bears the work
+  if (contact.layers_cable >= 0 && contact.target > 0.0) {
+    // A drum that winds lifts what lies on it, and bears the work.
     const Link& drum = pressed_layers(world, contact);
     Eigen::Vector3d& j = drum.body == contact.a ? bodies.ja : bodies.jb;
     j.z() += drum.layers.way * drum.orientation * drum.layers.growth;

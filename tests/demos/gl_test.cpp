@@ -38,6 +38,15 @@ std::unique_ptr<Canvas> gl_canvas(int side) {
   return made;
 }
 
+/// The demonstrations, and those of demos/more.
+std::vector<fs::path> all_scenes() {
+  const fs::path demos = fs::path(PINCHLAB_SOURCE_DIR) / "demos";
+  std::vector<fs::path> paths = find_scenes({demos});
+  const std::vector<fs::path> more = find_scenes({demos / "more"});
+  paths.insert(paths.end(), more.begin(), more.end());
+  return paths;
+}
+
 TEST(GlContext, OsmesaAndEglGiveTheSameBytes) {
   const fs::path folder = scratch_folder();
   for (const fs::path& scene : find_scenes({fs::path(PINCHLAB_SOURCE_DIR) / "demos"})) {
@@ -56,11 +65,7 @@ TEST(GlContext, EveryFrameOfTheDemonstrationsDrawnInPartsIsAsDrawnWhole) {
   Picture picture, blank;
   Canvas parts(side, side), whole(side, side);
   const std::unique_ptr<Canvas> gl_parts = gl_canvas(side), gl_whole = gl_canvas(side);
-  const fs::path demos = fs::path(PINCHLAB_SOURCE_DIR) / "demos";
-  std::vector<fs::path> paths = find_scenes({demos});
-  const std::vector<fs::path> more = find_scenes({demos / "more"});
-  paths.insert(paths.end(), more.begin(), more.end());
-  for (const fs::path& path : paths) {
+  for (const fs::path& path : all_scenes()) {
     const SceneFile file = read_scene_file(path);
     const Scenery scenery = set_scenery(file.scene, file.look);
     for (const Configuration& method :
@@ -92,11 +97,7 @@ TEST(GlContext, DrawsWhatTheTilePainterDraws) {
   if (by_gl == nullptr) GTEST_SKIP() << "built without OSMesa";
   Canvas by_tiles(side, side);
   Picture picture;
-  const fs::path demos = fs::path(PINCHLAB_SOURCE_DIR) / "demos";
-  std::vector<fs::path> paths = find_scenes({demos});
-  const std::vector<fs::path> more = find_scenes({demos / "more"});
-  paths.insert(paths.end(), more.begin(), more.end());
-  for (const fs::path& path : paths) {
+  for (const fs::path& path : all_scenes()) {
     const SceneFile file = read_scene_file(path);
     const Scenery scenery = set_scenery(file.scene, file.look);
     Player player(file, file.scene, Configuration(Method::pinch));
