@@ -52,8 +52,10 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       throw std::invalid_argument("--time must go forward on the sheet of a series");
     }
     sheet.resize(frames.size() * columns);
-    const Scenery scenery = set_scenery(scene, stimulus.source.look, options.theme.theme,
-                                        time_limit(stimulus.source, options.time_limit));
+    const Scenery scenery = for_file(stimulus.source.path, [&] {
+      return set_scenery(scene, stimulus.source.look, options.theme.theme,
+                         time_limit(stimulus.source, options.time_limit));
+    });
     Player player(stimulus.source, scene, stimulus.plan.methods[0]);
     player.give_up_after(options.time_limit);
     for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -152,8 +152,10 @@ void write_still(const SceneFile& file, const StillOptions& options) {
         "{}: --out must end in {}", options.out.string(),
         sequence ? ".png where a # stands for the frame's number" : ".png, .svg or .pdf"));
   }
-  const Scenery scenery =
-      set_scenery(file.scene, file.look, options.theme.theme, time_limit(file, options.time_limit));
+  const Scenery scenery = for_file(file.path, [&] {
+    return set_scenery(file.scene, file.look, options.theme.theme,
+                       time_limit(file, options.time_limit));
+  });
   if (sequence) {
     write_sequence(file, options, frames, scenery);
   } else if (ending == ".png") {

@@ -2,10 +2,10 @@
 #include "sim/joints.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/compound.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 
@@ -66,9 +66,9 @@ void add_hinge(Scene& scene, const std::string& name, int body, int other, const
     scene.cables.push_back(bar);
   }
   if (other < 0) return;
-  const std::array<int, 2> pair{std::min(body, other), std::max(body, other)};
-  const auto place = std::lower_bound(scene.apart.begin(), scene.apart.end(), pair);
-  if (place == scene.apart.end() || *place != pair) scene.apart.insert(place, pair);
+  for (const int a : outlines_of(scene, body)) {
+    for (const int b : outlines_of(scene, other)) keep_apart(scene, a, b);
+  }
 }
 
 void add_spring(Scene& scene, const std::string& name, const Attachment& start,

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/solve/capstan.h"
 #include "sim/workspace.h"
 
@@ -66,6 +67,9 @@ int body_of_cable(const World& world, const CableState& cable) {
 void join_bodies(const World& world, std::vector<int>& root) {
   root.resize(world.bodies.size());
   std::iota(root.begin(), root.end(), 0);
+  for (const int shape : world.carried) {
+    if (!is_static(at(world.bodies, shape))) join(root, shape, at(world.bodies, shape).carrier);
+  }
   for (const CableState& cable : world.cables) {
     int first = -1;
     for (const Link& link : cable.links) {
@@ -138,6 +142,10 @@ void describe(const World& world, Parts& parts, Part& part) {
     part.lightest = std::min(part.lightest, at(world.bodies, b).mass);
     part.can_move = true;
   }
+  for (const int shape : carried_of(parts, part)) {
+    at(parts.local, shape) = at(parts.local, at(world.bodies, shape).carrier);
+    part.can_move = true;  // by turning, at least
+  }
 }
 
 bool same(std::span<const int> a, std::span<const int> b) {
@@ -186,10 +194,15 @@ void divide(const World& world, Parts& before, Parts& parts, std::vector<PartSys
   const int count = number_parts(world, parts);
   parts.list.assign(index(count), Part{});
   parts.local.assign(world.bodies.size(), -1);
+  const int bodies = static_cast<int>(world.bodies.size());
   list_by_part(
-      parts.list, static_cast<int>(world.bodies.size()),
-      [&parts](int b) { return at(parts.of_body, b); }, &Part::bodies_begin, &Part::bodies_end,
-      parts.bodies);
+      parts.list, bodies,
+      [&](int b) { return mover_of(world, b) == b ? at(parts.of_body, b) : -1; },
+      &Part::bodies_begin, &Part::bodies_end, parts.bodies);
+  list_by_part(
+      parts.list, world.carried.empty() ? 0 : bodies,
+      [&](int b) { return mover_of(world, b) == b ? -1 : at(parts.of_body, b); },
+      &Part::carried_begin, &Part::carried_end, parts.carried);
   list_by_part(
       parts.list, static_cast<int>(world.cables.size()),
       [&parts](int c) { return at(parts.of_cable, c); }, &Part::cables_begin, &Part::cables_end,

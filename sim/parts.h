@@ -16,6 +16,7 @@ struct Workspace;
 struct Part {
   int system = -1;                           // of Workspace::systems: its own while it stands
   int bodies_begin = 0, bodies_end = 0;      // of Parts::bodies
+  int carried_begin = 0, carried_end = 0;    // of Parts::carried
   int cables_begin = 0, cables_end = 0;      // of Parts::cables
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
   double lightest = infinity;                // kg, of the bodies that can do more than turn
@@ -29,12 +30,14 @@ struct Part {
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
 struct Parts {
   std::vector<Part> list;
-  std::vector<int> bodies;     // that can move or turn; every one is in one part
+  std::vector<int> bodies;     // that can move or turn by themselves; every one is in one part
+  std::vector<int> carried;    // shapes of these; every one is in one part
   std::vector<int> cables;     // every one is in one part
   std::vector<int> contacts;   // every one is in one part
   std::vector<int> of_body;    // part, or -1: fixed
   std::vector<int> of_cable;   // part
-  std::vector<int> local;      // place of the body in its part's bodies, or -1: fixed
+  std::vector<int> local;      // place of the body, or of what carries it, in its part's bodies, or
+                               // -1: fixed
   bool any_moves = true;       // a body of a part that is awake can do more than turn
   std::vector<char> immobile;  // whether the body's centre cannot move
   std::vector<int> structure;  // what the parts were found for: pairs in contact
@@ -49,6 +52,9 @@ inline std::span<const int> slice(const std::vector<int>& all, int begin, int en
 }
 inline std::span<const int> bodies_of(const Parts& parts, const Part& part) {
   return slice(parts.bodies, part.bodies_begin, part.bodies_end);
+}
+inline std::span<const int> carried_of(const Parts& parts, const Part& part) {
+  return slice(parts.carried, part.carried_begin, part.carried_end);
 }
 inline std::span<const int> cables_of(const Parts& parts, const Part& part) {
   return slice(parts.cables, part.cables_begin, part.cables_end);

@@ -39,15 +39,19 @@ struct BodyProperties {
   /// counter-clockwise. Empty: a disc.
   std::vector<Vec2> corners;
   double corner_radius = 0.0;       ///< m, >= 0: the polygon's outline is that far off
-  double mass = 1.0;                ///< kg, > 0; unused for fixed bodies
+  double mass = 1.0;                ///< kg, > 0; unused for fixed bodies; 0 of shapes
   std::optional<double> inertia;    ///< kg m^2, > 0; default: disc, m r^2 / 2
   Vec2 rail_axis = Vec2(0.0, 1.0);  ///< unit vector; rail bodies only
   std::optional<double> driven_angular_velocity;  ///< rad/s, prescribed for all time
-  double torque_limit = infinity;    ///< N m, > 0: the most that holds the driven velocity
-  double torque = 0.0;               ///< N m, constant
-  bool node = false;                 ///< of a cable with mass, by spread_nodes: part of the cable
-  double linear_drag = 0.0;          ///< 1/s: dv/dt = -drag v
-  double angular_drag = 0.0;         ///< 1/s
+  double torque_limit = infinity;  ///< N m, > 0: the most that holds the driven velocity
+  double torque = 0.0;             ///< N m, constant
+  bool node = false;               ///< of a cable with mass, by spread_nodes: part of the cable
+  bool outlined = true;       ///< false: a compound, whose shapes have its outlines (compound.h)
+  int carrier = -1;           ///< of a shape: the compound, index into Scene::bodies
+  Vec2 seat = Vec2::Zero();   ///< m, of a shape's centre in the compound's frame
+  double seat_angle = 0.0;    ///< rad, by which the shape is turned there
+  double linear_drag = 0.0;   ///< 1/s: dv/dt = -drag v
+  double angular_drag = 0.0;  ///< 1/s
   double cable_friction = infinity;  ///< capstan coefficient mu >= 0; infinity: no slip
   double contact_friction = 0.5;     ///< Coulomb coefficient >= 0 between bare surfaces
   double restitution = 0.0;          ///< 0..1, of bodies that hit each other or a wall

@@ -60,7 +60,7 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
              "corners are given from the centre of mass, which lies at [{}, {}] of these; take "
              "that away from each",
              centre.x(), centre.y()));
-  refuse(!body.inertia, "a polygon needs its inertia (make_polygon)");
+  refuse(!body.inertia && body.carrier < 0, "a polygon needs its inertia (make_polygon)");
 }
 
 }  // namespace
@@ -182,8 +182,13 @@ void refuse_impossible_figures(const Scene& scene) {
     const std::string place = pointer("bodies", index(b));
     refuse(!positive(body.radius), place, "the radius must be a number above 0");
     if (is_polygon(body)) refuse_impossible_outline(body, place);
-    refuse(!positive(body.mass) && body.kind != BodyKind::fixed, place,
+    const bool carried = body.carrier != -1;
+    refuse(!positive(body.mass) && body.kind != BodyKind::fixed && !carried, place,
            "the mass must be a number above 0");
+    refuse(carried && (body.carrier < 0 || body.carrier >= b || body.mass != 0.0 ||
+                       at(scene.bodies, body.carrier).outlined ||
+                       at(scene.bodies, body.carrier).carrier != -1),
+           place, "a shape without mass needs a body before it that is no shape (add_shapes)");
     refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
     refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
            "position and velocity must be finite");
@@ -216,6 +221,13 @@ void refuse_impossible_figures(const Scene& scene) {
     for (const Wrap& wrap : cable.wraps) {
       refuse(wrap.body < 0 || wrap.body >= bodies, place,
              "it runs round a body that is not in the scene");
+      const Body& body = at(scene.bodies, wrap.body);
+      if (!body.outlined) {
+        throw SceneError(place,
+                         fmt::format("body '{0}' has shapes; say which the cable runs round, "
+                                     "'{0}:1' for the first",
+                                     body.name));
+      }
       refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
              "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
     }

@@ -5,6 +5,8 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/tangent.h"
+#include "sim/compound.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
@@ -44,6 +46,7 @@ void move_bodies(const Parts& parts, World& world) {
       world.position[b] += h * world.velocity[b];
       world.angle[b] += h * world.angular_velocity[b];
     }
+    carry(world, carried_of(parts, part));
     if (!part.slides) continue;
     for (const int c : cables_of(parts, part)) {
       for (Link& link : at(world.cables, c).links) link.material -= h * link.slip_speed;
@@ -170,6 +173,12 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
         linear = 0.5 * (linear + s.velocity[i].head<2>());
         angular = 0.5 * (angular + s.velocity[i].z());
       }
+    }
+    for (const int shape : carried_of(work.parts, part)) {
+      const int mover = mover_of(world, shape);
+      const double turning = at(now.angular, mover);
+      at(now.angular, shape) = turning;
+      at(now.linear, shape) = at(now.linear, mover) + turning * left(seat_of(world, shape));
     }
   }
   return now;

@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/lay.h"
+#include "sim/compound.h"
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
 #include "sim/step.h"
@@ -42,7 +43,9 @@ World bodies_of_scene(const Scene& scene) {
     world.angular_velocity.push_back(!is_driven           ? turning
                                      : body.motor.empty() ? *body.driven_angular_velocity
                                                           : drive_at(body.motor, 0.0));
+    if (body.carrier >= 0) world.carried.push_back(static_cast<int>(world.bodies.size()) - 1);
   }
+  carry(world, world.carried);
   return world;
 }
 

@@ -140,10 +140,11 @@ struct World {
   std::int64_t step = 0;     // steps done; the time is step * step_length
   double lag = 0.0;          // s, by which velocities are behind positions (leapfrog), see step.h
 
-  std::vector<BodyProperties> bodies;    // by make_world
-  std::vector<Vec2> position;            // m, one a body, at `time()`; by move_bodies
-  std::vector<double> angle;             // rad, likewise
-  std::vector<Vec2> velocity;            // m/s, `lag` before `time()`; by store_solution
+  std::vector<BodyProperties> bodies;  // by make_world
+  std::vector<int> carried;    // bodies that are shapes of others (compound.h), by make_world
+  std::vector<Vec2> position;  // m, one a body, at `time()`; by move_bodies
+  std::vector<double> angle;   // rad, likewise
+  std::vector<Vec2> velocity;  // m/s, `lag` before `time()`; by store_solution
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;        // geometry by update_segments, links by add_hit_links,
                                          // remove_links and configure_pinches, forces and states by

@@ -29,7 +29,7 @@ class BodyReader {
     refuse_keys(from_, place_, keys, what, problems_);
   }
   void check_kind();
-  void read_outline(Body& body);
+  void read_mass_and_outline(Body& body);
   void read_rail(Body& body);
   void read_motor(Body& body);
 
@@ -64,31 +64,25 @@ void BodyReader::check_kind() {
   }
 }
 
-// A disc's radius, or a polygon's corners; and what of its mass follows from them.
-void BodyReader::read_outline(Body& body) {
-  const bool polygon = from_.contains("corners_m");
-  if (polygon == from_.contains("radius_m")) {
-    problem(place_, polygon ? "radius_m makes it a disc and corners_m a polygon; leave one out"
-                            : "radius_m is missing (or corners_m, of a polygon)");
+// An outline, and what of the mass follows from it; of shapes, see compound_reader.h.
+void BodyReader::read_mass_and_outline(Body& body) {
+  take(from_, "mass_kg", body.mass);
+  take(from_, "inertia_kg_m2", body.inertia);
+  if (from_.contains("shapes")) {
+    refuse({"radius_m", "corners_m", "corner_radius_m", "cable_friction", "contact_friction",
+            "restitution"},
+           "a body of shapes, each of which has its own");
     return;
   }
+  if (!read_outline(from_, place_, body, problems_)) return;
   const double density = from_.value("density_kg_m2", 0.0);
-  if (!polygon) {
-    refuse({"corner_radius_m"}, "a disc");
-    take(from_, "radius_m", body.radius);
+  if (!is_polygon(body)) {
     if (density > 0.0) body.mass = density * std::numbers::pi * body.radius * body.radius;
     return;
   }
-  std::vector<Vec2> corners;
-  for (const json& corner : from_["corners_m"]) corners.push_back(vector_of(corner));
-  const double corner_radius = from_.value("corner_radius_m", 0.0);
-  if (!is_convex(corners)) {
-    problem(place_ + "/corners_m",
-            "must go round a convex polygon counter-clockwise, with no corner on a straight side");
-    return;
-  }
-  if (density > 0.0) body.mass = density * plate_of(corners, corner_radius).area;
-  make_polygon(body, std::move(corners), corner_radius);
+  if (density > 0.0) body.mass = density * plate_of(body.corners, body.corner_radius).area;
+  std::vector<Vec2> corners = std::move(body.corners);
+  make_polygon(body, std::move(corners), body.corner_radius);
 }
 
 void BodyReader::read_rail(Body& body) {
@@ -158,9 +152,7 @@ Body BodyReader::read() {
                                                  {"fixed_axle", BodyKind::fixed_axle},
                                                  {"fixed", BodyKind::fixed}};
   body.kind = kinds.at(from_["kind"].get<std::string>());
-  take(from_, "mass_kg", body.mass);
-  take(from_, "inertia_kg_m2", body.inertia);
-  read_outline(body);
+  read_mass_and_outline(body);
   take(from_, "position_m", body.position);
   take(from_, "angle_rad", body.angle);
   take(from_, "velocity_m_s", body.velocity);
@@ -170,11 +162,7 @@ Body BodyReader::read() {
   take(from_, "torque_n_m", body.torque);
   take(from_, "linear_drag_per_s", body.linear_drag);
   take(from_, "angular_drag_per_s", body.angular_drag);
-  if (from_.contains("cable_friction") && from_["cable_friction"].is_number()) {
-    body.cable_friction = from_["cable_friction"].get<double>();
-  }
-  take(from_, "contact_friction", body.contact_friction);
-  take(from_, "restitution", body.restitution);
+  read_surface(from_, body);
   check_kind();
   if (body.kind == BodyKind::rail) {
     read_rail(body);
@@ -192,6 +180,38 @@ Body BodyReader::read() {
 }
 
 }  // namespace
+
+bool read_outline(const json& from, const std::string& place, BodyProperties& to,
+                  std::vector<SceneProblem>& problems) {
+  const bool polygon = from.contains("corners_m");
+  if (polygon == from.contains("radius_m")) {
+    problems.push_back(
+        {place, polygon ? "radius_m makes it a disc and corners_m a polygon; leave one out"
+                        : "radius_m is missing (or corners_m, of a polygon)"});
+    return false;
+  }
+  if (!polygon) {
+    refuse_keys(from, place, {"corner_radius_m"}, "a disc", problems);
+    take(from, "radius_m", to.radius);
+    return true;
+  }
+  for (const json& corner : from["corners_m"]) to.corners.push_back(vector_of(corner));
+  take(from, "corner_radius_m", to.corner_radius);
+  if (is_convex(to.corners)) return true;
+  to.corners.clear();
+  problems.push_back(
+      {place + "/corners_m",
+       "must go round a convex polygon counter-clockwise, with no corner on a straight side"});
+  return false;
+}
+
+void read_surface(const json& from, BodyProperties& to) {
+  if (from.contains("cable_friction") && from["cable_friction"].is_number()) {
+    to.cable_friction = from["cable_friction"].get<double>();
+  }
+  take(from, "contact_friction", to.contact_friction);
+  take(from, "restitution", to.restitution);
+}
 
 Body read_body(const json& from, const std::string& place, std::vector<SceneProblem>& problems) {
   return BodyReader(from, place, problems).read();

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/at.h"
 #include "demos/scenes/json_values.h"
 #include "demos/scenes/look_reader.h"
 #include "sim/joints.h"
@@ -18,8 +19,12 @@ using nlohmann::json;
 class JointReader {
  public:
   JointReader(const json& from, std::string place, const BodyIndex& body_index,
-              std::vector<SceneProblem>& problems)
-      : from_(from), place_(std::move(place)), body_index_(body_index), problems_(problems) {}
+              std::span<const Vec2> origins, std::vector<SceneProblem>& problems)
+      : from_(from),
+        place_(std::move(place)),
+        body_index_(body_index),
+        origins_(origins),
+        problems_(problems) {}
 
   void read(Scene& scene) {
     const std::string kind = from_["kind"].get<std::string>();
@@ -81,6 +86,8 @@ class JointReader {
     }
     attachment.body = read_body(end, "body", place);
     take(end, "point_m", attachment.point);
+    if (index(attachment.body) < origins_.size())
+      attachment.point += origins_[index(attachment.body)];
     return attachment;
   }
 
@@ -96,6 +103,7 @@ class JointReader {
   const json& from_;
   std::string place_;
   const BodyIndex& body_index_;
+  std::span<const Vec2> origins_;
   std::vector<SceneProblem>& problems_;
   bool wrong_ = false;
 };
@@ -103,12 +111,12 @@ class JointReader {
 }  // namespace
 
 void read_joints(const json& file, Scene& scene, SceneLook& look, const BodyIndex& body_index,
-                 std::vector<SceneProblem>& problems) {
+                 std::span<const Vec2> origins, std::vector<SceneProblem>& problems) {
   const json joints = file.value("joints", json::array());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const std::string place = fmt::format("/joints/{}", i);
     try {
-      JointReader(joints[i], place, body_index, problems).read(scene);
+      JointReader(joints[i], place, body_index, origins, problems).read(scene);
     } catch (const SceneError& error) {
       problems.push_back({place, error.message});
     }

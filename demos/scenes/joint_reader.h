@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ namespace pinchlab {
 using BodyIndex = std::function<int(const nlohmann::json& name, const std::string& place)>;
 
 /// Adds joints, and stops of bodies that have a travel, to the scene, which has all of its bodies and
-/// cables, and to its looks.
+/// cables, and to its looks. `origins` are the file's frames of its bodies, as read_shapes returns them.
 void read_joints(const nlohmann::json& file, Scene& scene, SceneLook& look,
-                 const BodyIndex& body_index, std::vector<SceneProblem>& problems);
+                 const BodyIndex& body_index, std::span<const Vec2> origins,
+                 std::vector<SceneProblem>& problems);
 
 }  // namespace pinchlab

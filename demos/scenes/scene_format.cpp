@@ -23,6 +23,16 @@ const ObjectFormat motor_point_format = {"motor_point",
                                           {"angular_velocity_rad_s", number, optional, -1e5, 1e5},
                                           {"torque_n_m", number, optional, -1e12, 1e12}}};
 
+const ObjectFormat shape_format = {"shape",
+                                   {{"radius_m", number, optional, 1e-6, 1e4},
+                                    {"corners_m", points, optional, 3, 64},
+                                    {"corner_radius_m", number, optional, 0, 1e4},
+                                    {"at_m", vector, optional, -1e4, 1e4},
+                                    {"angle_rad", number, optional, -1e6, 1e6},
+                                    {"cable_friction", friction, optional, 0, 100},
+                                    {"contact_friction", number, optional, 0, 100},
+                                    {"restitution", number, optional, 0, 1}}};
+
 const ObjectFormat body_format = {
     "body",
     {{"name", name, required, 1, 64},
@@ -30,6 +40,7 @@ const ObjectFormat body_format = {
      {"radius_m", number, optional, 1e-6, 1e4},
      {"corners_m", points, optional, 3, 64},
      {"corner_radius_m", number, optional, 0, 1e4},
+     {"shapes", list, optional, 1, 32, {}, &shape_format},
      {"mass_kg", number, optional, 1e-9, 1e12},
      {"density_kg_m2", number, optional, 1e-12, 1e12},
      {"inertia_kg_m2", number, optional, 1e-18, 1e20},

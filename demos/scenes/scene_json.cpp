@@ -12,7 +12,6 @@
 #include "base/strict_json.h"
 #include "demos/scenes/format_check.h"
 #include "demos/scenes/scene_reader.h"
-#include "sim/scene_error.h"
 
 namespace pinchlab {
 namespace {
@@ -99,11 +98,7 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
 
 World start_world(const Scene& scene, const std::filesystem::path& path,
                   const Configuration& configuration) {
-  try {
-    return make_world(scene, configuration);
-  } catch (const SceneError& error) {
-    throw SceneFileError(path.string(), {{error.place, error.message}});
-  }
+  return for_file(path, [&] { return make_world(scene, configuration); });
 }
 
 }  // namespace pinchlab

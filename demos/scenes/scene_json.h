@@ -10,6 +10,7 @@
 
 #include "demos/scenes/scene_problem.h"
 #include "render/picture/look.h"
+#include "sim/scene_error.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -39,8 +40,18 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 /// name.
 SceneFile parse_scene(std::string_view text, const std::filesystem::path& path);
 
-/// make_world for a scene that comes from the file at `path`: where the geometry cannot exist,
-/// throws SceneFileError with the file's name.
+/// What `make` returns for the scene of the file at `path`; where it throws SceneError, because the geometry
+/// cannot exist, throws SceneFileError with the file's name.
+template <class Make>
+auto for_file(const std::filesystem::path& path, Make make) {
+  try {
+    return make();
+  } catch (const SceneError& error) {
+    throw SceneFileError(path.string(), {{error.place, error.message}});
+  }
+}
+
+/// make_world for a scene that comes from the file at `path`, as for_file.
 World start_world(const Scene& scene, const std::filesystem::path& path,
                   const Configuration& configuration);
 

@@ -11,6 +11,7 @@
 #include "base/at.h"
 #include "base/did_you_mean.h"
 #include "demos/scenes/body_reader.h"
+#include "demos/scenes/compound_reader.h"
 #include "demos/scenes/joint_reader.h"
 #include "demos/scenes/json_values.h"
 #include "demos/scenes/look_reader.h"
@@ -41,6 +42,7 @@ class Reader {
   }
   void claim_name(std::map<std::string, int>& names, const std::string& name, int index,
                   const char* list);
+  void claim_shape(const Scene& scene, std::size_t shape);
   int body_index(const json& name, const std::string& place);
 
   void check_grip(const json& cables, const Scene& scene);
@@ -56,6 +58,7 @@ class Reader {
 
   std::vector<SceneProblem>& problems_;
   std::map<std::string, int> body_names_, cable_names_;
+  std::vector<Vec2> origins_;  // of the bodies' frames in the file: read_shapes
 };
 
 void Reader::claim_name(std::map<std::string, int>& names, const std::string& name, int index,
@@ -65,6 +68,15 @@ void Reader::claim_name(std::map<std::string, int>& names, const std::string& na
     problem(fmt::format("/{}/{}/name", list, index),
             fmt::format("\"{}\" is the name of /{}/{} already", name, list, other->second));
   }
+}
+
+void Reader::claim_shape(const Scene& scene, std::size_t shape) {
+  const auto [other, is_new] =
+      body_names_.emplace(scene.bodies[shape].name, static_cast<int>(shape));
+  if (is_new) return;
+  problem(fmt::format("/bodies/{}/name", other->second),
+          fmt::format("\"{}\" is the name of a shape of body \"{}\"; choose another", other->first,
+                      at(scene.bodies, scene.bodies[shape].carrier).name));
 }
 
 int Reader::body_index(const json& name, const std::string& place) {
@@ -104,10 +116,21 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
     problem(place + "/layers", "belongs to an end on a disc's rim; give rim_angle_rad too");
   }
   take(from, "point_m", attachment.point);
+  const bool on_shapes = !at(scene.bodies, attachment.body).outlined;
+  if (on_shapes) {
+    const Vec2& origin = at(origins_, attachment.body);
+    attachment = attached_to_shape(scene, attachment.body, origin + attachment.point);
+  }
+  if (attachment.body < 0) return attachment;  // its shapes are no good
   const Body& body = at(scene.bodies, attachment.body);
   const double radius = body.radius;
   if (from.contains("rim_angle_rad")) {
-    if (is_polygon(body)) {
+    if (on_shapes) {
+      problem(
+          place + "/rim_angle_rad",
+          fmt::format("belongs to a disc; name one of the body's shapes, \"{}:1\" for the first",
+                      from["body"].get<std::string>()));
+    } else if (is_polygon(body)) {
       problem(place + "/rim_angle_rad", "belongs to a disc; say where on the polygon with point_m");
     } else if (from.contains("point_m")) {
       problem(place + "/rim_angle_rad",
@@ -321,7 +344,7 @@ void Reader::read_joints(const json& file, SceneContent& to) {
   pinchlab::read_joints(
       file, to.scene, to.look,
       [this](const json& name, const std::string& place) { return body_index(name, place); },
-      problems_);
+      origins_, problems_);
   for (std::size_t c = before; c < to.scene.cables.size(); ++c) {
     const std::string& name = to.scene.cables[c].name;
     const auto [other, is_new] = cable_names_.emplace(name, static_cast<int>(c));
@@ -342,6 +365,8 @@ SceneContent Reader::read(const json& file) {
     scene.bodies.push_back(read_body(file["bodies"][i], fmt::format("/bodies/{}", i), problems_));
     claim_name(body_names_, scene.bodies[i].name, static_cast<int>(i), "bodies");
   }
+  origins_ = read_shapes(file["bodies"], scene, problems_);
+  for (std::size_t b = file["bodies"].size(); b < scene.bodies.size(); ++b) claim_shape(scene, b);
   const json cables = file.value("cables", json::array());
   for (std::size_t i = 0; i < cables.size(); ++i) {
     scene.cables.push_back(read_cable(cables[i], fmt::format("/cables/{}", i), scene));
@@ -356,6 +381,11 @@ SceneContent Reader::read(const json& file) {
   to.look.fit_view = file["view"] == "fit";
   if (!to.look.fit_view) scene.view = read_view(file["view"]);
   for (const json& body : file["bodies"]) to.look.bodies.push_back(read_body_look(body));
+  for (std::size_t b = file["bodies"].size(); b < scene.bodies.size(); ++b) {
+    BodyLook look = at(to.look.bodies, scene.bodies[b].carrier);
+    look.label = "";
+    to.look.bodies.push_back(look);
+  }
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
   spread(to);
   read_joints(file, to);

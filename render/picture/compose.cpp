@@ -7,9 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/compound.h"
 #include "sim/outline.h"
 
 namespace pinchlab {
@@ -125,7 +127,7 @@ class Composer {
     const Vec2 shift = scenery_.unit() * Vec2(0.5, -0.5);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       const Body& body = scene_.bodies[i];
-      if (body.node) continue;
+      if (body.node || !body.outlined) continue;
       if (is_polygon(body)) {
         add_patch(i, shift, -body.corner_radius, theme_.shadow);
       } else {
@@ -276,6 +278,17 @@ class Composer {
     return colour;
   }
 
+  /// What a translucent colour looks like there.
+  Colour on_paper(const Colour& colour) const {
+    const Colour below = paper();
+    const auto mix = [&colour](int above, int under) {
+      return static_cast<std::uint8_t>((above * colour.alpha + under * (255 - colour.alpha) + 127) /
+                                       255);
+    };
+    return {mix(colour.red, below.red), mix(colour.green, below.green),
+            mix(colour.blue, below.blue), 255};
+  }
+
   Paint paint_of(std::size_t i) const {
     const Body& body = scene_.bodies[i];
     Paint paint = body.kind == BodyKind::fixed ? theme_.fixed
@@ -307,18 +320,13 @@ class Composer {
     picture_.add(Patch{picture_.corners.size() - count, count, colour});
   }
 
-  /// A polygon's band along its outline, which hides the sides of the patch that fills it.
-  void add_polygon(std::size_t i, double band, Colour fill, Colour edge) {
-    const double rounding = scene_.bodies[i].corner_radius, half = 0.5 * band;
-    const double inset = std::max(0.0, half - rounding), radius = std::max(0.0, rounding - half);
+  /// Visits the points of a polygon's outline moved inwards by `depth` (m), with the outline's direction, and
+  /// once for each where it has no rounding left.
+  template <class Visit>
+  void trace(std::size_t i, double depth, Visit visit) const {
+    const double rounding = scene_.bodies[i].corner_radius;
+    const double inset = std::max(0.0, depth - rounding), radius = std::max(0.0, rounding - depth);
     const std::size_t count = scene_.bodies[i].corners.size();
-    Strip outline;
-    outline.first = picture_.points.size();
-    outline.half_width = half;
-    outline.fill = edge;
-    Patch patch;
-    patch.first = picture_.corners.size();
-    patch.fill = fill;
     for (std::size_t k = 0; k < count; ++k) {
       const Vec2 centre = corner(i, k, inset);
       const Vec2 before = (centre - corner(i, k + count - 1, inset)).normalized();
@@ -327,10 +335,24 @@ class Composer {
       const int pieces = static_cast<int>(std::ceil(bend / most_turn));
       for (int piece = 0; piece <= pieces; ++piece) {
         const Vec2 e = turned(before, bend * piece / pieces);
-        picture_.points.push_back({centre - radius * left(e), e, 0.0});
-        if (piece == 0 || radius > 0.0) picture_.corners.push_back(picture_.points.back().position);
+        visit(Vec2(centre - radius * left(e)), e, piece == 0 || radius > 0.0);
       }
     }
+  }
+
+  /// A polygon's band along its outline, which hides the sides of the patch that fills it.
+  void add_polygon(std::size_t i, double band, Colour fill, Colour edge) {
+    Strip outline;
+    outline.first = picture_.points.size();
+    outline.half_width = 0.5 * band;
+    outline.fill = edge;
+    Patch patch;
+    patch.first = picture_.corners.size();
+    patch.fill = fill;
+    trace(i, 0.5 * band, [this](const Vec2& point, const Vec2& e, bool is_new) {
+      picture_.points.push_back({point, e, 0.0});
+      if (is_new) picture_.corners.push_back(point);
+    });
     const StripPoint first = picture_.points[outline.first];
     picture_.points.push_back(first);
     outline.count = picture_.points.size() - outline.first;
@@ -339,19 +361,56 @@ class Composer {
     picture_.add(outline);
   }
 
+  /// An outline's band and what is within it.
+  void add_outline(std::size_t i, double band, Colour fill, Colour edge) {
+    const Vec2& centre = world_.position[i];
+    if (is_polygon(scene_.bodies[i])) return add_polygon(i, band, fill, edge);
+    picture_.add(Stroke{centre, centre, scene_.bodies[i].radius, band, fill, edge});
+  }
+
+  /// What is within an outline's band.
+  void add_interior(std::size_t i, double band, Colour fill) {
+    if (!is_polygon(scene_.bodies[i])) {
+      picture_.add(disc(world_.position[i], scene_.bodies[i].radius - band, fill));
+      return;
+    }
+    const std::size_t first = picture_.corners.size();
+    trace(i, band, [this](const Vec2& point, const Vec2&, bool is_new) {
+      if (is_new) picture_.corners.push_back(point);
+    });
+    picture_.add(Patch{first, picture_.corners.size() - first, fill});
+  }
+
+  /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.
+  void add_compound(std::size_t i) {
+    const auto [given, edge] = paint_of(i);
+    const Colour fill = on_paper(given);
+    const std::vector<int> shapes = outlines_of(scene_, static_cast<int>(i));
+    double smallest = infinity, largest = 0.0;
+    for (const int s : shapes) {
+      const double r = inner_radius(at(scene_.bodies, s));
+      smallest = std::min(smallest, r);
+      largest = std::max(largest, r);
+    }
+    const double band = std::min({4.0 * scenery_.line(), 0.09 * largest, 0.3 * smallest});
+    for (const int s : shapes) add_outline(index(s), band, fill, edge);
+    for (const int s : shapes) add_interior(index(s), band, fill);
+    if (scene_.bodies[i].kind == BodyKind::fixed_axle) {
+      add_bracket(world_.position[i], 5.0 * scenery_.unit());
+      add_pin(world_.position[i]);
+    }
+  }
+
   void add_body(std::size_t i) {
     const Body& body = scene_.bodies[i];
-    if (body.node) return;
+    if (!body.outlined) return add_compound(i);
+    if (body.node || body.carrier >= 0) return;
     const Vec2& centre = world_.position[i];
     const double r = inner_radius(body), angle = world_.angle[i];
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
     const auto [fill, edge] = paint_of(i);
     const double band = std::min(0.09 * r, 4.0 * scenery_.line());
-    if (is_polygon(body)) {
-      add_polygon(i, band, fill, edge);
-    } else {
-      picture_.add(Stroke{centre, centre, r, band, fill, edge});
-    }
+    add_outline(i, band, fill, edge);
     if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks

@@ -203,6 +203,7 @@ double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
         std::any_of(snapshot.lines.begin(), snapshot.lines.end(),
                     [&](const Snapshot::Line& line) { return there.touches_line(line); }));
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      if (i != body && !scene_.bodies[i].outlined) continue;  // but its shapes
       const double radius = i == body ? own_radius : scene_.bodies[i].radius;
       sum += static_cast<double>(there.touches_disc(snapshot.position[i], radius));
     }
@@ -310,7 +311,7 @@ std::vector<SceneryLabel> find_labels(const Scene& scene, const SceneLook& look)
   std::vector<SceneryLabel> labels;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    if (body.node) continue;
+    if (body.node || body.carrier >= 0) continue;
     std::string text = can_move(body) ? fmt::format("{:.4g} kg", body.mass) : "";
     if (!look.bodies.empty() && look.bodies[i].label) text = *look.bodies[i].label;
     if (!text.empty()) labels.push_back({i, text, Vec2::Zero()});

@@ -116,7 +116,7 @@ void visit_overlapping(const BroadPhase& broad, const Box& box, Visit visit) {
   }
 }
 
-void list_wall_pairs(const Scene& scene, BroadPhase& broad) {
+void list_wall_pairs(const Scene& scene, const World& world, BroadPhase& broad) {
   broad.wall_pairs.clear();
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     const Wall& wall = scene.walls[w];
@@ -124,7 +124,8 @@ void list_wall_pairs(const Scene& scene, BroadPhase& broad) {
       const Box& box = at(broad.boxes, body);  // the circle round it is nearer to slanting walls
       const Vec2 centre = 0.5 * (box.low + box.high);
       const double reach = 0.5 * (box.high - box.low).norm();
-      if ((nearest_point(wall, centre) - centre).norm() > reach) return;
+      if ((nearest_point(wall, centre) - centre).norm() > reach || !at(world.bodies, body).outlined)
+        return;
       broad.wall_pairs.push_back({body, static_cast<int>(w)});
     });
   }
@@ -149,7 +150,7 @@ void list_span_pairs(const World& world, BroadPhase& broad) {
       const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
       if (is_passed(cable) || is_side(from, to)) continue;
       visit_overlapping(broad, box, [&](int body) {
-        if (at(world.bodies, body).node) return;
+        if (!meets_spans(at(world.bodies, body))) return;
         if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
       });
@@ -232,7 +233,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   update_boxes(scene, world, broad.skin, broad.boxes);
   sort_bodies(broad);
   list_body_pairs(scene, world, broad);
-  list_wall_pairs(scene, broad);
+  list_wall_pairs(scene, world, broad);
 }
 
 void find_span_pairs(const World& world, Workspace& work) {

@@ -43,9 +43,15 @@ struct BroadPhase {
   std::vector<SpanPair> span_pairs;  // sorted
 };
 
-/// Whether two bodies are never in each other's way: fixed, or nodes of cables.
+/// Whether two bodies are never in each other's way: fixed, nodes of cables, or without an outline.
 inline bool never_touch(const BodyProperties& a, const BodyProperties& b) {
-  return (a.kind == BodyKind::fixed && b.kind == BodyKind::fixed) || (a.node && b.node);
+  return (a.kind == BodyKind::fixed && b.kind == BodyKind::fixed) || (a.node && b.node) ||
+         !a.outlined || !b.outlined;
+}
+
+/// Whether spans run into the body: it is no node of a cable, and has an outline.
+inline bool meets_spans(const BodyProperties& body) {
+  return !body.node && body.outlined;
 }
 
 /// Takes the pairs away that Scene::apart names.

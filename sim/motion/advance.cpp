@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/clearance.h"
@@ -58,6 +59,7 @@ void catch_up(const Scene& scene, World& world, double time, Workspace& work) {
       at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
       at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
     }
+    carry(world, carried_of(work.parts, part));
   }
   world.lag = 0.0;
 }

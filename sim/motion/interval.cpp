@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
 #include "sim/solve/active_set.h"
@@ -45,6 +46,7 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
     world.position[b] = start.position[b] + length * world.velocity[b];
     world.angle[b] = start.angle[b] + length * world.angular_velocity[b];
   }
+  carry(world, carried_of(work.parts, part));
   for (const int c : cables_of(work.parts, part)) {
     CableState& cable = at(world.cables, c);
     if (part.slides) {

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/rows.h"
@@ -37,6 +38,7 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
     at(world.position, bodies[i]) += share * s.velocity[i].head<2>();
     at(world.angle, bodies[i]) += share * s.velocity[i].z();
   }
+  carry(world, carried_of(work.parts, part));
   for (const Run& run : work.solve.capstan.runs) {
     CableState& cable = at(world.cables, run.cable);
     for (int i = run.first_link;; i = next_link(cable, i)) {

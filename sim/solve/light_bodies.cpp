@@ -7,6 +7,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/part_system.h"
 #include "sim/solve/rows.h"
@@ -21,6 +22,7 @@ constexpr double negligible = 0.05;
 /// Whether the segment counts for `body` at its one end; `other` is at its other end.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, int body, int other,
               double h, PartSystem& system) {
+  if (body >= 0) body = mover_of(world, body);
   if (body < 0 || !can_move(at(world.bodies, body))) return false;
   const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
   if (!(twice > negligible * at(world.bodies, body).mass * segment.length)) return false;

@@ -7,6 +7,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/tangent.h"
+#include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/solve_scratch.h"
@@ -30,15 +31,20 @@ int place_of(const Parts& parts, const PartSystem& system, int body) {
   return local >= 0 ? local : system.ground();
 }
 
-bool has_fixed_lever(const Link& link) {
-  return link.body < 0 || is_central(link);
+bool has_fixed_lever(const World& world, const Link& link) {
+  return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
+}
+
+/// What the body turns about where nothing holds it (m).
+const Vec2& pivot_of(const World& world, int body) {
+  return at(world.position, mover_of(world, body));
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
 /// cross(c - p left(e), e) = cross(c, e) + p with the circle's centre at c from the body's.
 double lever(const World& world, const Link& link, const Vec2& e) {
-  if (has_fixed_lever(link)) return link.signed_radius();
-  return link.signed_radius() + cross(link_centre(world, link) - at(world.position, link.body), e);
+  if (has_fixed_lever(world, link)) return link.signed_radius();
+  return link.signed_radius() + cross(link_centre(world, link) - pivot_of(world, link.body), e);
 }
 
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
@@ -103,8 +109,9 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
 double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
   if (body < 0) return 0.0;
-  const Vec2& v = at(world.velocity, body);
-  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, body);
+  const int mover = mover_of(world, body);
+  const Vec2& v = at(world.velocity, mover);
+  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
 }
 
 // With C_n at the positions' time, v- and v+ the velocities before and after the kick, which lasts
@@ -191,9 +198,16 @@ void set_levers(const Scene& scene, const World& world, const Contact& contact, 
     const double way = drum.body == contact.a ? 1.0 : -1.0;
     point = at(world.position, drum.body) + way * drum.radius * contact.normal;
   }
-  bodies.ja.z() = cross(point - at(world.position, contact.a), bodies.ja.head<2>());
+  bodies.ja.z() = cross(point - pivot_of(world, contact.a), bodies.ja.head<2>());
   if (contact.b < 0) return;
-  bodies.jb.z() = cross(point - at(world.position, contact.b), bodies.jb.head<2>());
+  bodies.jb.z() = cross(point - pivot_of(world, contact.b), bodies.jb.head<2>());
+}
+
+/// Levers about what carries a shape, from those about the shape's own centre.
+void add_seats(const World& world, const Contact& contact, RowBodies& bodies) {
+  if (world.carried.empty()) return;
+  bodies.ja.z() += cross(seat_of(world, contact.a), bodies.ja.head<2>());
+  if (contact.b >= 0) bodies.jb.z() += cross(seat_of(world, contact.b), bodies.jb.head<2>());
 }
 
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
@@ -203,7 +217,11 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   row.on = contact.touching;
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
-  if (contact.touch != Touch::circles) set_levers(scene, world, contact, bodies);
+  if (contact.touch != Touch::circles) {
+    set_levers(scene, world, contact, bodies);
+  } else {
+    add_seats(world, contact, bodies);
+  }
   if (contact.layers_cable >= 0 && contact.target > 0.0) {
     // A drum that winds lifts what lies on it, and bears the work.
     const Link& drum = pressed_layers(world, contact);
@@ -256,6 +274,7 @@ void set_tangent_bodies(const Scene& scene, const World& world, const Contact& c
   }
   bodies.ja = {-t.x(), -t.y(), -lever_a};
   bodies.jb = {t.x(), t.y(), -lever_b};
+  add_seats(world, contact, bodies);
 }
 
 /// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that cable's
@@ -366,7 +385,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       const Segment& segment = at(cable.segments, i);
       int& number = s.row_of_segment[begin + index(i)];
       if (!again) {
-        number = append_row(s, place_of(parts, s, from.body), place_of(parts, s, to.body));
+        int a = place_of(parts, s, from.body), b = place_of(parts, s, to.body);
+        if (a == b) a = b = s.ground();  // between two points of one body nothing changes
+        number = append_row(s, a, b);
         s.rows.back().index = c;
         s.rows.back().item = i;
       }
@@ -375,7 +396,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       set_segment_values(world, segment, interval, row);
       const bool on_centre_line = plain && segment.pinched;
       // The lever of a circle off its body's centre turns with the body, moved or not.
-      const bool stands = again && !segment.moved && has_fixed_lever(from) && has_fixed_lever(to);
+      const bool stands =
+          again && !segment.moved && has_fixed_lever(world, from) && has_fixed_lever(world, to);
       if (!stands || on_centre_line) {
         s.rows_stand = false;
         const bool sunk = segment.pinched && yields(cable);

@@ -3,6 +3,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/friction.h"
@@ -57,6 +58,7 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
     at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
     at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
   }
+  carry(world, carried_of(parts, part));
   share_among_repeated(s);
   for (const Row& row : s.rows) store_row(row, kick, world);
   for (const Run& run : capstan.runs) store_run(s, run, world);

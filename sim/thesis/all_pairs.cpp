@@ -25,6 +25,7 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
   for (int a = 0; a < count; ++a) {
     const auto i = static_cast<std::size_t>(a);
     const Box box = broad.boxes[i];
+    if (!world.bodies[i].outlined) continue;
     for (int w = 0; w < walls; ++w) broad.wall_pairs.push_back({a, w});
     for (int b = a + 1; b < count; ++b) {
       const auto j = static_cast<std::size_t>(b);
@@ -47,7 +48,7 @@ void find_all_span_pairs(const World& world, Workspace& work) {
       const Box box = span_box(cable.segments[s]);
       for (int b = 0; b < count; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        if (!overlap(box, broad.boxes[i]) || world.bodies[i].node) continue;
+        if (!overlap(box, broad.boxes[i]) || !meets_spans(world.bodies[i])) continue;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), b});
       }
     }

@@ -101,6 +101,21 @@ TEST(Baseline, NoneThatJittersIsRecommended) {
       << run.out;
 }
 
+// Its scenery is set before any frame of it is played.
+TEST(Still, NamesTheFileOfASceneThatCannotBe) {
+  const fs::path folder = folder_with_scene();
+  nlohmann::json scene = nlohmann::json::parse(std::ifstream(folder / "01-small.json"));
+  scene["bodies"].push_back(scene["bodies"][0]);
+  scene["bodies"].back()["name"] = "another there";
+  std::ofstream(folder / "02-twice.json") << scene;
+  for (const char* out : {"x.png", "x.svg"}) {
+    const RunResult run =
+        run_program(folder, {"still", "02-twice.json", "--time", "1", "--out", out});
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.err.find("02-twice.json: /bodies/"), 0U) << run.err;
+  }
+}
+
 TEST(Theme, TheDeliveredOnesAreReadAndTheDefaultIsTheDefault) {
   const std::string folder = PINCHLAB_SOURCE_DIR "/demos/themes/";
   EXPECT_EQ(read_theme_file(folder + "default.json").theme, Theme{});

@@ -234,6 +234,44 @@ void add_joints(json& scene, Choices& choices) {
   }
 }
 
+/// Compounds of a body's outline and others about it, its centre of mass still its centre. What lies on
+/// the body lies on the outline that it had.
+void add_compounds(json& scene, Choices& choices) {
+  for (json& body : scene["bodies"]) {
+    const unsigned more = choices.below(4);
+    if (more == 0) continue;
+    json first;
+    for (const char* key : {"radius_m", "corners_m", "corner_radius_m", "cable_friction",
+                            "contact_friction", "restitution"}) {
+      if (body.contains(key)) first[key] = body[key];
+      body.erase(key);
+    }
+    body["shapes"] = json::array({first});
+    for (unsigned k = 1; k < more; ++k) {
+      json shape = {{"at_m", {choices.between(-0.7, 0.7), choices.between(-0.7, 0.7)}},
+                    {"angle_rad", choices.between(0.0, 7.0)}};
+      const double size = choices.magnitude(-2.0, 0.0);
+      if (choices.one_in(2)) {
+        shape["radius_m"] = size;
+      } else {
+        shape["corners_m"] = {{-size, -size}, {size, -size}, {0.0, 2.0 * size}};
+      }
+      body["shapes"].push_back(shape);
+    }
+    if (body["kind"] != "fixed") body["inertia_kg_m2"] = choices.magnitude(-3.0, 3.0);
+    const std::string name = body["name"], outline = name + ":1";
+    for (json& cable : scene["cables"]) {
+      for (json& wrap : cable["wraps"]) {
+        if (wrap["body"] == name) wrap["body"] = outline;
+      }
+      for (const char* end : {"start", "end"}) {
+        if (cable.contains(end) && cable[end].value("body", "") == name)
+          cable[end]["body"] = outline;
+      }
+    }
+  }
+}
+
 /// Every number that leaves the simulator.
 bool is_finite(const World& world) {
   for (std::size_t b = 0; b < world.position.size(); ++b) {
@@ -274,6 +312,7 @@ std::string scene_of(std::string_view bytes) {
   if (shapes) {
     add_shapes(made, choices);
     add_joints(made, choices);
+    add_compounds(made, choices);
   }
   return made.dump(1);
 }

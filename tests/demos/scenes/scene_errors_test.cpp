@@ -33,7 +33,7 @@ const BadScene bad_scenes[] = {
     {"/bodies/1/radius", "1", "s.json: /bodies/1/radius: unknown key (did you mean radius_m?)"},
     {"/bodies/1/colour", "1",
      "s.json: /bodies/1/colour: unknown key (known here: name, kind, radius_m, corners_m, "
-     "corner_radius_m, mass_kg, density_kg_m2, "
+     "corner_radius_m, shapes, mass_kg, density_kg_m2, "
      "inertia_kg_m2, "
      "position_m, angle_rad, velocity_m_s, angular_velocity_rad_s, rail_axis, travel_m, "
      "driven_angular_velocity_rad_s, torque_n_m, motor, torque_limit_n_m, linear_drag_per_s, "
