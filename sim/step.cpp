@@ -16,7 +16,6 @@
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
-#include "sim/thesis/all_pairs.h"
 #include "sim/thesis/gauss_seidel.h"
 
 namespace pinchlab {

@@ -12,6 +12,7 @@
 #include "base/strict_json.h"
 #include "demos/scenes/format_check.h"
 #include "demos/scenes/scene_reader.h"
+#include "sim/make_world.h"
 #include "sim/scene_error.h"
 
 namespace pinchlab {

@@ -6,10 +6,10 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 #include "sim/world.h"
 

@@ -6,6 +6,7 @@
 
 #include "analysis/experiments/stability/items.h"
 #include "analysis/experiments/stability/scenes.h"
+#include "sim/make_world.h"
 
 namespace pinchlab::experiments::stability {
 
