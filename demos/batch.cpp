@@ -229,8 +229,8 @@ Configuration method_of(const Scene& scene, const std::string& name) {
 
 MethodPair pair_from(const std::string& text) {
   const std::size_t comma = text.find(',');
-  const MethodPair pair = {text.substr(0, comma),
-                           comma == std::string::npos ? "" : text.substr(comma + 1)};
+  MethodPair pair = {text.substr(0, comma),
+                     comma == std::string::npos ? "" : text.substr(comma + 1)};
   for (const std::string& name : {pair.first, pair.second}) {
     if (name != "baseline" && !configuration_from_string(name)) {
       throw std::invalid_argument(fmt::format(
@@ -323,14 +323,15 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
       throw std::invalid_argument(fmt::format("the pair {},{} is asked for twice", first, second));
     }
     const Configuration one = method_of(scene, first), other = method_of(scene, second);
-    const std::string both = first + "-" + second;
+    const std::string both = fmt::format("{}-{}", first, second);
+    const std::string swapped = fmt::format("{}-{}", second, first);
     if (options.singles) {
       plans.push_back(plan("poster", {one, other}, ".png"));
       if (!usual) plans.back().file = fmt::format("{}.{}.poster.png", scene.name, both);
     }
     if (options.side_by_side) {
       add_equal({plan(usual ? "left-pinch" : both, {one, other}, ending),
-                 plan(usual ? "left-baseline" : second + "-" + first, {other, one}, ending)},
+                 plan(usual ? "left-baseline" : swapped, {other, one}, ending)},
                 plans);
     }
     if (options.report) plans.push_back(plan("report", {one, other}, ".png"));

@@ -37,7 +37,8 @@ ParameterTable table_of_ranges(const std::vector<std::string>& ranges);
 std::string to_csv(const ParameterTable& table);
 
 /// A scene's JSON in which texts hold placeholders such as ${squeeze}.
-struct SceneTemplate {
+// nlohmann's move, which is declared noexcept, checks itself.
+struct SceneTemplate {  // NOLINT(bugprone-exception-escape)
   std::filesystem::path path;
   std::string text;  ///< the file
   nlohmann::json json;

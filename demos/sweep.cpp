@@ -159,6 +159,7 @@ struct Outcome {
 Outcome make_all(const Sweep& sweep, const std::vector<const Stimulus*>& stimuli,
                  const BatchOptions& render) {
   std::vector<Work> work;
+  work.reserve(stimuli.size());
   for (const Stimulus* stimulus : stimuli) {
     work.emplace_back([stimulus, &render](const std::function<void()>&) {
       make_stimulus(*stimulus, render);

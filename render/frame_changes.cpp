@@ -236,10 +236,11 @@ void mark_moved_marks(const Vertex* before, const Vertex* now, Tiles& tiles) {
       return !shown || shown != mark_at(*now, at, stride);
     };
     while (s < end && differs(s + 0.5f * stride)) s += stride;
-    if (s > from)
+    if (s > from) {
       tiles.mark(piece.between(from, s));
-    else
+    } else {
       s += stride;
+    }
   }
 }
 

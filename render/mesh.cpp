@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

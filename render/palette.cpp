@@ -9,7 +9,7 @@ namespace pinchlab {
 
 namespace {
 
-constexpr std::size_t cells = 32 * 32 * 32;
+constexpr std::size_t cells = std::size_t{32} * 32 * 32;
 
 std::size_t cell_of(const std::uint8_t* rgba) {
   return static_cast<std::size_t>(rgba[0] >> 3 << 10 | rgba[1] >> 3 << 5 | rgba[2] >> 3);

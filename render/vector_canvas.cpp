@@ -259,8 +259,9 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
   if (count > 1 && behind.alpha == 255) paint(behind);  // under the labels
   for (int i = 0; i < count; ++i) {
     const VectorFrame& frame = frames[static_cast<std::size_t>(i)];
-    const double left = page.gap + i % page.columns * (width + page.gap);
-    const double top = page.gap + i / page.columns * (height + page.strip);
+    const int column = i % page.columns, row = i / page.columns;
+    const double left = page.gap + column * (width + page.gap);
+    const double top = page.gap + row * (height + page.strip);
     cairo_save(cairo.get());
     cairo_translate(cairo.get(), left, top);
     cairo_rectangle(cairo.get(), 0.0, 0.0, width, height);

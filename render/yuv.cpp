@@ -101,7 +101,7 @@ Four block_sums(const Four& a, const Four& b, const Four& below_a, const Four& b
 void convert_16(const RowPair& rows, std::ptrdiff_t x) {
   Four upper[4], lower[4];
   __m128i y[2][4];
-  for (int i = 0; i < 4; ++i) {
+  for (std::ptrdiff_t i = 0; i < 4; ++i) {
     upper[i] = load(rows.upper + 4 * (x + 4 * i));
     lower[i] = load(rows.lower + 4 * (x + 4 * i));
     y[0][i] = samples(upper[i], y_of, y_offset, bits);

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

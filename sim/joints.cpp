@@ -41,7 +41,7 @@ Cable segment_of(const Scene& scene, const std::string& name, Joint joint, const
     throw SceneError("joint '" + name + "'",
                      "its ends lie in one place; move them apart, or use a hinge");
   }
-  cable.half_width = 1e-6 * length;
+  cable.half_width = 1e-6 * length;  // nothing touches it; cables have some width
   return cable;
 }
 

@@ -9,8 +9,8 @@
 
 #include "base/at.h"
 #include "sim/outline.h"
-#include "sim/scene_checks.h"
 #include "sim/scene_error.h"
+#include "sim/scene_words.h"
 
 namespace pinchlab {
 
@@ -35,14 +35,15 @@ std::vector<Vec2> hanging_pieces(const std::vector<Vec2>& weights, double length
     for (const Vec2& weight : weights) sum += (tension -= weight).norm();
     return length * sum - start.dot(d);
   };
-  // As if all its weight hung from the middle.
+  // As if all its weight hung from the middle; a thousandth of the length where the ends meet, in
+  // which no tension is needed across.
   Vec2 start = 0.5 * total +
                total.norm() * d / std::max(d.norm(), 1e-3 * length * static_cast<double>(pieces));
   for (int round = 0; round < most_rounds; ++round) {
     Vec2 gradient = -d, tension = start;
     Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
     for (std::size_t k = 0; k < pieces; ++k) {
-      const double norm = std::max(tension.norm(), 1e-300);
+      const double norm = std::max(tension.norm(), 1e-300);  // N: nothing divides by zero
       const Vec2 u = directions[k] = tension / norm;
       gradient += length * u;
       hessian += length / norm * (Eigen::Matrix2d::Identity() - u * u.transpose());
@@ -121,6 +122,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
   const bool hangs = whole.slack > 0.0 && scene.gravity.norm() > 0.0;
   if (hangs) {
     std::vector<Vec2> weights;
+    weights.reserve(masses.size());
     for (const double mass : masses) weights.push_back(mass * scene.gravity);
     directions = hanging_pieces(weights, piece, d);
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -86,7 +86,7 @@ Plate plate_of(std::span<const Vec2> corners, double r) {
 
 bool is_convex(std::span<const Vec2> corners) {
   if (corners.size() < 3) return false;
-  constexpr double least_turn = 1e-6;  // rad
+  constexpr double least_turn = 1e-6;  // rad: less is a straight line in a file's decimal figures
   double turn = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     double length = 0.0, length_after = 0.0;

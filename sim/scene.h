@@ -153,9 +153,8 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Wall> walls;
-  std::vector<std::array<int, 2>>
-      apart;  ///< bodies, the lesser index first, that do not touch each
-              ///< other whatever they do; ascending
+  /// Bodies, the lesser index first, that do not touch each other whatever they do; ascending.
+  std::vector<std::array<int, 2>> apart;
   int frame_count = 600;
   int frames_per_second = 60;
   int steps_per_frame = 4;
@@ -169,8 +168,10 @@ inline double step_length(const Scene& scene) {  // s
   return 1.0 / (static_cast<double>(scene.frames_per_second) * scene.steps_per_frame);
 }
 
-/// The mean of what the motor's table says from `begin` to `end` (s), exactly. The table has a
-/// point, and end > begin.
+/// What the motor's table says at time t (s). The table has a point.
+double drive_at(const std::vector<MotorPoint>& motor, double t);
+
+/// The mean of that from `begin` to `end` (s), exactly; end > begin.
 double mean_drive(const std::vector<MotorPoint>& motor, double begin, double end);
 
 /// What drives the body when it is driven most, rad/s or N m; 0: it has no motor.

@@ -8,10 +8,11 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
+#include "sim/scene_words.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 
 namespace pinchlab {
@@ -64,38 +65,6 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
 }
 
 }  // namespace
-
-double overlap_allowed(const Scene& scene) {
-  constexpr double share = 1e-9;
-  double size = 0.0;
-  const auto include = [&size](const Vec2& x) { size = std::max(size, x.cwiseAbs().maxCoeff()); };
-  for (const Body& body : scene.bodies) {
-    include(body.position);
-    size = std::max(size, body.radius);
-  }
-  for (const Cable& cable : scene.cables) {
-    if (cable.closed) continue;
-    include(cable.start.point);
-    include(cable.end.point);
-  }
-  for (const Wall& wall : scene.walls) {
-    include(wall.a);
-    include(wall.b);
-  }
-  return share * size;
-}
-
-std::string in_mm(double metres) {
-  return fmt::format("{:.3g} mm", 1000.0 * metres);
-}
-
-std::string pointer(const char* list, std::size_t i) {
-  return fmt::format("/{}/{}", list, i);
-}
-
-std::string name_of_body(const Scene& scene, int body) {
-  return body < 0 ? "the world" : "body '" + at(scene.bodies, body).name + "'";
-}
 
 void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& broad) {
   const double allowed = overlap_allowed(scene);

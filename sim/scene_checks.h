@@ -3,26 +3,11 @@
 // What a scene's reader checks too, for scenes that are made by a program, and what only a laid
 // scene can tell. All of these throw SceneError.
 
-#include <string>
-
 #include "sim/world.h"
 
 namespace pinchlab {
 
 struct BroadPhase;
-
-/// Two things may overlap by this much (m) at the start, what decimal figures in a scene file
-/// leave: a share of the scene's largest coordinate, length or radius.
-double overlap_allowed(const Scene& scene);
-
-/// "12.3 mm"
-std::string in_mm(double metres);
-
-/// "/bodies/3"
-std::string pointer(const char* list, std::size_t i);
-
-/// "body 'wheel'", or "the world" (-1).
-std::string name_of_body(const Scene& scene, int body);
 
 /// Figures that the geometry takes for granted.
 void refuse_impossible_figures(const Scene& scene);

@@ -5,7 +5,6 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/compound.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
@@ -18,7 +17,7 @@
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
-#include "sim/thesis/all_pairs.h"
+#include "sim/tangent.h"
 #include "sim/thesis/gauss_seidel.h"
 
 namespace pinchlab {

@@ -3,6 +3,7 @@
 // START HERE: one step of the simulation.
 
 #include "sim/detect/detect.h"
+#include "sim/make_world.h"
 #include "sim/stages.h"
 #include "sim/workspace.h"
 

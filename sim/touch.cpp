@@ -5,8 +5,8 @@
 #include <array>
 
 #include "base/at.h"
-#include "sim/cable/tangent.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "sim/world.h"
 
 namespace pinchlab {

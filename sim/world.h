@@ -67,7 +67,7 @@ struct Segment {
   bool moved = true;         // in the last step, or made in it; by update_tangent
   bool slack = false;        // by the active set
   bool pinched = false;      // between two touching bodies: zero length, never hit-tested
-  bool was_pinched = false;  // at the interval\'s start
+  bool was_pinched = false;  // at the interval's start
   int contact = -1;          // pressing a transitional pinch, by confirm_pinches; or -1
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
   Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();      // m, of the circles that the
@@ -161,9 +161,5 @@ struct World {
 
   double time() const { return static_cast<double>(step) * step_length; }
 };
-
-/// The start of a simulation. Throws SceneError (scene_error.h) where the geometry cannot exist,
-/// std::invalid_argument where the configuration cannot.
-World make_world(const Scene& scene, Configuration configuration);
 
 }  // namespace pinchlab

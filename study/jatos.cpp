@@ -152,6 +152,80 @@ json plan_for_page(const std::vector<PlannedTrial>& plan, MediaNames& names, con
   return trials;
 }
 
+// Writes what the page fetches of each participant's plan; returns all plans, for the key.
+json add_plans(ZipWriter& zip, const PlanOptions& options, std::uint64_t seed,
+               std::uint64_t participants, MediaNames& names, const Clips& clips) {
+  json plans = json::array();
+  for (std::uint64_t number = 0; number < participants; ++number) {
+    const std::vector<PlannedTrial> plan = make_plan(seed, number, options);
+    zip.add(fmt::format("{}/plans/{}.json", folder_name, number),
+            plan_for_page(plan, names, clips).dump());
+    plans.push_back(json::array());
+    for (const PlannedTrial& trial : plan) {
+      plans.back().push_back(to_json(trial, names.of(trial)));
+    }
+  }
+  return plans;
+}
+
+json page_input(const Config& config, const std::string& uuid, std::uint64_t participants) {
+  json input = {{"study", uuid},
+                {"participants", participants},
+                {"language", config.language},
+                {"texts", config.texts}};
+  if (!config.translations.empty()) input["translations"] = config.translations;
+  if (config.trial != TrialOptions()) input["trial_options"] = to_json(config.trial);
+  if (!config.questionnaires.empty()) input["questionnaires"] = to_json(config.questionnaires);
+  return input;
+}
+
+// What import_jatos needs to make answer files of the results.
+ordered_json key_of_archive(const Config& config, const PlanOptions& options, const Clips& clips,
+                            const std::string& uuid, std::uint64_t seed, const json& plans) {
+  json files = json::object();
+  for (const auto& [name, pair] : clips) {
+    files[name]["mp4"] = file_entry(pair.mp4);
+    if (pair.webm) {
+      files[name]["webm"] = file_entry(*pair.webm);
+    }
+  }
+  ordered_json key = {{"format", "pinchlab-jatos-key 2"},
+                      {"study", uuid},
+                      {"seed", seed},
+                      {"options",
+                       {{"demonstrations", options.demonstrations},
+                        {"training", options.training},
+                        {"attention_checks", options.attention_checks},
+                        {"repetitions", options.repetitions},
+                        {"both_orders", options.both_orders}}},
+                      {"shown", what_is_shown(config, clips)},
+                      {"files", files},
+                      {"plans", plans}};
+  if (config.trial != TrialOptions()) key["trial_options"] = to_json(config.trial);
+  if (!config.questionnaires.empty()) key["questionnaires"] = to_json(config.questionnaires);
+  return key;
+}
+
+void refuse_what_cannot_be_exported(const Config& config, const PlanOptions& options,
+                                    const fs::path& archive) {
+  if (fs::exists(key_path(archive))) {
+    throw std::runtime_error(
+        fmt::format("{}: is there already, and answers to its archive need it; choose another name",
+                    key_path(archive).string()));
+  }
+  if (!options.methods.empty() || !options.graded.empty()) {
+    throw std::runtime_error(
+        "studies of several methods and of thresholds run on our own server only; use study serve");
+  }
+  if (config.recruiting) {
+    throw std::runtime_error(
+        "recruiting is for study serve, which tells nobody the way back before the answers are "
+        "saved, and lets an id take part once; files on a JATOS server can do neither. Leave it "
+        "out of the configuration: JATOS has study links and an End Redirect URL of its own, and "
+        "keeps the address' parameters with each result");
+  }
+}
+
 // The key, read back.
 // nlohmann's move, which is declared noexcept, checks itself.
 struct Key {  // NOLINT(bugprone-exception-escape)
@@ -204,6 +278,7 @@ Key read_key(const fs::path& path) {
   return key;
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): of the same move
 struct Result {
   std::string id;
   ordered_json file;
@@ -307,69 +382,17 @@ fs::path key_path(const fs::path& archive) {
 
 void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                   std::uint64_t participants, const fs::path& archive) {
-  if (fs::exists(key_path(archive))) {
-    throw std::runtime_error(
-        fmt::format("{}: is there already, and answers to its archive need it; choose another name",
-                    key_path(archive).string()));
-  }
   const PlanOptions options = plan_options(config);
-  if (!options.methods.empty() || !options.graded.empty()) {
-    throw std::runtime_error(
-        "studies of several methods and of thresholds run on our own server only; use study serve");
-  }
-  if (config.recruiting) {
-    throw std::runtime_error(
-        "recruiting is for study serve, which tells nobody the way back before the answers are "
-        "saved, and lets an id take part once; files on a JATOS server can do neither. Leave it "
-        "out "
-        "of the configuration: JATOS has study links and an End Redirect URL of its own, and keeps "
-        "the address' parameters with each result");
-  }
+  refuse_what_cannot_be_exported(config, options, archive);
   const std::string uuid = random_uuid();
   MediaNames names;
   ZipWriter zip(archive);
   add_page(zip, config);
-  json plans = json::array();
-  for (std::uint64_t number = 0; number < participants; ++number) {
-    const std::vector<PlannedTrial> plan = make_plan(seed, number, options);
-    zip.add(fmt::format("{}/plans/{}.json", folder_name, number),
-            plan_for_page(plan, names, clips).dump());
-    plans.push_back(json::array());
-    for (const PlannedTrial& trial : plan) {
-      plans.back().push_back(to_json(trial, names.of(trial)));
-    }
-  }
+  const json plans = add_plans(zip, options, seed, participants, names, clips);
   add_clips(zip, clips, names);
-  json input = {{"study", uuid},
-                {"participants", participants},
-                {"language", config.language},
-                {"texts", config.texts}};
-  if (!config.translations.empty()) input["translations"] = config.translations;
-  if (config.trial != TrialOptions()) input["trial_options"] = to_json(config.trial);
-  if (!config.questionnaires.empty()) input["questionnaires"] = to_json(config.questionnaires);
+  const json input = page_input(config, uuid, participants);
   zip.add(std::string(folder_name) + ".jas", study_properties(config, uuid, input).dump());
-
-  json files = json::object();
-  for (const auto& [name, pair] : clips) {
-    files[name]["mp4"] = file_entry(pair.mp4);
-    if (pair.webm) {
-      files[name]["webm"] = file_entry(*pair.webm);
-    }
-  }
-  ordered_json key = {{"format", "pinchlab-jatos-key 2"},
-                      {"study", uuid},
-                      {"seed", seed},
-                      {"options",
-                       {{"demonstrations", options.demonstrations},
-                        {"training", options.training},
-                        {"attention_checks", options.attention_checks},
-                        {"repetitions", options.repetitions},
-                        {"both_orders", options.both_orders}}},
-                      {"shown", what_is_shown(config, clips)},
-                      {"files", files},
-                      {"plans", plans}};
-  if (config.trial != TrialOptions()) key["trial_options"] = to_json(config.trial);
-  if (!config.questionnaires.empty()) key["questionnaires"] = to_json(config.questionnaires);
+  const ordered_json key = key_of_archive(config, options, clips, uuid, seed, plans);
   // The key first: an archive without one would be worthless.
   write_durably(key_path(archive), key.dump(1) + "\n");
   try {

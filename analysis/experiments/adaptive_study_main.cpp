@@ -177,6 +177,7 @@ void run(const Settings& settings) {
       "fitted_low,fitted_high\n";
   std::string page = page_head(settings);
   std::vector<double> all_levels;
+  all_levels.reserve(levels);
   for (int i = 0; i < levels; ++i) {
     all_levels.push_back(lowest + (highest - lowest) * i / (levels - 1));
   }

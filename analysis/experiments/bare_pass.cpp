@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab::experiments {
 

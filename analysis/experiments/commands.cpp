@@ -131,7 +131,7 @@ void add_population(CLI::App& bench) {
 
 struct Counting {
   Options options;
-  int scene = -1, steps = 0;
+  int scene = -1, growing = -1, size = 0, steps = 0;
 };
 
 void add_instructions(CLI::App& bench) {
@@ -142,11 +142,19 @@ void add_instructions(CLI::App& bench) {
       ->type_name("DIR");
   // What the program asks of itself under valgrind.
   command->add_option("--scene", counting->scene)->group("");
+  command->add_option("--growing", counting->growing)->group("");
+  command->add_option("--size", counting->size)->group("");
   command->add_option("--steps", counting->steps)->group("");
   command->callback([counting] {
     if (counting->scene >= 0) {
       if (!step_scene(counting->scene, counting->steps)) {
         throw CLI::ValidationError("--scene", "there is no such scene");
+      }
+      return;
+    }
+    if (counting->growing >= 0) {
+      if (!step_growing_scene(counting->growing, counting->size, counting->steps)) {
+        throw CLI::ValidationError("--growing", "there is no such scene");
       }
       return;
     }

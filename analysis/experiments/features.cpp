@@ -198,6 +198,7 @@ std::string beyond_limit(const std::vector<FeatureCost>& costs) {
 
 std::string features_text(const std::vector<FeatureCost>& costs) {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(costs.size());
   for (const FeatureCost& cost : costs) {
     rows.push_back({cost.scene, cost.feature, cost.how, fmt::format("{:.1f} ns", 1e9 * cost.cost_s),
                     time_text(cost.step_s), share_text(cost.share()),

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <stdexcept>
+#include <utility>
 
 #include "demos/scenes/library.h"
 
@@ -67,28 +68,38 @@ double make_seconds(const Scene& scene, const Effort& effort) {
   return measure_call([&scene] { make_world(scene, awake()); }, effort).seconds.median;
 }
 
-GrowthResult grow(const std::string& what, const std::vector<int>& sizes,
-                  const std::function<double(int)>& seconds) {
-  GrowthResult result{what, sizes, {}, 0.0};
-  for (const int size : sizes) result.seconds.push_back(seconds(size));
-  result.exponent = growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
-  return result;
-}
-
 }  // namespace
 
-std::vector<GrowthResult> measure_growth(const Effort& effort) {
-  const std::vector<int> many{100, 1000, 10000};
-  return {
-      grow("swinging cables, a step", many,
-           [&](int n) { return step_seconds(disconnected_scene(n, n), effort); }),
-      grow("discs on walls of their own, a step", many,
-           [&](int n) { return step_seconds(discs_on_walls(n), effort); }),
-      grow("pulleys without friction under one cable, a step", {11, 33, 101, 331, 1001},
-           [&](int n) { return step_seconds(frictionless_chain(n), effort); }),
-      grow("pinched stress scene, `make_world`", {20, 200, 2000},
-           [&](int n) { return make_seconds(stress_scene(n, pinched_spacing), effort); }),
+const std::vector<GrowingScene>& growing_scenes() {
+  static const std::vector<GrowingScene> scenes{
+      {"swinging cables, a step",
+       {100, 1000, 10000},
+       [](int n) { return disconnected_scene(n, n); }},
+      {"discs on walls of their own, a step", {100, 1000, 10000}, discs_on_walls},
+      {"pulleys without friction under one cable, a step",
+       {11, 33, 101, 331, 1001},
+       frictionless_chain},
+      {"pinched stress scene, `make_world`",
+       {20, 200, 2000},
+       [](int n) { return stress_scene(n, pinched_spacing); },
+       true},
   };
+  return scenes;
+}
+
+std::vector<GrowthResult> measure_growth(const Effort& effort) {
+  std::vector<GrowthResult> results;
+  for (const GrowingScene& growing : growing_scenes()) {
+    GrowthResult result{growing.what, growing.sizes, {}, 0.0};
+    for (const int size : growing.sizes) {
+      const Scene scene = growing.scene(size);
+      result.seconds.push_back(growing.is_made ? make_seconds(scene, effort)
+                                               : step_seconds(scene, effort));
+    }
+    result.exponent = growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
+    results.push_back(std::move(result));
+  }
+  return results;
 }
 
 IndependenceResult measure_independence(const Effort& effort) {

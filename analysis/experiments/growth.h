@@ -6,8 +6,21 @@
 #include <vector>
 
 #include "analysis/experiments/step_cost.h"
+#include "sim/scene.h"
 
 namespace pinchlab::experiments {
+
+/// One kind of scene at several sizes, two decades apart: what a step costs, or making the world.
+struct GrowingScene {
+  const char* what;
+  std::vector<int> sizes;
+  Scene (*scene)(int size);
+  bool is_made = false;  // its make_world is what counts
+};
+
+/// Swinging cables, discs on walls, pulleys without friction under one cable, and make_world of the
+/// pinched stress scene.
+const std::vector<GrowingScene>& growing_scenes();
 
 /// One kind of scene at several sizes, two decades apart: the processor time of a step, or of
 /// making the world.
@@ -18,8 +31,6 @@ struct GrowthResult {
   double exponent = 0.0;
 };
 
-/// Swinging cables, discs on walls, pulleys without friction under one cable, and make_world of the
-/// pinched stress scene.
 std::vector<GrowthResult> measure_growth(const Effort& effort);
 
 /// What independent parts cost one another, each figure a median over one step of a resting cable.

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "analysis/experiments/growth.h"
+#include "base/at.h"
 #include "demos/scenes/library.h"
 #include "sim/step.h"
 
@@ -35,13 +37,14 @@ const Counted counted[] = {
      [] { return stress_scene(20, pinched_spacing); }},
 };
 
-/// Instructions inside of pinchlab::step for so many steps.
-double count(int scene, int steps, const std::filesystem::path& file) {
+/// Instructions inside of a function for so many calls of it.
+double count(const char* function, const std::string& what, int calls,
+             const std::filesystem::path& file) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = fmt::format(
-      "valgrind --tool=callgrind --callgrind-out-file='{}' --toggle-collect='pinchlab::step(*' "
-      "'{}' bench instructions --scene {} --steps {} > /dev/null 2>&1",
-      file.string(), program, scene, steps);
+      "valgrind --tool=callgrind --callgrind-out-file='{}' --toggle-collect='pinchlab::{}(*' "
+      "'{}' bench instructions {} --steps {} > /dev/null 2>&1",
+      file.string(), function, program, what, calls);
   if (std::system(command.c_str()) != 0) {
     throw std::runtime_error("valgrind failed; to see why: " + command);
   }
@@ -53,6 +56,50 @@ double count(int scene, int steps, const std::filesystem::path& file) {
   throw std::runtime_error(file.string() + ": no totals in what callgrind wrote");
 }
 
+/// A call's, from the difference between few and many of them.
+double count_each(const char* function, const std::string& what, int few, int many,
+                  const std::filesystem::path& file) {
+  return (count(function, what, many, file) - count(function, what, few, file)) / (many - few);
+}
+
+void step_on(const Scene& scene, const char* name, int steps) {
+  Configuration configuration = *configuration_from_string(name);
+  configuration.sleep = false;
+  World world = make_world(scene, configuration);
+  Workspace work;
+  for (int i = 0; i < steps; ++i) {
+    if (step(scene, world, work) != StepStatus::ok) throw std::runtime_error(world.failure);
+  }
+}
+
+std::string page_of_growth(const std::vector<std::vector<std::string>>& rows) {
+  return "\n## Growth\n\nInstructions a unit (cable, disc, pulley, load) at each size, and the "
+         "power of the size that the whole grows with: 1 is linear, whatever caches hold.\n\n" +
+         markdown_table({"what", "sizes", "instructions a unit", "exponent"}, rows);
+}
+
+/// The scenes of the stress test that grow (growth.h).
+std::string count_growth(const std::filesystem::path& file, Csv& csv) {
+  constexpr int few = 5, many = 15;  // steps of scenes that move
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < growing_scenes().size(); ++i) {
+    const GrowingScene& growing = growing_scenes()[i];
+    std::string sizes, units;
+    std::vector<double> counts;
+    for (const int size : growing.sizes) {
+      const std::string what = fmt::format("--growing {} --size {}", i, size);
+      counts.push_back(growing.is_made ? count_each("make_world", what, 1, 2, file)
+                                       : count_each("step", what, few, many, file));
+      csv.row({std::string(growing.what), std::int64_t{size}, counts.back()});
+      sizes += (sizes.empty() ? "" : ", ") + fmt::format("{}", size);
+      units += (units.empty() ? "" : ", ") + fmt::format("{:.0f}", counts.back() / size);
+    }
+    const double exponent = growth_exponent({growing.sizes.begin(), growing.sizes.end()}, counts);
+    rows.push_back({growing.what, sizes, units, fmt::format("{:.3f}", exponent)});
+  }
+  return page_of_growth(rows);
+}
+
 }  // namespace
 
 bool can_count_instructions() {
@@ -61,15 +108,19 @@ bool can_count_instructions() {
 
 bool step_scene(int scene, int steps) {
   if (scene < 0 || scene >= static_cast<int>(std::size(counted))) return false;
-  const Counted& one = counted[scene];
-  const Scene built = one.scene();
-  Configuration configuration = *configuration_from_string(one.configuration);
-  configuration.sleep = false;
-  World world = make_world(built, configuration);
-  Workspace work;
-  for (int i = 0; i < steps; ++i) {
-    if (step(built, world, work) != StepStatus::ok) throw std::runtime_error(world.failure);
+  step_on(counted[scene].scene(), counted[scene].configuration, steps);
+  return true;
+}
+
+bool step_growing_scene(int number, int size, int calls) {
+  if (number < 0 || index(number) >= growing_scenes().size() || size < 1) return false;
+  const GrowingScene& growing = at(growing_scenes(), number);
+  const Scene scene = growing.scene(size);
+  if (!growing.is_made) {
+    step_on(scene, "pinch", calls);
+    return true;
   }
+  for (int i = 0; i < calls; ++i) make_world(scene, Method::pinch);
   return true;
 }
 
@@ -84,20 +135,24 @@ void run_instructions(const Options& options) {
   std::vector<std::vector<std::string>> rows;
   for (int i = 0; i < static_cast<int>(std::size(counted)); ++i) {
     const Counted& one = counted[i];
-    const double each = (count(i, many, file) - count(i, few, file)) / (many - few);
+    const double each = count_each("step", fmt::format("--scene {}", i), few, many, file);
     csv.row(
         {std::string(one.name), std::string(one.configuration), std::int64_t{one.segments}, each});
     rows.push_back({one.name, fmt::format("`{}`", one.configuration), fmt::format("{:.0f}", each),
                     fmt::format("{:.0f}", each / one.segments)});
   }
+  Csv growth({"what", "size", "instructions"});
+  const std::string growth_text = count_growth(file, growth);
   std::filesystem::remove(file);
   output.csv("instructions", csv, options.command);
+  output.csv("instructions-growth", growth, options.command);
   output.page("instructions",
               fmt::format("# Instructions a step\n\nWhat the processor executes inside of a step "
                           "(`sim/step.h`), counted by valgrind's callgrind: the same on a busy "
                           "machine as on a quiet one. {} steps less {}, sleep off.\n\n",
                           many, few) +
-                  markdown_table({"scene", "method", "instructions a step", "a segment"}, rows),
+                  markdown_table({"scene", "method", "instructions a step", "a segment"}, rows) +
+                  growth_text,
               options.command);
   fmt::print("{}: what a step executes\n", (options.out / "instructions.md").string());
 }

@@ -18,4 +18,8 @@ void run_instructions(const Options& options);
 /// no such scene.
 bool step_scene(int scene, int steps);
 
+/// Likewise of number `number` of the scenes that grow (growth.h), at a size: `calls` steps, or as
+/// many times make_world.
+bool step_growing_scene(int number, int size, int calls);
+
 }  // namespace pinchlab::experiments

@@ -12,8 +12,8 @@
 
 #include "analysis/experiments/population_scenes.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/step.h"
+#include "sim/tangent.h"
 
 namespace pinchlab::experiments {
 
@@ -90,8 +90,9 @@ std::vector<Sample> run_samples(const PopulationRun& run, const char* kind, Prog
   std::mutex telling;
   const auto work = [&] {
     for (int i = next++; i < run.scenes; i = next++) {
+      const int seed = run.first + i;
       samples[static_cast<std::size_t>(i)] =
-          run_sample(static_cast<std::uint64_t>(run.first + i), configuration_of(kind));
+          run_sample(static_cast<std::uint64_t>(seed), configuration_of(kind));
       const std::lock_guard lock(telling);
       progress.done(1.0);
     }
@@ -171,6 +172,7 @@ std::string promises(const std::array<std::vector<Sample>, 2>& samples) {
 
 std::vector<double> sorted(const std::vector<Sample>& samples, auto distance) {
   std::vector<double> all;
+  all.reserve(samples.size());
   for (const Sample& sample : samples) all.push_back(distance(sample));
   std::sort(all.begin(), all.end());
   return all;

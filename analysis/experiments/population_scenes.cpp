@@ -8,8 +8,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "sim/make_world.h"
 #include "sim/scene_error.h"
-#include "sim/world.h"
 
 namespace pinchlab::experiments {
 

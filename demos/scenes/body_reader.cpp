@@ -228,4 +228,20 @@ void refuse_keys(const json& from, const std::string& place,
   }
 }
 
+EndBy end_by(const json& end, const std::string& place, std::initializer_list<const char*> of_body,
+             std::vector<SceneProblem>& problems) {
+  if (end.contains("world_m") == end.contains("body")) {
+    problems.push_back(
+        {place, "give either world_m (a point that does not move) or body (and point_m on it)"});
+    return EndBy::neither;
+  }
+  if (end.contains("body")) return EndBy::body;
+  for (const char* key : of_body) {
+    if (end.contains(key)) {
+      problems.push_back({place + "/" + key, "belongs to body, not to world_m; leave one out"});
+    }
+  }
+  return EndBy::world_m;
+}
+
 }  // namespace pinchlab

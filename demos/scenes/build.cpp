@@ -43,6 +43,7 @@ Cable cable(const Attachment& start, std::vector<Wrap> wraps, const Attachment& 
 std::vector<Wrap> over_and_under(int first, int count) {
   constexpr int clockwise = -1, counter_clockwise = 1;
   std::vector<Wrap> wraps;
+  wraps.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     wraps.push_back({first + i, i % 2 == 0 ? clockwise : counter_clockwise, 0});
   }

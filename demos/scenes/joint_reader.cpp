@@ -72,15 +72,11 @@ class JointReader {
     const json& end = from_[key];
     const std::string place = place_ + "/" + key;
     Attachment attachment;
-    if (end.contains("world_m") == end.contains("body")) {
-      problem(place,
-              "give either world_m (a point that does not move) or body (and point_m on it)");
-      return attachment;
-    }
-    if (end.contains("world_m")) {
-      if (end.contains("point_m")) {
-        problem(place + "/point_m", "belongs to body, not to world_m; leave one out");
-      }
+    const std::size_t before = problems_.size();
+    const EndBy by = end_by(end, place, {"point_m"}, problems_);
+    wrong_ = wrong_ || problems_.size() > before;
+    if (by == EndBy::neither) return attachment;
+    if (by == EndBy::world_m) {
       attachment.point = vector_of(end["world_m"]);
       return attachment;
     }

@@ -43,4 +43,11 @@ void refuse_keys(const nlohmann::json& from, const std::string& place,
                  std::initializer_list<const char*> keys, const std::string& what,
                  std::vector<SceneProblem>& problems);
 
+/// What says where an end of a cable or joint is.
+enum class EndBy { world_m, body, neither };
+
+/// Notes where both or neither do, and what belongs to `body` (these keys) beside `world_m`.
+EndBy end_by(const nlohmann::json& end, const std::string& place,
+             std::initializer_list<const char*> of_body, std::vector<SceneProblem>& problems);
+
 }  // namespace pinchlab

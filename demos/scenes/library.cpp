@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "demos/scenes/build.h"
-#include "sim/world.h"
+#include "sim/make_world.h"
 
 namespace pinchlab {
 

@@ -12,6 +12,7 @@
 #include "base/strict_json.h"
 #include "demos/scenes/format_check.h"
 #include "demos/scenes/scene_reader.h"
+#include "sim/make_world.h"
 
 namespace pinchlab {
 namespace {

@@ -97,17 +97,10 @@ int Reader::body_index(const json& name, const std::string& place) {
 Attachment Reader::read_attachment(const json& from, const std::string& place, const Scene& scene,
                                    double half_width) {
   Attachment attachment;
-  if (from.contains("world_m") == from.contains("body")) {
-    problem(place, "give either world_m (a point that does not move) or body (and point_m on it)");
-    return attachment;
-  }
-  if (from.contains("world_m")) {
+  const EndBy by = end_by(from, place, {"point_m", "rim_angle_rad", "layers"}, problems_);
+  if (by == EndBy::neither) return attachment;
+  if (by == EndBy::world_m) {
     attachment.point = vector_of(from["world_m"]);
-    for (const char* key : {"point_m", "rim_angle_rad", "layers"}) {
-      if (from.contains(key)) {
-        problem(place + "/" + key, "belongs to body, not to world_m; leave one out");
-      }
-    }
     return attachment;
   }
   attachment.body = body_index(from["body"], place + "/body");

@@ -7,7 +7,7 @@
 
 #include "render/picture/hanging.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

@@ -10,9 +10,9 @@
 #include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/compound.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -149,7 +149,7 @@ class Composer {
     for (std::size_t piece = c; piece < count;) {
       const CableState& cable = world_.cables[piece];
       const Segment& segment = cable.segments[1];
-      if (piece != c) add_bend(picture_.points.back(), segment.direction);
+      if (piece != c) add_bend(segment.direction);
       picture_.points.push_back({segment.tail, segment.direction, material});
       material += segment.length;
       picture_.points.push_back({segment.head, segment.direction, material});
@@ -168,8 +168,9 @@ class Composer {
     picture_.add(strip);
   }
 
-  /// A fan of points where a strip bends by more than two of them can.
-  void add_bend(const StripPoint from, const Vec2& to) {
+  /// A fan of points after the last, where a strip bends to `to` by more than two of them can.
+  void add_bend(const Vec2& to) {
+    const StripPoint from = picture_.points.back();
     const double bend = std::atan2(cross(from.tangent, to), from.tangent.dot(to));
     const int pieces = static_cast<int>(std::ceil(std::abs(bend) / most_turn));
     for (int k = 1; k < pieces; ++k) {

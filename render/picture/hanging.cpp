@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "render/picture/cable_path.h"
-#include "sim/cable/tangent.h"
 #include "sim/step.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "base/at.h"
-#include "sim/cable/tangent.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -85,7 +85,8 @@ Vec2 offset_centre(const World& world, const Link& link) {
 
 bool is_fastened_inside(const World& world, const CableState& cable, const Link& end) {
   const BodyProperties& b = at(world.bodies, end.body);
-  const double margin = (rim_radius(b) + cable.half_width) * (1.0 - 1e-9);
+  constexpr double rounding = 1e-9;  // an end on the rim, in a file's decimal figures, is on it
+  const double margin = (rim_radius(b) + cable.half_width) * (1.0 - rounding);
   if (is_polygon(b)) return outside_of(b.corners, end.offset).distance < margin;
   return end.offset.norm() < margin;
 }
@@ -126,6 +127,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
   const bool exact = locates_events(world.configuration);  // and so round-off matters
+  // Far above what gaps are right to (1e-12 of the part's extent); less to become pinched than to stay so.
   const double parting = !opposite(from, to) || !exact ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {

@@ -10,10 +10,10 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/outline.h"
-#include "sim/scene_checks.h"
 #include "sim/scene_error.h"
+#include "sim/scene_words.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -191,7 +191,8 @@ void lay_wraps(const Scene& scene, Course& course) {
     if (i == 0 || course.stops[i] != course.stops[i - 1]) of_stop = 0.0;
     const std::size_t leaving = (i + 1) % count;
     double wrap = link.orientation * (cable.segments[leaving].alpha - cable.segments[i].alpha);
-    wrap -= turn * std::floor((wrap + 1e-9) / turn);
+    constexpr double rounding = 1e-9;  // rad: a wrap of nothing is no whole turn
+    wrap -= turn * std::floor((wrap + rounding) / turn);
     wrap = std::max(wrap, 0.0);
     of_stop += wrap;
     const int asked = at(course.given.wraps, course.stops[i]).extra_turns;

@@ -2,9 +2,9 @@
 #include "sim/detect/detect.h"
 
 #include "sim/cable/cable.h"
+#include "sim/detect/all_pairs.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
-#include "sim/thesis/all_pairs.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {

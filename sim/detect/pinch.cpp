@@ -7,8 +7,8 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -38,11 +38,13 @@ double normal_speed(const World& world, const Contact& contact) {
 }
 
 /// Whether the bodies press what lies between them: they did in the last step, or will in the next.
-/// A cable that yields is pressed where it is narrower than its width.
+/// A cable that yields is pressed where it is narrower than its width. Round-off of a gap that is
+/// closed is below `rounding` of it.
 bool presses(const World& world, const CableState& cable, const Contact& contact) {
+  constexpr double rounding = 1e-12;
   const double gap = 2.0 * cable.half_width;
   if (yields(cable)) return contact.gap <= gap;
-  return contact.touching || contact.gap <= gap * (1.0 + 1e-12) ||
+  return contact.touching || contact.gap <= gap * (1.0 + rounding) ||
          contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
 }
 
@@ -160,7 +162,8 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
   }
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
-  // A body that has just lost its own link lies at the very end of the arc.
+  // A body that has just lost its own link lies at the very end of the arc: events are met far
+  // nearer than this, and no frame shows it.
   const double end = locates_events(world.configuration) ? 1e-6 : 0.0;  // rad
   for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
     double arc = least + k * turn;

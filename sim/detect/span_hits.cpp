@@ -3,8 +3,8 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -98,7 +98,8 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double side_before = cross(direction_before, before);
 
   // What was within reach of the span's line before, but not beside the span, has come past its end: it is
-  // in front of the cable, not in its way. What was beside it has been pushed into it by a repair.
+  // in front of the cable, not in its way. What was beside it has been pushed into it by a repair. What
+  // touches the line does so to within_reach of the part's extent, and `in_touch` is far above that.
   constexpr double in_touch = 1e-6;
   const bool beside_before = along_before > 0.0 && along_before < length_before;
   if (locates_events(world.configuration) && !beside_before &&

@@ -24,14 +24,16 @@ namespace {
 
 constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
-constexpr double shortest = 1e-4;            // of a step, that an allowed error divides it into
-constexpr double shortest_corrected = 1e-6;  // of a step
+// Shares of a step, far below what any error that is asked for needs: that an allowed error divides
+// it into, and that bodies move so little in that only round-off would be corrected.
+constexpr double shortest = 1e-4;
+constexpr double shortest_corrected = 1e-6;
 constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss
 constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
 constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
-constexpr int shake_rounds = 12;
-constexpr int most_trials = 60;   // of an interval's length
-constexpr int most_halvings = 5;  // of an interval that does not converge
+constexpr int shake_rounds = 12;        // each gains at least a factor 2 (move_part), mostly 100
+constexpr int most_trials = 60;         // of an interval's length
+constexpr int most_halvings = 5;        // of an interval that does not converge
 
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent) return false;

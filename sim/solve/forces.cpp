@@ -52,7 +52,7 @@ Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, co
 /// The body with what its motor's table says for the interval: the angular velocity of the motion
 /// that follows, or the torque of the kick, each the mean over its time. Both are exact integrals.
 BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties now) {
-  constexpr double instant = 1e-9;  // s
+  constexpr double instant = 1e-9;  // s: an instant's mean is the value at its time
   if (now.driven_angular_velocity) {
     const double length = t.length > 0.0 ? t.length : instant;
     now.driven_angular_velocity = mean_drive(body.motor, t.start, t.start + length);

@@ -6,11 +6,11 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/part_system.h"
 #include "sim/solve/rows.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 

@@ -8,9 +8,10 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double rounding = 1e-9;       // of a torque, or an angular velocity
-constexpr double contradicting = 1e-6;  // of a rim's speed
-constexpr double thrown = 10.0;         // times that
+constexpr double rounding = 1e-9;  // of a torque, or an angular velocity
+constexpr double contradicting =
+    1e-6;                        // of a rim's speed: far above round-off, far below its share
+constexpr double thrown = 10.0;  // times that
 
 /// Angular impulse of the rows on a body (N m s).
 double impulse_of_rows(const PartSystem& s, int place) {

@@ -6,11 +6,11 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/tangent.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 #include "sim/world.h"
 

@@ -387,7 +387,7 @@ double start(PartSystem& s, SolveScratch& set) {
 /// system with a small ridge on its diagonal, whose right side is first made consistent by a basic
 /// solution.
 void spread_over_repeated_rows(PartSystem& s, SolveScratch& set, double rounding) {
-  constexpr double ridge = 1e-8;
+  constexpr double ridge = 1e-8;  // of the diagonal: half of a double's digits are left for either
   set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
   const auto subtract_contradictions = [&set] {
     double largest = 0.0;

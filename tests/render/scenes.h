@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "demos/scenes/build.h"
+#include "sim/make_world.h"
 #include "tests/base/temporary_folder.h"
 
 namespace pinchlab::testing {

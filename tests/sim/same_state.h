@@ -7,25 +7,35 @@
 
 namespace pinchlab::testing {
 
-/// Whether two links, segments, contacts have the same state to the last bit; a contact's place in
-/// the list is state too.
+// Links, segments and contacts that have the same state to the last bit; a contact's place in the
+// list is state too.
+
+inline bool same_layers(const Layers& p, const Layers& q) {
+  return p.way == q.way && p.inner == q.inner && p.growth == q.growth && p.begins == q.begins;
+}
+
 inline bool same_link(const Link& p, const Link& q) {
   return p.body == q.body && p.orientation == q.orientation && p.corner == q.corner &&
-         p.radius == q.radius && p.material == q.material && p.wrap == q.wrap &&
-         p.pinch_middle == q.pinch_middle && p.slip == q.slip && p.slip_speed == q.slip_speed &&
-         p.contact == q.contact;
+         p.radius == q.radius && p.offset == q.offset && p.material == q.material &&
+         p.wrap == q.wrap && p.pinch_middle == q.pinch_middle && p.slip == q.slip &&
+         p.slip_speed == q.slip_speed && p.contact == q.contact && same_layers(p.layers, q.layers);
 }
 
 inline bool same_segment(const Segment& p, const Segment& q) {
-  return p.tail == q.tail && p.head == q.head && p.alpha == q.alpha && p.length == q.length &&
-         p.rest_length == q.rest_length && p.tension == q.tension && p.slack == q.slack &&
-         p.pinched == q.pinched && p.contact == q.contact && p.moved == q.moved;
+  return p.tail == q.tail && p.head == q.head && p.direction == q.direction && p.alpha == q.alpha &&
+         p.length == q.length && p.rest_length == q.rest_length && p.tension == q.tension &&
+         p.moved == q.moved && p.slack == q.slack && p.pinched == q.pinched &&
+         p.was_pinched == q.was_pinched && p.contact == q.contact &&
+         p.previous_tail == q.previous_tail && p.previous_head == q.previous_head &&
+         p.tail_centre == q.tail_centre && p.head_centre == q.head_centre;
 }
 
 inline bool same_contact(const Contact& p, const Contact& q) {
   return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point &&
-         p.gap == q.gap && p.target == q.target && p.pinch_points == q.pinch_points &&
-         p.pinch_linked == q.pinch_linked && p.touching == q.touching && p.slip == q.slip &&
+         p.normal == q.normal && p.gap == q.gap && p.target == q.target &&
+         p.pinch_points == q.pinch_points && p.pinch_linked == q.pinch_linked &&
+         p.pressed_friction == q.pressed_friction && p.layers_cable == q.layers_cable &&
+         p.touching == q.touching && p.rebounds == q.rebounds && p.slip == q.slip &&
          p.normal_force == q.normal_force && p.tangent_force == q.tangent_force;
 }
 
@@ -34,17 +44,22 @@ inline bool same_state(const World& a, const World& b) {
   const auto equal = [](const auto& p, const auto& q, auto same) {
     return std::equal(p.begin(), p.end(), q.begin(), q.end(), same);
   };
-  return a.step == b.step && a.position == b.position && a.angle == b.angle &&
-         a.velocity == b.velocity && a.angular_velocity == b.angular_velocity &&
-         a.still_steps == b.still_steps &&
+  return a.step == b.step && a.step_length == b.step_length && a.lag == b.lag &&
+         a.position == b.position && a.angle == b.angle && a.velocity == b.velocity &&
+         a.angular_velocity == b.angular_velocity && a.still_steps == b.still_steps &&
          equal(a.cables, b.cables,
                [&](const CableState& p, const CableState& q) {
-                 return p.turning == q.turning && equal(p.links, q.links, same_link) &&
+                 return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
+                        equal(p.links, q.links, same_link) &&
                         equal(p.segments, q.segments, same_segment);
                }) &&
          equal(a.contacts, b.contacts, same_contact) &&
          a.diagnostics.total_solves == b.diagnostics.total_solves &&
-         a.diagnostics.fallbacks == b.diagnostics.fallbacks;
+         a.diagnostics.fallbacks == b.diagnostics.fallbacks &&
+         a.diagnostics.events == b.diagnostics.events &&
+         a.diagnostics.intervals == b.diagnostics.intervals &&
+         a.diagnostics.local_error == b.diagnostics.local_error &&
+         a.diagnostics.clusters == b.diagnostics.clusters;
 }
 
 }  // namespace pinchlab::testing

@@ -10,6 +10,7 @@
 
 #include "analysis/experiments/experiment.h"
 #include "sim/cable/cable.h"
+#include "sim/make_world.h"
 
 namespace pinchlab::experiments {
 

@@ -6,6 +6,7 @@
 
 #include "analysis/experiments/stability/items.h"
 #include "analysis/experiments/stability/scenes.h"
+#include "sim/make_world.h"
 
 namespace pinchlab::experiments::stability {
 
@@ -101,7 +102,7 @@ Item mass_ratio(bool quick) {
       "Ten sweeps carry a force over ten links only a little at a time, so that heavy loads on "
       "light pulleys stretch the cable; one elimination carries it exactly. A light body between "
       "taut spans vibrates faster than steps can follow; all three methods damp it on to its line "
-      "(`sim/light_bodies.h`).";
+      "(`sim/solve/light_bodies.h`).";
   item.scene =
       "Along a cable: M and M/2 on one cable over 21 pulleys of 1 kg; the motion after 1 s is "
       "compared with the closed form. Hanging: M kg on a cable below a body of 1 kg on another, "

@@ -113,8 +113,8 @@ Item frames_and_steps(bool quick) {
   item.scene =
       "Five scenes: a stack of five, a roller that falls on a drum, a roller that rolls over one, "
       "a load caught after 2 m, a load that swings and unwinds. The map shows the worst of them.";
-  const auto add = [&](const std::string& series, Scene scene, double seconds, EnergyLaw energy,
-                       bool rests) {
+  const auto add = [&](const std::string& series, const Scene& scene, double seconds,
+                       EnergyLaw energy, bool rests) {
     for (const int rate : {15, 20, 24, 30, 60, 120}) {
       for (const int steps : {1, 2, 4, 8, 16}) {
         if (quick && (rate % 30 != 15 && rate != 60)) continue;

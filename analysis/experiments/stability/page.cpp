@@ -41,6 +41,7 @@ std::vector<std::string> series_of(const ItemResults& done) {
 std::string borders(const ItemResults& done, const std::string& method) {
   const std::vector<std::string> series = series_of(done);
   std::vector<std::string> texts;
+  texts.reserve(series.size());
   for (const std::string& name : series) texts.push_back(border_text(select(done, method, name)));
   if (std::all_of(texts.begin(), texts.end(), [&](const auto& t) { return t == texts[0]; })) {
     return texts[0];

@@ -9,6 +9,8 @@
 #include <iterator>
 
 #include "analysis/experiments/chart.h"
+#include "analysis/experiments/growth.h"
+#include "analysis/experiments/instructions.h"
 #include "analysis/experiments/pinch_detection.h"
 
 namespace pinchlab::experiments {
@@ -65,6 +67,16 @@ TEST(Stress, WritesTablesFiguresAndPage) {
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_EQ(page.find("inf "), std::string::npos);
   fs::remove_all(options.out);
+}
+
+TEST(Growth, EachSceneIsThereAtItsSizes) {
+  for (std::size_t i = 0; i < growing_scenes().size(); ++i) {
+    const GrowingScene& growing = growing_scenes()[i];
+    EXPECT_GE(growing.sizes.back(), 91 * growing.sizes.front()) << growing.what;
+    EXPECT_TRUE(step_growing_scene(static_cast<int>(i), growing.sizes.front(), 2)) << growing.what;
+  }
+  EXPECT_FALSE(step_growing_scene(static_cast<int>(growing_scenes().size()), 1, 1));
+  EXPECT_FALSE(step_growing_scene(0, 0, 1));
 }
 
 TEST(PinchDetection, WritesTablesFiguresAndPage) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/cable/tangent.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 namespace {

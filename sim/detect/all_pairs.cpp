@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/thesis/all_pairs.h"
+#include "sim/detect/all_pairs.h"
 
 #include "sim/cable/cable.h"
 #include "sim/workspace.h"
