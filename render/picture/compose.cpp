@@ -55,6 +55,11 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
+    for (const CableState& cable : world_.cables) {
+      for (const Link& link : cable.links) {
+        if (link.layers.way != 0 && link.orientation != 0) add_riser(link, cable.half_width);
+      }
+    }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
     for (const Wall& wall : scene_.walls) {
       picture_.add(line(wall.a, wall.b, 2.5 * scenery_.line(), theme_.fixed.edge));
@@ -203,6 +208,43 @@ class Composer {
     }
   }
 
+  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a turn
+  /// is full, by which the first turn climbs on to itself.
+  void add_riser(const Link& link, double half_width) {
+    const auto body = static_cast<std::size_t>(link.body);
+    const auto [fill, edge] = paint_of(body);
+    const Layers& layers = link.layers;
+    const double rim = rim_band(body), inside = scene_.bodies[body].radius - 0.75 * rim;
+    const double start = world_.angle[body] + link.orientation * layers.begins;
+    const auto place = [&](double turned, double radius) {
+      return tangent_point(world_.position[body], link.orientation * radius,
+                           unit_vector(start + layers.way * link.orientation * turned));
+    };
+    Strip outline;
+    outline.first = picture_.points.size();
+    outline.half_width = 0.5 * rim;
+    outline.fill = edge;
+    constexpr int pieces = 52;
+    for (int k = 0; k <= pieces; ++k) {
+      const double turned = turn * k / pieces, radius = layers.radius(turned) - half_width;
+      const Vec2 e = unit_vector(start + layers.way * link.orientation * turned);
+      picture_.points.push_back({place(turned, radius - outline.half_width), layers.way * e, 0.0});
+    }
+    for (int k = 0; k < pieces; ++k) {
+      for (const int corner : {k, k + 1}) {
+        picture_.corners.push_back(place(turn * corner / pieces, inside));
+      }
+      for (const int corner : {k + 1, k}) {
+        picture_.corners.push_back(
+            picture_.points[outline.first + static_cast<std::size_t>(corner)].position);
+      }
+      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
+    }
+    outline.count = picture_.points.size() - outline.first;
+    picture_.add(outline);
+    picture_.add(line(place(turn, inside), picture_.points.back().position, 0.5 * rim, edge));
+  }
+
   /// A pin through what is joined there.
   void add_pin(const Vec2& point) {
     picture_.add(disc(point, 0.75 * scenery_.unit(), theme_.ink));
@@ -276,6 +318,22 @@ class Composer {
     return colour;
   }
 
+  /// A colour as it looks on the background, opaque.
+  Colour over_paper(Colour colour) const {
+    const Colour page = paper();
+    const auto mixed = [&colour](std::uint8_t top, std::uint8_t below) {
+      return static_cast<std::uint8_t>((top * colour.alpha + below * (255 - colour.alpha) + 127) /
+                                       255);
+    };
+    return {mixed(colour.red, page.red), mixed(colour.green, page.green),
+            mixed(colour.blue, page.blue), 255};
+  }
+
+  /// m, how wide a body's outline is.
+  double rim_band(std::size_t i) const {
+    return std::min(0.09 * inner_radius(scene_.bodies[i]), 4.0 * scenery_.line());
+  }
+
   Paint paint_of(std::size_t i) const {
     const Body& body = scene_.bodies[i];
     Paint paint = body.kind == BodyKind::fixed ? theme_.fixed
@@ -346,7 +404,7 @@ class Composer {
     const double r = inner_radius(body), angle = world_.angle[i];
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
     const auto [fill, edge] = paint_of(i);
-    const double band = std::min(0.09 * r, 4.0 * scenery_.line());
+    const double band = rim_band(i);
     if (is_polygon(body)) {
       add_polygon(i, band, fill, edge);
     } else {
