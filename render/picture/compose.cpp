@@ -220,25 +220,27 @@ class Composer {
       return tangent_point(world_.position[body], link.orientation * radius,
                            unit_vector(start + layers.way * link.orientation * turned));
     };
+    constexpr int pieces = 52;
+    constexpr double overlap = 0.1;   // of a piece: where two meet, no line is to show
+    const auto top = [&](double k) {  // the middle of the outline
+      const double turned = turn * k / pieces;
+      return place(turned, layers.radius(turned) - half_width - 0.5 * rim);
+    };
+    for (int k = 0; k < pieces; ++k) {
+      const double to = std::min(k + 1.0 + overlap, 1.0 * pieces);
+      for (const Vec2& corner :
+           {place(turn * k / pieces, inside), place(turn * to / pieces, inside), top(to), top(k)}) {
+        picture_.corners.push_back(corner);
+      }
+      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
+    }
     Strip outline;
     outline.first = picture_.points.size();
     outline.half_width = 0.5 * rim;
     outline.fill = edge;
-    constexpr int pieces = 52;
     for (int k = 0; k <= pieces; ++k) {
-      const double turned = turn * k / pieces, radius = layers.radius(turned) - half_width;
-      const Vec2 e = unit_vector(start + layers.way * link.orientation * turned);
-      picture_.points.push_back({place(turned, radius - outline.half_width), layers.way * e, 0.0});
-    }
-    for (int k = 0; k < pieces; ++k) {
-      for (const int corner : {k, k + 1}) {
-        picture_.corners.push_back(place(turn * corner / pieces, inside));
-      }
-      for (const int corner : {k + 1, k}) {
-        picture_.corners.push_back(
-            picture_.points[outline.first + static_cast<std::size_t>(corner)].position);
-      }
-      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
+      const Vec2 e = unit_vector(start + layers.way * link.orientation * turn * k / pieces);
+      picture_.points.push_back({top(k), layers.way * e, 0.0});
     }
     outline.count = picture_.points.size() - outline.first;
     picture_.add(outline);
