@@ -51,7 +51,8 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
     compose(player.scene(), scenery, player.world(), picture);
-    if (options.burn_time) picture.add(time_label(scenery, player.time()));
+    if (options.burn_time)
+      picture.add(time_label(scenery, player.time(), 1.0 * options.width / options.height));
     show(i, player, picture);
   }
   progress.clear();

@@ -502,10 +502,14 @@ void compose(const Scene& scene, const Scenery& scenery, const World& world, Pic
   Composer(scene, scenery, world, picture).run();
 }
 
-Label time_label(const Scenery& scenery, double time) {
+Label time_label(const Scenery& scenery, double time, double aspect) {
+  // The view is fitted into the frame, with room at two sides.
+  const Vec2 middle = 0.5 * (scenery.view.low + scenery.view.high);
+  const Vec2 view = 0.5 * (scenery.view.high - scenery.view.low);
+  const Vec2 half(std::max(view.x(), aspect * view.y()), std::max(view.y(), view.x() / aspect));
   const double text = scenery.text();
-  return {scenery.view.low + Vec2(2.6 * text, 1.2 * text), text, fmt::format("{:6.3f} s", time),
-          scenery.theme.ink};
+  const Vec2 corner = middle + Vec2(-half.x(), half.y());
+  return {corner + text * Vec2(2.6, -1.2), text, fmt::format("{:6.3f} s", time), scenery.theme.ink};
 }
 
 }  // namespace pinchlab
