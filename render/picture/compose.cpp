@@ -116,14 +116,10 @@ class Composer {
   }
 
   void add_anchor_plate(const Anchor& anchor) {
-    const double r = anchor_radius(anchor.half_width);
+    const double r = anchor_radius(scenery_, anchor.half_width);
     const Vec2 across = 1.3 * r * left(anchor.outward),
                foot = anchor.point + 1.1 * r * anchor.outward;
     add_hatched(foot + across, foot - across, 0.65 * r);
-  }
-
-  double anchor_radius(double half_width) const {
-    return std::max(1.7 * half_width, 0.6 * scenery_.unit());
   }
 
   void add_shadows() {
@@ -438,7 +434,7 @@ class Composer {
       if (link->body >= 0) {
         picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
       } else {
-        const double r = anchor_radius(cable.half_width);
+        const double r = anchor_radius(scenery_, cable.half_width);
         picture_.add(disc(link->offset, r, theme_.ink));
         picture_.add(disc(link->offset, 0.4 * r, paper()));
       }

@@ -169,6 +169,19 @@ TEST_P(Demonstration, LabelsStayInTheFrame) {
   }
 }
 
+TEST_P(Demonstration, PlatesOfAnchorsStandInTheFrame) {
+  const Scenery scenery = set_scenery(scene_, file_.look);
+  for (const Anchor& anchor : scenery.anchors) {
+    const double r = anchor_radius(scenery, anchor.half_width);
+    const Vec2 across(-anchor.outward.y(), anchor.outward.x());
+    for (const double side : {-1.3, 0.0, 1.3}) {  // the far ends of the hatches
+      const Vec2 end = anchor.point + r * (1.55 * anchor.outward + side * across);
+      EXPECT_TRUE((end.array() >= scenery.view.low.array()).all()) << end.transpose();
+      EXPECT_TRUE((end.array() <= scenery.view.high.array()).all()) << end.transpose();
+    }
+  }
+}
+
 TEST_P(Demonstration, NeverSqueezesTheCableWithPinchJoints) {
   const Motion motion = play(scene_, Method::pinch);
   double width = 1.0;
