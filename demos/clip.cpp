@@ -74,11 +74,13 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
   VideoWriter video(path, plan.video);
   FrameHash frames;
   std::vector<std::uint8_t> turned;
+  const double aspect = static_cast<double>(plan.video.width) /
+                        (static_cast<double>(players.size()) * plan.video.height);  // of a panel
   for (const std::int64_t step : plan.steps) {
     for (std::size_t i = 0; i < players.size(); ++i) {
       players[i].advance_to_step(step);
       compose(plan.scene, scenery, players[i].world(), pictures[i]);
-      if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time()));
+      if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time(), aspect));
     }
     const std::uint8_t* rgba = canvas.draw(panels);
     if (plan.upside_down) {

@@ -50,14 +50,14 @@ void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
 }
 
 void EventWatch::look(const World& world, double time) {
+  static const std::string a_wall = "a wall";
   for (std::size_t c = 0; c < world.cables.size(); ++c) look_at_cable(world, c, time);
   for (const Contact& contact : world.contacts) {
     if (!contact.touching || contact.pinch_points > 0) continue;
     const std::string& a = scene_.bodies[static_cast<std::size_t>(contact.a)].name;
-    hold(contact.b < 0 ? fmt::format("{} touches a wall", a)
-                       : fmt::format("{} touches {}", a,
-                                     scene_.bodies[static_cast<std::size_t>(contact.b)].name),
-         time);
+    const std::string& b =
+        contact.b < 0 ? a_wall : scene_.bodies[static_cast<std::size_t>(contact.b)].name;
+    hold(fmt::format("{} touches {}", a, b), time);
   }
 }
 

@@ -14,15 +14,15 @@ namespace pinchlab {
 /// Something that holds for a while.
 struct Event {
   std::string what;           ///< e.g. "rope pinched between drum and left"
-  double from = 0.0, to = 0;  ///< s, times of the first and the last frame that show it
+  double from = 0.0, to = 0;  ///< s, times of the first and the last step at whose end it holds
 };
 
-/// Watches a world frame by frame.
+/// Watches a world step by step.
 class EventWatch {
  public:
   explicit EventWatch(const Scene& scene) : scene_(scene) {}
 
-  /// To be called for every frame, in order.
+  /// To be called at the start and after every step, in order.
   void look(const World& world, double time);
 
   /// What was seen so far, in order of its beginning. What ceases for less than `shortest_break` is

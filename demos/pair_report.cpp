@@ -219,6 +219,12 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
   baseline.give_up_after(time_limit);
   Picture pinch_picture, baseline_picture;
   EventWatch pinch_events(scene), baseline_events(scene);
+  const auto watch = [](Player& player, EventWatch& events) {
+    events.look(player.world(), player.world().time());
+    player.on_step([&player, &events] { events.look(player.world(), player.world().time()); });
+  };
+  watch(pinch, pinch_events);
+  watch(baseline, baseline_events);
   Poses pinch_poses, baseline_poses;
   StripOfPictures strip(scene, scene.baseline);
   std::vector<char> differs;
@@ -227,8 +233,6 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
     baseline.advance_to(frame);
     pinch_poses.add(pinch.world());
     baseline_poses.add(baseline.world());
-    pinch_events.look(pinch.world(), pinch.time());
-    baseline_events.look(baseline.world(), baseline.time());
     compose(scene, scenery, pinch.world(), pinch_picture);
     compose(scene, scenery, baseline.world(), baseline_picture);
     const std::array<const Picture*, 2> pair = {&pinch_picture, &baseline_picture};

@@ -65,7 +65,8 @@ std::vector<std::string> values_of_range(const std::string& text, const std::str
   std::vector<std::string> values;
   for (long i = 0; i < *count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(*count - 1);
-    values.push_back(fmt::format("{}", *from + (*to - *from) * share));
+    // To 15 digits: 0.07, where sums of doubles give 0.06999999999999999.
+    values.push_back(fmt::format("{:.15g}", *from + (*to - *from) * share));
   }
   values.back() = fmt::format("{}", *to);
   return values;

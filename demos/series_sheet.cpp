@@ -62,7 +62,8 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       player.advance_to(frames[i]);
       VectorFrame& frame = sheet[i * columns + column];
       compose(player.scene(), scenery, player.world(), frame.picture);
-      if (options.burn_time) frame.picture.add(time_label(scenery, player.time()));
+      if (options.burn_time)
+        frame.picture.add(time_label(scenery, player.time(), 1.0 * options.width / options.height));
       frame.label = fmt::format("{}, {:.2f} s", label_of(sweep.table, column), player.time());
     }
     tell_broken_promises(sweep.table.place(column), player.broken_promises());

@@ -51,7 +51,8 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
   for (const std::size_t i : by_time) {
     player.advance_to(frames[i]);
     compose(player.scene(), scenery, player.world(), picture);
-    if (options.burn_time) picture.add(time_label(scenery, player.time()));
+    if (options.burn_time)
+      picture.add(time_label(scenery, player.time(), 1.0 * options.width / options.height));
     show(i, player, picture);
   }
   progress.clear();
@@ -103,13 +104,15 @@ void write_vector_still(const SceneFile& file, const StillOptions& options, Vect
                sheet_columns(options, frames));
 }
 
-/// Every frame a file of its own, its number in the place of the #.
+/// Every frame a file of its own, its number in the place of the #, in a folder that is made.
 void write_sequence(const SceneFile& file, const StillOptions& options,
                     const std::vector<int>& frames, const Scenery& scenery) {
   if (options.methods.size() > 1) {
     throw std::invalid_argument(
         "a # in --out writes one picture a file; name one --method instead of --both");
   }
+  std::error_code failed;  // then the first file says that there is no such folder
+  std::filesystem::create_directories(options.out.parent_path(), failed);
   const std::string name = options.out.filename().string();
   const std::size_t place = name.find('#');
   Canvas canvas(options.width, options.height);

@@ -168,11 +168,13 @@ class Pen {
     if (strip.mark_length > 0.0) draw_marks(strip, first, pieces);
   }
 
+  /// A mark on several pieces is one path: between two, viewers would show a line.
   void draw_marks(const Strip& strip, const StripPoint* points, const std::vector<Piece>& pieces) {
     set(strip.mark);
     const double inner = fit_.scale * std::max(0.0, strip.half_width - strip.edge_width);
     cairo_set_line_width(cairo_, 2.0 * inner);
     const double spacing = strip.mark_spacing, half = 0.5 * strip.mark_length;
+    bool goes_on = false;  // a mark, on to the next piece
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const double low = points[i].material, high = points[i + 1].material;
       if (high <= low || pieces[i].length == 0.0) continue;
@@ -180,11 +182,14 @@ class Pen {
            mark += spacing) {
         const double from = std::clamp((mark - half - low) / (high - low), 0.0, 1.0);
         const double to = std::clamp((mark + half - low) / (high - low), 0.0, 1.0);
-        cairo_new_path(cairo_);
+        if (goes_on && from > 0.0) cairo_stroke(cairo_);
+        if (!goes_on || from > 0.0) cairo_new_path(cairo_);
         add_piece(pieces[i], from, to);
-        cairo_stroke(cairo_);
+        goes_on = to == 1.0;
+        if (!goes_on) cairo_stroke(cairo_);
       }
     }
+    if (goes_on) cairo_stroke(cairo_);
   }
 
   void draw(const Patch& patch, const std::vector<Vec2>& corners) {

@@ -73,7 +73,8 @@ class PathBuilder {
   struct Span {
     bool drawn = false;
     bool hanging = false;
-    double slack = 0.0;  // m, by which it hangs
+    double slack = 0.0;              // m, by which it hangs
+    std::size_t tail = 0, head = 0;  // the links between which it is drawn
     Catenary curve;
   };
 
@@ -82,10 +83,56 @@ class PathBuilder {
   }
 
   /// A hanging span may take as much off the wrap as the span on its other side has left.
-  SpanEnd span_end(std::size_t i) const {
+  SpanEnd span_end(std::size_t i, double alpha) const {
     const Link& link = cable_.links[i];
     const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
-    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0)};
+    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha};
+  }
+
+  /// Whether segment i is a pinch between two wraps, at one place of the cable.
+  bool joins_wraps(std::size_t i) const {
+    const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
+    return spans_[i].drawn && cable_.segments[i].pinched && from.orientation != 0 &&
+           to.orientation != 0 && from.body != to.body;
+  }
+
+  /// The end of a hanging span on the far side of link `by`, whose wrap is used up, and of the pinch
+  /// on to link `next`: from there on the cable lies on that one. Adds the wrap to `length` (m); where
+  /// the two bodies clip, the span keeps its slack on the longer or shorter way from `far`.
+  SpanEnd pass(std::size_t by, std::size_t next, std::size_t pinch, const Vec2& far,
+               double& length) {
+    length += bounds_[by].head_material - bounds_[by].tail_material;
+    const Segment& join = cable_.segments[pinch];
+    const double to_tail = (join.tail - far).norm(), to_head = (join.head - far).norm();
+    length += next < by ? to_tail - to_head : to_head - to_tail;
+    passed_[by] = true;
+    spans_[pinch].drawn = false;
+    SpanEnd end = span_end(next, cable_.segments[pinch].alpha);
+    end.most_unwrap = 0.0;  // it is pressed on there
+    return end;
+  }
+
+  /// The shape of slack span i, between the bodies that it hangs from. One that is pressed on to
+  /// another and has hardly any wrap lets go of it, and the span hangs from that other.
+  HangingSpan shape(std::size_t i) {
+    Span& span = spans_[i];
+    const Segment& segment = cable_.segments[i];
+    double length = segment.length + span.slack;
+    SpanEnd tail = span_end(span.tail, segment.alpha), head = span_end(span.head, segment.alpha);
+    const HangingSpan straight = hang(tail, head, length, up_);
+    const std::size_t by_tail = span.tail, by_head = span.head;
+    const bool pass_tail = straight.tail_bare && i > 0 && by_tail > 0 && joins_wraps(by_tail);
+    const bool pass_head =
+        straight.head_bare && by_head + 1 < cable_.links.size() && joins_wraps(by_head + 1);
+    if (pass_tail) {
+      span.tail = by_tail - 1;
+      tail = pass(by_tail, span.tail, by_tail, segment.head, length);
+    }
+    if (pass_head) {
+      span.head = by_head + 1;
+      head = pass(by_head, span.head, span.head, segment.tail, length);
+    }
+    return pass_tail || pass_head ? hang(tail, head, length, up_) : straight;
   }
 
   /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
@@ -141,6 +188,7 @@ class PathBuilder {
     const std::size_t count = cable_.links.size();
     bounds_.resize(count);
     spans_.resize(count);
+    passed_.assign(count, false);
     for (std::size_t i = 0; i < count; ++i) {
       const double angle = body_angle(world_, cable_.links[i]);
       bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
@@ -149,26 +197,31 @@ class PathBuilder {
     const std::size_t first = first_segment(cable_);
     for (std::size_t i = first; i < count; ++i) {
       spans_[i].drawn = !cable_.links[tail_link(i)].pinch_middle && !cable_.links[i].pinch_middle;
+      spans_[i].tail = tail_link(i);
+      spans_[i].head = i;
     }
     share_slack();
     for (std::size_t i = first; i < count; ++i) {
-      const Link &from = cable_.links[tail_link(i)], &to = cable_.links[i];
-      const Segment& segment = cable_.segments[i];
       Span& span = spans_[i];
       // A chord of length l and slack d sags by sqrt(3 l d / 8).
-      span.hanging =
-          span.drawn && span.slack * segment.length > 2.0 * smallest_sag_ * smallest_sag_;
-      if (!span.hanging) continue;
-      const HangingSpan shape = hang(span_end(tail_link(i)), span_end(i), segment.alpha,
-                                     segment.length + span.slack, up_);
-      span.curve = shape.curve;
-      Bounds &before = bounds_[tail_link(i)], &after = bounds_[i];
-      const double seam = i == 0 ? cable_.turning : 0.0;
-      before.head_material += from.signed_radius() * (shape.tail_angle + seam - before.head_angle);
-      before.head_angle = shape.tail_angle + seam;
-      after.tail_material += to.signed_radius() * (shape.head_angle - after.tail_angle);
-      after.tail_angle = shape.head_angle;
+      span.hanging = span.drawn &&
+                     span.slack * cable_.segments[i].length > 2.0 * smallest_sag_ * smallest_sag_;
+      if (span.hanging) hang_span(i);
     }
+  }
+
+  void hang_span(std::size_t i) {
+    Span& span = spans_[i];
+    const HangingSpan hung = shape(i);
+    span.curve = hung.curve;
+    Bounds &before = bounds_[span.tail], &after = bounds_[span.head];
+    const double seam = i == 0 ? cable_.turning : 0.0;
+    before.head_material +=
+        cable_.links[span.tail].signed_radius() * (hung.tail_angle + seam - before.head_angle);
+    before.head_angle = hung.tail_angle + seam;
+    after.tail_material +=
+        cable_.links[span.head].signed_radius() * (hung.head_angle - after.tail_angle);
+    after.tail_angle = hung.head_angle;
   }
 
   void add_point(const Vec2& position, const Vec2& tangent, double material) {
@@ -197,9 +250,9 @@ class PathBuilder {
     return overlap.norm() > 0.2 * smallest_sag_ ? overlap : Vec2(Vec2::Zero());
   }
 
-  /// Where two bodies clip, the arcs round them do not meet. Each gives way by half, smoothly,
-  /// along a few widths of cable; what is left at the end of a short arc moves the end of the span
-  /// beyond it.
+  /// Where two bodies clip, the arcs round them do not meet. Both give way, the shorter one by more,
+  /// smoothly, along a few widths of cable; what is left at the end of a short arc moves the end of
+  /// the span beyond it. So the cable does not jump where the one body's wrap begins or ends.
   struct GiveWay {
     Vec2 at_tail = Vec2::Zero(), at_head = Vec2::Zero();  // m, at the ends of the arc
     double length = 0.0, reach = 1.0;                     // m, of the arc; along which it fades
@@ -213,14 +266,26 @@ class PathBuilder {
     }
   };
 
+  /// m, of the arc on link i as it is drawn.
+  double drawn_arc(std::size_t i) const { return cable_.links[i].radius * sweep(i); }
+
+  /// 0 to 1: 1 where the arc on link i is much the shorter one of two.
+  double shorter(std::size_t i, std::size_t other) const {
+    const double most = 4.0 * cable_.half_width;
+    const double mine = std::min(drawn_arc(i), most), its = std::min(drawn_arc(other), most);
+    const double both = mine + its;
+    return both > 0.0 ? its / both : 0.5;
+  }
+
   GiveWay give_way(std::size_t i) const {
     const Link& link = cable_.links[i];
-    if (link.orientation == 0 || link.pinch_middle) return {};
+    if (link.orientation == 0 || link.pinch_middle || passed_[i]) return {};
     const bool last = !cable_.closed && i + 1 == cable_.links.size();
     GiveWay way;
-    way.at_tail = -0.5 * clipped(i);
-    if (!last) way.at_head = 0.5 * clipped((i + 1) % cable_.links.size());
-    way.length = link.radius * std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
+    const std::size_t next = (i + 1) % cable_.links.size();
+    way.at_tail = -shorter(i, tail_link(i)) * clipped(i);
+    if (!last) way.at_head = shorter(i, next) * clipped(next);
+    way.length = drawn_arc(i);
     way.reach = 8.0 * cable_.half_width;
     const bool both = !way.at_tail.isZero(0.0) && !way.at_head.isZero(0.0);
     if (both) way.reach = std::min(way.reach, 0.5 * way.length);
@@ -267,7 +332,7 @@ class PathBuilder {
 
   void add_arc(std::size_t i) {
     const Link& link = cable_.links[i];
-    if (link.orientation == 0 || link.pinch_middle) return;
+    if (link.orientation == 0 || link.pinch_middle || passed_[i]) return;
     if (link.layers.way != 0) return add_layers(i);
     const Bounds& b = bounds_[i];
     const Vec2 centre = link_centre(world_, link);
@@ -304,9 +369,9 @@ class PathBuilder {
   void add_span(std::size_t i) {
     const Span& span = spans_[i];
     if (!span.drawn) return;
-    const double from = bounds_[tail_link(i)].head_material;
-    const double to = bounds_[i].tail_material + (i == 0 ? cable_.length : 0.0);
-    const GiveWay before = give_way(tail_link(i)), after = give_way(i);
+    const double from = bounds_[span.tail].head_material;
+    const double to = bounds_[span.head].tail_material + (i == 0 ? cable_.length : 0.0);
+    const GiveWay before = give_way(span.tail), after = give_way(span.head);
     const Vec2 tail_shift = before.shift(before.length), head_shift = after.shift(0.0);
     if (!span.hanging) {
       // Pinched: nothing lies between the arcs.
@@ -337,6 +402,7 @@ class PathBuilder {
   Vec2 up_;
   std::vector<Bounds> bounds_;
   std::vector<Span> spans_;
+  std::vector<bool> passed_;  // links that a hanging span has let go of
 };
 
 }  // namespace

@@ -57,6 +57,11 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
+    for (const CableState& cable : world_.cables) {
+      for (const Link& link : cable.links) {
+        if (link.layers.way != 0 && link.orientation != 0) add_riser(link, cable.half_width);
+      }
+    }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
     for (const Wall& wall : scene_.walls) {
       picture_.add(line(wall.a, wall.b, 2.5 * scenery_.line(), theme_.fixed.edge));
@@ -113,14 +118,10 @@ class Composer {
   }
 
   void add_anchor_plate(const Anchor& anchor) {
-    const double r = anchor_radius(anchor.half_width);
+    const double r = anchor_radius(scenery_, anchor.half_width);
     const Vec2 across = 1.3 * r * left(anchor.outward),
                foot = anchor.point + 1.1 * r * anchor.outward;
     add_hatched(foot + across, foot - across, 0.65 * r);
-  }
-
-  double anchor_radius(double half_width) const {
-    return std::max(1.7 * half_width, 0.6 * scenery_.unit());
   }
 
   void add_shadows() {
@@ -206,6 +207,45 @@ class Composer {
     }
   }
 
+  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a turn
+  /// is full, by which the first turn climbs on to itself.
+  void add_riser(const Link& link, double half_width) {
+    const auto body = static_cast<std::size_t>(link.body);
+    const auto [fill, edge] = paint_of(body);
+    const Layers& layers = link.layers;
+    const double rim = rim_band(body), inside = scene_.bodies[body].radius - 0.75 * rim;
+    const double start = world_.angle[body] + link.orientation * layers.begins;
+    const auto place = [&](double turned, double radius) {
+      return tangent_point(world_.position[body], link.orientation * radius,
+                           unit_vector(start + layers.way * link.orientation * turned));
+    };
+    constexpr int pieces = 52;
+    constexpr double overlap = 0.1;   // of a piece: where two meet, no line is to show
+    const auto top = [&](double k) {  // the middle of the outline
+      const double turned = turn * k / pieces;
+      return place(turned, layers.radius(turned) - half_width - 0.5 * rim);
+    };
+    for (int k = 0; k < pieces; ++k) {
+      const double to = std::min(k + 1.0 + overlap, 1.0 * pieces);
+      for (const Vec2& corner :
+           {place(turn * k / pieces, inside), place(turn * to / pieces, inside), top(to), top(k)}) {
+        picture_.corners.push_back(corner);
+      }
+      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
+    }
+    Strip outline;
+    outline.first = picture_.points.size();
+    outline.half_width = 0.5 * rim;
+    outline.fill = edge;
+    for (int k = 0; k <= pieces; ++k) {
+      const Vec2 e = unit_vector(start + layers.way * link.orientation * turn * k / pieces);
+      picture_.points.push_back({top(k), layers.way * e, 0.0});
+    }
+    outline.count = picture_.points.size() - outline.first;
+    picture_.add(outline);
+    picture_.add(line(place(turn, inside), picture_.points.back().position, 0.5 * rim, edge));
+  }
+
   /// A pin through what is joined there.
   void add_pin(const Vec2& point) {
     picture_.add(disc(point, 0.75 * scenery_.unit(), theme_.ink));
@@ -279,15 +319,20 @@ class Composer {
     return colour;
   }
 
-  /// What a translucent colour looks like there.
-  Colour on_paper(const Colour& colour) const {
-    const Colour below = paper();
-    const auto mix = [&colour](int above, int under) {
-      return static_cast<std::uint8_t>((above * colour.alpha + under * (255 - colour.alpha) + 127) /
+  /// A colour as it looks on the background, opaque.
+  Colour over_paper(Colour colour) const {
+    const Colour page = paper();
+    const auto mixed = [&colour](std::uint8_t top, std::uint8_t below) {
+      return static_cast<std::uint8_t>((top * colour.alpha + below * (255 - colour.alpha) + 127) /
                                        255);
     };
-    return {mix(colour.red, below.red), mix(colour.green, below.green),
-            mix(colour.blue, below.blue), 255};
+    return {mixed(colour.red, page.red), mixed(colour.green, page.green),
+            mixed(colour.blue, page.blue), 255};
+  }
+
+  /// m, how wide a body's outline is.
+  double rim_band(std::size_t i) const {
+    return std::min(0.09 * inner_radius(scene_.bodies[i]), 4.0 * scenery_.line());
   }
 
   Paint paint_of(std::size_t i) const {
@@ -385,7 +430,7 @@ class Composer {
   /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.
   void add_compound(std::size_t i) {
     const auto [given, edge] = paint_of(i);
-    const Colour fill = on_paper(given);
+    const Colour fill = over_paper(given);
     const std::vector<int> shapes = outlines_of(scene_, static_cast<int>(i));
     double smallest = infinity, largest = 0.0;
     for (const int s : shapes) {
@@ -410,7 +455,7 @@ class Composer {
     const double r = inner_radius(body), angle = world_.angle[i];
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
     const auto [fill, edge] = paint_of(i);
-    const double band = std::min(0.09 * r, 4.0 * scenery_.line());
+    const double band = rim_band(i);
     add_outline(i, band, fill, edge);
     if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
 
@@ -438,7 +483,7 @@ class Composer {
       if (link->body >= 0) {
         picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
       } else {
-        const double r = anchor_radius(cable.half_width);
+        const double r = anchor_radius(scenery_, cable.half_width);
         picture_.add(disc(link->offset, r, theme_.ink));
         picture_.add(disc(link->offset, 0.4 * r, paper()));
       }
@@ -502,10 +547,14 @@ void compose(const Scene& scene, const Scenery& scenery, const World& world, Pic
   Composer(scene, scenery, world, picture).run();
 }
 
-Label time_label(const Scenery& scenery, double time) {
+Label time_label(const Scenery& scenery, double time, double aspect) {
+  // The view is fitted into the frame, with room at two sides.
+  const Vec2 middle = 0.5 * (scenery.view.low + scenery.view.high);
+  const Vec2 view = 0.5 * (scenery.view.high - scenery.view.low);
+  const Vec2 half(std::max(view.x(), aspect * view.y()), std::max(view.y(), view.x() / aspect));
   const double text = scenery.text();
-  return {scenery.view.low + Vec2(2.6 * text, 1.2 * text), text, fmt::format("{:6.3f} s", time),
-          scenery.theme.ink};
+  const Vec2 corner = middle + Vec2(-half.x(), half.y());
+  return {corner + text * Vec2(2.6, -1.2), text, fmt::format("{:6.3f} s", time), scenery.theme.ink};
 }
 
 }  // namespace pinchlab

@@ -95,40 +95,40 @@ double Catenary::arc_at_turn(double share) const {
   return share <= 0.0 ? 0.0 : share >= 1.0 ? length_ : std::clamp(s, 0.0, length_);
 }
 
-HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double rest_length,
-                 const Vec2& up) {
+HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double rest_length, const Vec2& up) {
   // The angles at which the cable leaves and arrives must be those of the curve between the points
   // where it does. Moving such a point along its circle leaves the slack unchanged to first order,
-  // so plain substitution converges quickly; damping keeps it safe where the slack is large.
-  HangingSpan span{alpha, alpha, {}};
-  const auto limited = [alpha](const SpanEnd& end, double angle, double wrap_sense) {
-    if (end.signed_radius == 0.0) return angle;
-    const double grow = wrap_sense * std::copysign(1.0, end.signed_radius) * (angle - alpha);
-    const double kept = std::clamp(grow, -end.most_unwrap, std::numbers::pi);
-    return alpha + wrap_sense * std::copysign(1.0, end.signed_radius) * kept;
+  // so plain substitution converges quickly; where the slack is large it swings, and smaller steps
+  // are taken as soon as it does.
+  HangingSpan span{tail.alpha, head.alpha, false, false, {}};
+  // The angle of the curve's end, as far as the circle lets it, and whether it lets it unwrap.
+  const auto limited = [](const SpanEnd& end, const Vec2& tangent, double wrap_sense, bool& bare) {
+    const Vec2 e = unit(end.alpha);
+    const double turned = std::atan2(cross(e, tangent), e.dot(tangent));
+    if (end.signed_radius == 0.0) return end.alpha + turned;
+    const double sense = wrap_sense * std::copysign(1.0, end.signed_radius), grow = sense * turned;
+    bare = grow < -end.most_unwrap;
+    return end.alpha + sense * std::clamp(grow, -end.most_unwrap, std::numbers::pi);
   };
-  constexpr int most_rounds = 60;
-  constexpr double damping = 0.7, close_enough = 1e-9;
+  constexpr int most_rounds = 200;
+  constexpr double close_enough = 1e-9;
+  double damping = 0.7, last_change = 2.0 * std::numbers::pi;
   for (int round = 0;; ++round) {
     const Vec2 e_tail = unit(span.tail_angle), e_head = unit(span.head_angle);
     const Vec2 from = tangent_point(tail.centre, tail.signed_radius, e_tail);
     const Vec2 to = tangent_point(head.centre, head.signed_radius, e_head);
-    const double length = rest_length - tail.signed_radius * (span.tail_angle - alpha) +
-                          head.signed_radius * (span.head_angle - alpha);
+    const double length = rest_length - tail.signed_radius * (span.tail_angle - tail.alpha) +
+                          head.signed_radius * (span.head_angle - head.alpha);
     span.curve = Catenary(from, to, length, up);
-    const auto turned = [alpha](const Vec2& t) {  // rad, from alpha to t
-      const Vec2 e = unit(alpha);
-      return std::atan2(cross(e, t), e.dot(t));
-    };
-    const double tail_angle = limited(tail, alpha + turned(span.curve.tangent(0.0)), 1.0);
+    const double tail_angle = limited(tail, span.curve.tangent(0.0), 1.0, span.tail_bare);
     const double head_angle =
-        limited(head, alpha + turned(span.curve.tangent(span.curve.length())), -1.0);
+        limited(head, span.curve.tangent(span.curve.length()), -1.0, span.head_bare);
     const double tail_change = tail.signed_radius != 0.0 ? tail_angle - span.tail_angle : 0.0;
     const double head_change = head.signed_radius != 0.0 ? head_angle - span.head_angle : 0.0;
-    if (round == most_rounds ||
-        std::max(std::abs(tail_change), std::abs(head_change)) < close_enough) {
-      return span;
-    }
+    const double change = std::max(std::abs(tail_change), std::abs(head_change));
+    if (round == most_rounds || change < close_enough) return span;
+    if (change > 0.9 * last_change) damping = std::max(0.5 * damping, 0.02);
+    last_change = change;
     span.tail_angle += damping * tail_change;
     span.head_angle += damping * head_change;
   }

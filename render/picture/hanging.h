@@ -34,19 +34,19 @@ struct SpanEnd {
   Vec2 centre = Vec2::Zero();  // m
   double signed_radius = 0.0;  // m, orientation * (body radius + half width)
   double most_unwrap = 0.0;    // rad >= 0, by how much the wrap may shrink
+  double alpha = 0.0;          // rad, the direction of the straight tangent there
 };
 
 /// A span's shape between two ends. The cable leaves the first circle in direction `tail_angle` and
 /// meets the second one in direction `head_angle` (rad); the wraps grow or shrink accordingly.
 struct HangingSpan {
   double tail_angle = 0.0, head_angle = 0.0;
+  bool tail_bare = false, head_bare = false;  // no wrap is left there, and the cable wants away
   Catenary curve;
 };
 
-/// The shape of a span whose straight tangent has the direction `alpha` (rad) and whose material
-/// measures `rest_length` m between the straight tangent's points. Material on the circles stays
-/// where it is.
-HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double alpha, double rest_length,
-                 const Vec2& up);
+/// The shape of a span whose material measures `rest_length` m between the points of both ends at
+/// which the cable runs in the directions `alpha`. Material on the circles stays where it is.
+HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double rest_length, const Vec2& up);
 
 }  // namespace pinchlab

@@ -175,9 +175,15 @@ void Rehearsal::fit_view() {
   scenery_.view = {all_.low - Vec2::Constant(margin), all_.high + Vec2::Constant(margin)};
 }
 
-/// The same for labels, once they have their places.
+/// The same for labels, once they have their places, and for the plates that hold anchors.
 void Rehearsal::fit_labels() {
   Box frame{scenery_.view.low, scenery_.view.high};
+  for (const Anchor& anchor : scenery_.anchors) {
+    const double r = anchor_radius(scenery_, anchor.half_width);
+    const Vec2 foot = anchor.point + 1.1 * r * anchor.outward;
+    for (const double side : {-1.3, 1.3})
+      frame.add(foot + side * r * left(anchor.outward), 0.5 * r);
+  }
   for (const SceneryLabel& label : scenery_.labels) {
     const Box box = label_box(label);
     for (const Snapshot& snapshot : snapshots_) {
@@ -368,6 +374,10 @@ void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
 }
 
 }  // namespace
+
+double anchor_radius(const Scenery& scenery, double half_width) {
+  return std::max(1.7 * half_width, 0.6 * scenery.unit());
+}
 
 double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body) {
   return scene.bodies[body].radius + widest_cable(scene) + scenery.fullest[body] +

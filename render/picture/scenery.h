@@ -60,6 +60,9 @@ using OnStep = std::function<void(const World& world)>;
 Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
                     std::span<const Configuration> configurations, const OnStep& on_step = {});
 
+/// m, of the ring that holds a cable's end in the world.
+double anchor_radius(const Scenery& scenery, double half_width);
+
 /// m from a driven body's centre to its arrow, outside of its rim and of the cables round it.
 double arrow_radius(const Scene& scene, const Scenery& scenery, std::size_t body);
 

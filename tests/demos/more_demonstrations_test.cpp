@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "demos/scenes/scene_json.h"
 #include "render/picture/compose.h"
+#include "sim/cable/tangent.h"
 #include "sim/promises.h"
 #include "sim/step.h"
 
@@ -35,10 +39,50 @@ TEST(MoreDemonstrations, KeepEveryPromiseAndCanBeDrawn) {
     for (const Body& body : scene.bodies) {
       if (!body.corners.empty()) patches += body.carrier < 0 ? 1U : 2U;
     }
-    EXPECT_EQ(picture.patches.size(), patches);
+    std::size_t risers = 0;
+    for (const CableState& cable : world.cables) risers += cable.fills ? 1U : 0U;
+    EXPECT_EQ(picture.patches.size(), patches + 52 * risers);
     EXPECT_FALSE(picture.strips.empty());
   }
   EXPECT_GE(count, 1);
+}
+
+// The first turn on a drum that fills lies on the drum's riser, all the way: no paper between.
+TEST(MoreDemonstrations, TheFirstTurnOfADrumLiesOnItsRiser) {
+  const SceneFile file = read_scene_file(PINCHLAB_SOURCE_DIR "/demos/more/10-drum.json");
+  const Scene& scene = file.scene;
+  World world = make_world(scene, Method::pinch);
+  Workspace work;
+  const Scenery scenery = set_scenery(scene, file.look);
+  for (int frame = 0; frame < scene.frame_count; ++frame) {
+    for (int i = 0; i < scene.steps_per_frame; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    }
+    Picture picture;
+    compose(scene, scenery, world, picture);
+    const Strip &riser = picture.strips[0], &rope = picture.strips[1];
+    const Vec2 drum = world.position[0];
+    // From the rope's end on the drum back, but for the riser's step.
+    double turned = 0.0;
+    for (std::size_t k = rope.first + rope.count - 1; k > rope.first && turned < 6.0; --k) {
+      const Vec2 here = picture.points[k].position - drum;
+      const Vec2 next = picture.points[k - 1].position - drum;
+      const double step = std::atan2(cross(here, next), here.dot(next));
+      if (here.norm() > 2.0 * scene.bodies[0].radius || std::abs(step) < 1e-9) break;
+      double nearest = infinity, top = 0.0;
+      for (std::size_t r = riser.first; r < riser.first + riser.count; ++r) {
+        const Vec2 below = picture.points[r].position - drum;
+        const double aside = std::abs(std::atan2(cross(here, below), here.dot(below)));
+        if (aside < nearest) top = below.norm() + riser.half_width;
+        nearest = std::min(nearest, aside);
+      }
+      // The riser's points are a 52nd of a turn apart.
+      if (turned > 0.2) {
+        EXPECT_NEAR(here.norm() - rope.half_width, top, 0.05 * rope.half_width) << frame;
+      }
+      turned += std::abs(step);
+    }
+  }
 }
 
 }  // namespace

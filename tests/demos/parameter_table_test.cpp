@@ -69,6 +69,9 @@ TEST(ParameterTable, RangesGiveAllCombinations) {
   EXPECT_EQ(table.rows,
             (Rows{{"0", "a"}, {"0", "b"}, {"0.5", "a"}, {"0.5", "b"}, {"1", "a"}, {"1", "b"}}));
   EXPECT_EQ(table_of_ranges({"x=0:0.3:4"}).rows.back(), (std::vector<std::string>{"0.3"}));
+  // Values are what a person would write, not sums of doubles: they become labels and names.
+  EXPECT_EQ(table_of_ranges({"w=0.01:0.09:5"}).rows,
+            (Rows{{"0.01"}, {"0.03"}, {"0.05"}, {"0.07"}, {"0.09"}}));
 }
 
 TEST(ParameterTable, RangesMustBeRanges) {

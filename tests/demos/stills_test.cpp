@@ -48,19 +48,19 @@ TEST(Still, WritesWhatTheEndingSays) {
 TEST(Still, EveryFrameOfAPartBecomesAFile) {
   const fs::path folder = folder_with_scene();
   const RunResult run = run_program(folder, {"still", "01-small.json", "--time", "0.5:0.6",
-                                             "--size", "64x64", "--out", "f-#.png"});
+                                             "--size", "64x64", "--out", "made/f-#.png"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   for (const char* name : {"f-00015.png", "f-00016.png", "f-00017.png", "f-00018.png"}) {
-    EXPECT_TRUE(fs::exists(folder / name)) << name;
+    EXPECT_TRUE(fs::exists(folder / "made" / name)) << name;
   }
-  EXPECT_FALSE(fs::exists(folder / "f-00019.png"));
-  EXPECT_NE(text_of(folder / "f-00015.png"), text_of(folder / "f-00016.png"));
+  EXPECT_FALSE(fs::exists(folder / "made" / "f-00019.png"));
+  EXPECT_NE(text_of(folder / "made" / "f-00015.png"), text_of(folder / "made" / "f-00016.png"));
   // The same frame as a still of its own.
   ASSERT_EQ(run_program(folder, {"still", "01-small.json", "--time", "0.5", "--size", "64x64",
                                  "--out", "one.png"})
                 .exit_code,
             0);
-  EXPECT_EQ(text_of(folder / "one.png"), text_of(folder / "f-00015.png"));
+  EXPECT_EQ(text_of(folder / "one.png"), text_of(folder / "made" / "f-00015.png"));
   for (const char* time : {"0.6:0.5", "0:9", "0:", ":1", "a"}) {
     EXPECT_EQ(
         run_program(folder, {"still", "01-small.json", "--time", time, "--out", "x.png"}).exit_code,

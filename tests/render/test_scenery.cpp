@@ -148,6 +148,28 @@ TEST(Scenery, ThemeAndLooksReachThePicture) {
   EXPECT_EQ(std::count_if(picture.strokes.begin(), picture.strokes.end(), green), 1);
 }
 
+// A mark that lies on two pieces of a cable is one shape: between two, viewers show a light line.
+TEST(Vector, AMarkIsOnePath) {
+  const TemporaryFolder folder;
+  Picture picture;
+  picture.view = {{-1.0, -1.0}, {3.0, 3.0}};
+  Strip strip;
+  strip.half_width = 0.1;
+  strip.fill = {200, 200, 200, 255};
+  strip.mark = {255, 0, 0, 255};
+  strip.mark_spacing = 1.0;  // marks about 0, 1 and 2: the pieces meet at 1
+  strip.mark_length = 0.5;
+  for (const double x : {0.0, 1.0, 2.0}) picture.points.push_back({{x, 0.0}, {1.0, 0.0}, x});
+  strip.count = picture.points.size();
+  picture.add(strip);
+  write_vector(folder.file("marks.svg"), VectorFormat::svg, 100, 100, {{picture, ""}});
+  const auto raw = testing::bytes_of(folder.file("marks.svg"));
+  const std::string svg(raw.begin(), raw.end()), red = "stroke:rgb(100%,0%,0%)";
+  int marks = 0;
+  for (std::size_t at = svg.find(red); at != std::string::npos; at = svg.find(red, at + 1)) ++marks;
+  EXPECT_EQ(marks, 3);
+}
+
 TEST(Vector, SvgAndPdfAreTheSameTwice) {
   const Scene scene = short_atwood();
   Picture picture;

@@ -402,6 +402,19 @@ TEST(Compose, ReusedPictureHoldsNothingOld) {
   EXPECT_EQ(picture.labels.size(), fresh.labels.size());
 }
 
+TEST(Compose, TheTimeStandsInTheFramesCorner) {
+  const Scene scene = atwood();
+  Scenery scenery = set_scenery(scene);
+  scenery.view = {{-1.0, -2.0}, {3.0, 2.0}};
+  const Vec2 offset = scenery.text() * Vec2(2.6, -1.2);  // from the frame's upper left corner
+  EXPECT_NEAR((time_label(scenery, 1.5, 1.0).centre - offset - Vec2(-1.0, 2.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((time_label(scenery, 1.5, 0.5).centre - offset - Vec2(-1.0, 4.0)).norm(), 0.0, 1e-12)
+      << "portrait: room above";
+  EXPECT_NEAR((time_label(scenery, 1.5, 2.0).centre - offset - Vec2(-3.0, 2.0)).norm(), 0.0, 1e-12)
+      << "landscape: room at the left";
+  EXPECT_EQ(time_label(scenery, 1.5, 1.0).text, " 1.500 s");
+}
+
 // One band for all pieces, with marks along all of it, and nothing for the nodes.
 TEST(Compose, CablesWithMassAreOneBand) {
   Scene scene;

@@ -95,7 +95,7 @@ TEST(HangingSpan, LeavesAndMeetsTheBodiesAlongTheirTangents) {
   const double alpha = std::atan2(d.y(), d.x());
   for (const double slack : {1e-8, 1e-4, 0.02, 0.3, 1.0}) {
     const double rest = d.norm() + slack;
-    const HangingSpan span = hang({a, -R, 1.0}, {b, -R, 1.0}, alpha, rest, up);
+    const HangingSpan span = hang({a, -R, 1.0, alpha}, {b, -R, 1.0, alpha}, rest, up);
     const double length = span.curve.length();
     const Vec2 leaves = span.curve.tangent(0.0), meets = span.curve.tangent(length);
     EXPECT_NEAR(std::remainder(std::atan2(leaves.y(), leaves.x()) - span.tail_angle,
@@ -120,7 +120,8 @@ TEST(HangingSpan, MovesContinuouslyWithTheSlack) {
   Vec2 last(0.0, 0.0);
   for (int k = 0; k <= 2000; ++k) {
     const double slack = 0.5 * std::pow(k / 2000.0, 2.0);  // the sag grows as its root
-    const HangingSpan span = hang({a, -0.4, 0.5}, {b, 0.0, 0.0}, alpha, taut.length + slack, up);
+    const HangingSpan span =
+        hang({a, -0.4, 0.5, alpha}, {b, 0.0, 0.0, alpha}, taut.length + slack, up);
     const Vec2 middle = span.curve.point(0.5 * span.curve.length());
     if (k > 0) {
       EXPECT_LT((middle - last).norm(), 2e-3) << slack;
@@ -129,10 +130,28 @@ TEST(HangingSpan, MovesContinuouslyWithTheSlack) {
   }
 }
 
+TEST(HangingSpan, ConvergesWithMuchSlackBetweenBodiesThatMeet) {
+  // Two pulleys of a stack that falls together: a third more rope than way between them.
+  constexpr double R = 0.213835;
+  const Vec2 below(0.0, 0.0), above(0.0, 0.517);
+  const Tangent taut = common_tangent(below, R, above, -R);
+  const double alpha = std::atan2(taut.direction.y(), taut.direction.x());
+  const HangingSpan span =
+      hang({below, R, 2.5, alpha}, {above, -R, 2.5, alpha}, 1.4 * taut.length, up);
+  const double length = span.curve.length();
+  const Vec2 leaves = span.curve.tangent(0.0), meets = span.curve.tangent(length);
+  EXPECT_NEAR(cross(leaves, Vec2(std::cos(span.tail_angle), std::sin(span.tail_angle))), 0.0, 1e-7);
+  EXPECT_NEAR(cross(meets, Vec2(std::cos(span.head_angle), std::sin(span.head_angle))), 0.0, 1e-7);
+  EXPECT_GT(span.tail_angle, std::numbers::pi) << "the rope lies over the lower pulley's top";
+}
+
 TEST(HangingSpan, UnwrapsNoMoreThanThereIs) {
   // The cable runs under the body, so a sagging span pulls away from it: only as far as allowed.
-  const HangingSpan span = hang({{0.0, 0.0}, 0.3, 0.05}, {{2.0, -0.3}, 0.0, 0.0}, 0.0, 2.6, up);
+  const HangingSpan span =
+      hang({{0.0, 0.0}, 0.3, 0.05, 0.0}, {{2.0, -0.3}, 0.0, 0.0, 0.0}, 2.6, up);
   EXPECT_NEAR(span.tail_angle, -0.05, 1e-9);
+  EXPECT_TRUE(span.tail_bare);
+  EXPECT_FALSE(span.head_bare);
 }
 
 }  // namespace
