@@ -69,13 +69,12 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
 void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& broad) {
   const double allowed = overlap_allowed(scene);
   for (const BodyPair& pair : broad.body_pairs) {
-    const Body &a = scene.bodies[static_cast<std::size_t>(pair.a)],
-               &b = scene.bodies[static_cast<std::size_t>(pair.b)];
+    const Body &a = at(scene.bodies, pair.a), &b = at(scene.bodies, pair.b);
     const double gap = is_polygon(a) || is_polygon(b)
                            ? separation(world, pair.a, pair.b)
                            : (b.position - a.position).norm() - a.radius - b.radius;
     if (gap < -allowed) {
-      throw SceneError(pointer("bodies", static_cast<std::size_t>(pair.b)),
+      throw SceneError(pointer("bodies", index(pair.b)),
                        fmt::format("body '{}' overlaps body '{}' by {}; move them apart", b.name,
                                    a.name, in_mm(-gap)));
     }
@@ -98,11 +97,11 @@ void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& b
 void refuse_cables_through_bodies(const Scene& scene, const World& world, const BroadPhase& broad) {
   const double allowed = overlap_allowed(scene);
   for (const SpanPair& pair : broad.span_pairs) {
-    const CableState& cable = world.cables[static_cast<std::size_t>(pair.cable)];
-    const Segment& segment = cable.segments[static_cast<std::size_t>(pair.segment)];
-    const Body& body = scene.bodies[static_cast<std::size_t>(pair.body)];
-    const auto segment_number = static_cast<std::size_t>(pair.segment);
-    const auto tail = static_cast<std::size_t>(previous_link(cable, pair.segment));
+    const CableState& cable = at(world.cables, pair.cable);
+    const Segment& segment = at(cable.segments, pair.segment);
+    const Body& body = at(scene.bodies, pair.body);
+    const auto segment_number = index(pair.segment);
+    const auto tail = index(previous_link(cable, pair.segment));
     if (cable.links[segment_number].body == pair.body || cable.links[tail].body == pair.body)
       continue;
     const Wall line{segment.tail, segment.head};
@@ -112,7 +111,7 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
     const double overlap = rim_radius(body) + cable.half_width - distance;
     if (overlap > allowed) {
       throw SceneError(
-          pointer("cables", static_cast<std::size_t>(pair.cable)),
+          pointer("cables", index(pair.cable)),
           fmt::format("the cable runs through body '{}' ({} deep) on its way to {}; add the body "
                       "to the cable's wraps or move it",
                       body.name, in_mm(overlap),
@@ -125,10 +124,9 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
   const double allowed = overlap_allowed(scene);
   for (const Contact& contact : world.contacts) {
     if (contact.gap < contact.target - allowed) {
-      const Body &a = scene.bodies[static_cast<std::size_t>(contact.a)],
-                 &b = scene.bodies[static_cast<std::size_t>(contact.b)];
+      const Body &a = at(scene.bodies, contact.a), &b = at(scene.bodies, contact.b);
       throw SceneError(
-          pointer("bodies", static_cast<std::size_t>(contact.b)),
+          pointer("bodies", index(contact.b)),
           fmt::format(
               "body '{}' squeezes a cable on body '{}': the gap is {} and the cable {} wide; "
               "move them apart",

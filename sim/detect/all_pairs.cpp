@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/detect/all_pairs.h"
 
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/workspace.h"
 
@@ -23,12 +24,12 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
   const int count = static_cast<int>(world.bodies.size());
   const int walls = static_cast<int>(scene.walls.size());
   for (int a = 0; a < count; ++a) {
-    const auto i = static_cast<std::size_t>(a);
+    const auto i = index(a);
     const Box box = broad.boxes[i];
     if (!world.bodies[i].outlined) continue;
     for (int w = 0; w < walls; ++w) broad.wall_pairs.push_back({a, w});
     for (int b = a + 1; b < count; ++b) {
-      const auto j = static_cast<std::size_t>(b);
+      const auto j = index(b);
       if (!overlap(box, broad.boxes[j])) continue;
       if (never_touch(world.bodies[i], world.bodies[j])) continue;
       broad.body_pairs.push_back({a, b});
@@ -47,7 +48,7 @@ void find_all_span_pairs(const World& world, Workspace& work) {
       if (is_passed(cable)) continue;
       const Box box = span_box(cable.segments[s]);
       for (int b = 0; b < count; ++b) {
-        const auto i = static_cast<std::size_t>(b);
+        const auto i = index(b);
         if (!overlap(box, broad.boxes[i]) || !meets_spans(world.bodies[i])) continue;
         broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), b});
       }

@@ -32,8 +32,8 @@ double reach(const Scene& scene, const World& world, double speed, double radius
 }
 
 double normal_speed(const World& world, const Contact& contact) {
-  Vec2 v = -world.velocity[static_cast<std::size_t>(contact.a)];
-  if (contact.b >= 0) v += world.velocity[static_cast<std::size_t>(contact.b)];
+  Vec2 v = -at(world.velocity, contact.a);
+  if (contact.b >= 0) v += at(world.velocity, contact.b);
   return contact.normal.dot(v);
 }
 
@@ -52,7 +52,7 @@ bool presses(const World& world, const CableState& cable, const Contact& contact
 Contact* find_contact(World& world, int body, int other, int hint) {
   const int a = std::min(body, other), b = std::max(body, other);
   if (hint >= 0 && hint < static_cast<int>(world.contacts.size())) {
-    Contact& contact = world.contacts[static_cast<std::size_t>(hint)];
+    Contact& contact = at(world.contacts, hint);
     if (contact.a == a && contact.b == b) return &contact;
   }
   const auto it = std::lower_bound(
@@ -83,8 +83,8 @@ bool over_adjacent_span(const World& world, const CableState& cable, const Conta
   const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
   for (const auto& [s, far_end] : {std::pair(static_cast<int>(i), before), {after, after}}) {
-    if (holds_span(world, cable, cable.links[static_cast<std::size_t>(far_end)], other)) continue;
-    const Segment& segment = cable.segments[static_cast<std::size_t>(s)];
+    if (holds_span(world, cable, at(cable.links, far_end), other)) continue;
+    const Segment& segment = at(cable.segments, s);
     if (is_side(cable.links[i], at(cable.links, far_end))) continue;
     const Vec2 x = place - segment.tail;
     const double along = segment.direction.dot(x);
@@ -100,7 +100,7 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
   const Link& link = cable.links[i];
   const int after = next_link(cable, static_cast<int>(i));
   const Vec2& arrives = cable.segments[i].direction;
-  const Vec2& leaves = cable.segments[static_cast<std::size_t>(after)].direction;
+  const Vec2& leaves = at(cable.segments, after).direction;
   const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
   const double after_tail = link.orientation * cross(arrives, e);
   const double before_head = link.orientation * cross(e, leaves);
@@ -147,14 +147,14 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
   const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
   const auto is_other = [&](int neighbour) {
-    return neighbour >= 0 && cable.links[static_cast<std::size_t>(neighbour)].body == other &&
-           opposite(cable.links[static_cast<std::size_t>(neighbour)], link);
+    return neighbour >= 0 && at(cable.links, neighbour).body == other &&
+           opposite(at(cable.links, neighbour), link);
   };
   constexpr double near_end = 1.0;  // rad; turns lie 2 pi apart
   const bool after_other = is_other(before), before_other = is_other(after);
   const bool few = link.wrap < std::numbers::pi;  // less than half a turn: no other turn is near
   if (few && ((after_other && cable.segments[i].pinched) ||
-              (before_other && cable.segments[static_cast<std::size_t>(after)].pinched))) {
+              (before_other && at(cable.segments, after).pinched))) {
     return;  // the pinch is there
   }
   if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, contact, i, other)) {
@@ -189,9 +189,9 @@ void remove_open_pinches(World& world, const Parts& parts) {
     if (sleeps(parts, c)) continue;
     CableState& cable = world.cables[c];
     for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
-      const Link& link = cable.links[static_cast<std::size_t>(i)];
+      const Link& link = at(cable.links, i);
       if (!link.pinch_middle) continue;
-      const int pressed = cable.links[static_cast<std::size_t>(previous_link(cable, i))].body;
+      const int pressed = at(cable.links, previous_link(cable, i)).body;
       const Contact* contact = find_contact(world, link.body, pressed, link.contact);
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
@@ -397,15 +397,15 @@ void assign_contacts(World& world, const Workspace& work) {
   for (const Part& part : parts.list) {
     if (part.kept) continue;
     for (const int i : contacts_of(parts, part)) {
-      world.contacts[static_cast<std::size_t>(i)].pinch_points = 0;
+      at(world.contacts, i).pinch_points = 0;
     }
   }
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (parts.list[static_cast<std::size_t>(parts.of_cable[c])].kept) continue;
+    if (at(parts.list, parts.of_cable[c]).kept) continue;
     CableState& cable = world.cables[c];
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       Link& to = cable.links[s];
-      const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)));
+      const auto tail = index(previous_link(cable, static_cast<int>(s)));
       const Link& from = cable.links[tail];
       Segment& segment = cable.segments[s];
       const int hint = to.pinch_middle ? to.contact : segment.contact;

@@ -57,8 +57,8 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   const int tail = previous_link(cable, head);
   const int before = previous_link(cable, tail), after = next_link(cable, head);
   const auto beside = [&](int link, int neighbour) {
-    return neighbour >= 0 && cable.links[static_cast<std::size_t>(neighbour)].body == body &&
-           cable.links[static_cast<std::size_t>(link)].wrap < near_end;
+    return neighbour >= 0 && at(cable.links, neighbour).body == body &&
+           at(cable.links, link).wrap < near_end;
   };
   return beside(tail, before) || beside(head, after);
 }
@@ -70,8 +70,7 @@ bool just_left(const World& world, const Workspace& work, const CableState& cabl
   const bool fresh = segment.previous_tail == segment.tail && segment.previous_head == segment.head;
   if (!fresh) return false;
   for (const Release& release : work.released) {
-    if (&world.cables[static_cast<std::size_t>(release.cable)] == &cable && release.body == body)
-      return true;
+    if (&at(world.cables, release.cable) == &cable && release.body == body) return true;
   }
   return false;
 }
@@ -226,8 +225,8 @@ void add_hit_links(World& world, const Workspace& work) {
            pairs[begin - 1].segment == pairs[end - 1].segment) {
       --begin;
     }
-    CableState& cable = world.cables[static_cast<std::size_t>(pairs[begin].cable)];
-    const auto first = static_cast<std::size_t>(pairs[begin].segment);
+    CableState& cable = at(world.cables, pairs[begin].cable);
+    const auto first = index(pairs[begin].segment);
     std::size_t added = 0;
     // Of all hits take the earliest, then test the rest against the parts of the span. A body gets
     // at most one link a span and step, so there are at most end - begin rounds.
