@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -94,6 +95,7 @@ double potential_energy(const Scene& scene, const World& world) {
       if (!cable.rod) stretch = std::max(stretch, 0.0);
       energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
     }
+    if (cable.creeps) energy += energy_carried(world, cable, stiffness);
   }
   return energy;
 }
@@ -120,8 +122,7 @@ void measure_cables(const Scene& scene, World& world) {
     const CableState& cable = world.cables[c];
     double length = 0.0;
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
-      const Link& link = cable.links[i];
-      length += stored_length(link);
+      length += wrapped_material(world, cable, i);
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
       length += segment.rest_length;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/diagnostics.h"
 
 namespace pinchlab {
@@ -69,7 +70,7 @@ void Promises::note_cables(const Scene& scene, const World& world) {
     const CableState& cable = world.cables[c];
     double length = 0.0, excess = 0.0;
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
-      length += stored_length(cable.links[i]);
+      length += wrapped_material(world, cable, i);
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
       length += segment.rest_length;

@@ -232,10 +232,44 @@ ChainCost cost_of_chain(const Effort& effort) {
   return cost;
 }
 
+struct Creep {
+  int steps_per_frame = 0;
+  double taut = 0.0, slack = 0.0;  // N
+  double loss = 0.0, known = 0.0;  // of the rim's speed; by the ratio of strains
+};
+
+/// Over a second, after eleven.
+Creep creep(int steps_per_frame) {
+  constexpr double radius = 0.35;
+  const Scene scene = belt_drive(radius, 150.0, 101.0, steps_per_frame);
+  const World before = run(scene, 11.0).world;
+  World world = before;
+  Workspace work;
+  const int steps = scene.frames_per_second * steps_per_frame;
+  Creep result;
+  result.steps_per_frame = steps_per_frame;
+  for (int i = 0; i < steps; ++i) {
+    if (step(scene, world, work) != StepStatus::ok) throw std::runtime_error(world.failure);
+    const std::vector<Segment>& spans = world.cables[0].segments;
+    result.taut += std::max(spans[0].tension, spans[1].tension) / steps;
+    result.slack += std::min(spans[0].tension, spans[1].tension) / steps;
+  }
+  const double driver = (world.angle[0] - before.angle[0]) * (0.2 + belt_half_width);
+  const double driven = (world.angle[1] - before.angle[1]) * (radius + belt_half_width);
+  result.loss = 1.0 - driven / driver;
+  result.known = 1.0 - (1.0 + result.slack / belt_stiffness) / (1.0 + result.taut / belt_stiffness);
+  return result;
+}
+
 std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Polygon>& polygons,
                       const std::vector<Hanging>& hanging, const std::vector<Fall>& falls,
-                      const ChainCost& cost) {
-  std::vector<std::vector<std::string>> polygon_rows, hanging_rows, fall_rows;
+                      const std::vector<Creep>& creeps, const ChainCost& cost) {
+  std::vector<std::vector<std::string>> polygon_rows, hanging_rows, fall_rows, creep_rows;
+  for (const Creep& c : creeps) {
+    creep_rows.push_back({fmt::format("{}", c.steps_per_frame), fmt::format("{:.3f}", c.taut),
+                          fmt::format("{:.3f}", c.slack), fmt::format("{:.7f} %", 100.0 * c.loss),
+                          fmt::format("{:.1e}", std::abs(c.loss - c.known))});
+  }
   for (const Polygon& p : polygons) {
     polygon_rows.push_back({fmt::format("{}", p.corners), fmt::format("{:.2e}", p.error_m),
                             fmt::format("{:.2f}", p.error_m * p.corners * p.corners)});
@@ -269,6 +303,10 @@ std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Poly
       "at 64 steps a frame. If no energy is lost it is 0.847213 (Calkin & March 1989, Am. J. Phys. "
       "57:154), less than the "
       "1 of a free fall.\n\n{}\n"
+      "## A belt that creeps\n\nA belt of EA = 10 kN between a driven pulley and one that is "
+      "braked: the rim of the driven one loses 1 - (1 + T2 / EA) / (1 + T1 / EA) of its speed, "
+      "since each "
+      "rim carries over what it has taken with the strain that it had there.\n\n{}\n"
       "## Cost\n\nA step of a swinging cable of 100 nodes: {}, {:.1f} times the {} of a bare pass "
       "(directions, a "
       "tridiagonal matrix, its elimination, speeds; nothing else).\n",
@@ -279,6 +317,8 @@ std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Poly
       markdown_table(
           {"pieces N", "time, of sqrt(2 L / g)", "(time - 0.847213) N", "energy made, J"},
           fall_rows),
+      markdown_table({"steps a frame", "T1, N", "T2, N", "speed lost", "error of the loss"},
+                     creep_rows),
       time_text(cost.step_s), cost.step_s / cost.bare_s, time_text(cost.bare_s));
 }
 
@@ -286,7 +326,7 @@ std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Poly
 
 void run_shapes(const Options& options) {
   Output output(options.out);
-  Progress progress("shapes", 7.0);
+  Progress progress("shapes", 8.0);
   const std::vector<Ladder> ladders = climb_all(options.quick, progress);
   const std::vector<Polygon> polygons = compare_polygons();
   progress.done(1.0);
@@ -295,6 +335,9 @@ void run_shapes(const Options& options) {
   progress.done(1.0);
   std::vector<Fall> falls;
   for (const int pieces : {20, 50, 100}) falls.push_back(fall(pieces, 64));
+  progress.done(1.0);
+  std::vector<Creep> creeps;
+  for (const int n : {1, 4, 16}) creeps.push_back(creep(n));
   progress.done(1.0);
   const ChainCost cost = cost_of_chain(effort_of(options));
   progress.done(1.0);
@@ -322,10 +365,17 @@ void run_shapes(const Options& options) {
     csv.row({std::string("folded chain"), std::int64_t{f.pieces}, std::string("energy_made_j"),
              f.energy_made});
   }
+  for (const Creep& c : creeps) {
+    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("speed_lost"),
+             c.loss});
+    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("error"),
+             std::abs(c.loss - c.known)});
+  }
   csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("step_s"), cost.step_s});
   csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("bare_pass_s"), cost.bare_s});
   output.csv("shapes", csv, options.command);
-  output.page("shapes", page_text(ladders, polygons, hanging, falls, cost), options.command);
+  output.page("shapes", page_text(ladders, polygons, hanging, falls, creeps, cost),
+              options.command);
   fmt::print("{}: corners, layers and cables with mass against known solutions\n",
              (options.out / "shapes.md").string());
 }

@@ -135,6 +135,33 @@ Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begi
   return scene;
 }
 
+Scene belt_drive(double radius, double tension, double difference, int steps_per_frame) {
+  constexpr double speed = 6.0, first = 0.2, inertia = 0.05, apart = 1.0;
+  Scene scene;
+  scene.gravity = Vec2::Zero();
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("driver", BodyKind::fixed_axle, 0.0, 0.0, first, 1.0));
+  scene.bodies.push_back(body("driven", BodyKind::fixed_axle, apart, 0.0, radius, 4.0));
+  const double r1 = first + belt_half_width, r2 = radius + belt_half_width, more = r2 - r1;
+  scene.bodies[0].driven_angular_velocity = speed;
+  Body& driven = scene.bodies[1];
+  driven.angular_velocity = speed * r1 / r2;
+  driven.inertia = inertia;
+  driven.angular_drag = difference * r2 / (inertia * driven.angular_velocity);
+  Cable belt;
+  belt.name = "belt";
+  belt.closed = true;
+  belt.half_width = belt_half_width;
+  belt.wraps = {{0, 1, 0}, {1, 1, 0}};
+  belt.axial_stiffness = belt_stiffness;
+  const double length = 2.0 * std::sqrt(apart * apart - more * more) +
+                        std::numbers::pi * (r1 + r2) + 2.0 * more * std::asin(more / apart);
+  const double strain = tension / belt_stiffness;
+  belt.slack = -length * strain / (1.0 + strain);
+  scene.cables.push_back(belt);
+  return scene;
+}
+
 Scene catenary(int pieces, int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

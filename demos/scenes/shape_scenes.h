@@ -42,6 +42,13 @@ Scene turning_drum(double radius, double speed, int steps_per_frame);
 /// on the drum, or ends there.
 Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there = true);
 
+constexpr double belt_stiffness = 1e4;    // N, EA, of belt_drive
+constexpr double belt_half_width = 0.01;  // m
+
+/// A belt on two pulleys 1 m apart, stretched by `tension` (N) all over once it has gone round. Body 0, of 0.2
+/// m, is driven at 6 rad/s; drag on body 1, of `radius` (m), asks for `difference` (N) between its spans.
+Scene belt_drive(double radius, double tension, double difference, int steps_per_frame);
+
 /// A cable of 2 m and 1 kg/m whose ends are 1 m apart at one height, in so many pieces (0: as the program
 /// chooses). Before spread_nodes.
 Scene catenary(int pieces, int steps_per_frame);

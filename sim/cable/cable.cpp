@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/at.h"
+#include "sim/cable/creep.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -43,21 +44,23 @@ double material_in_layers(const Link& link, double alpha, double angle) {
   return link.material + link.layers.way * link.layers.length(turned_until(link, alpha, angle));
 }
 
-/// Material coordinate at which the cable has the direction alpha on a link; `fills` is the cable's.
-template <bool fills>
+/// Material coordinate at which the cable has the direction alpha on a link. A plain cable neither fills
+/// nor creeps.
+template <bool plain>
 double material_at(const Link& link, double alpha, double angle) {
-  if (fills && link.layers.way != 0) return material_in_layers(link, alpha, angle);
-  return link.material + link.signed_radius() * (alpha - angle);
+  if (!plain && link.layers.way != 0) return material_in_layers(link, alpha, angle);
+  const double place = link.signed_radius() * (alpha - angle);
+  return link.material + (plain || link.laid.empty() ? place : laid_material(link, place));
 }
 
 }  // namespace
 
 double tail_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<true>(cable.links[i], cable.segments[i].alpha, angle);
+  return material_at<false>(cable.links[i], cable.segments[i].alpha, angle);
 }
 
 double head_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<true>(cable.links[i], alpha_head(cable, i), angle);
+  return material_at<false>(cable.links[i], alpha_head(cable, i), angle);
 }
 
 void begin_layers(const World& world, CableState& cable, std::size_t i, int way) {
@@ -166,20 +169,21 @@ void update_wraps(CableState& cable) {
   }
 }
 
-template <bool fills>
+template <bool plain>
 void update_rest_lengths(const World& world, CableState& cable) {
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
     const std::size_t tail = tail_link(cable, i);
     const Link &to = cable.links[i], &from = cable.links[tail];
     cable.segments[i].rest_length =
-        material_at<fills>(to, cable.segments[i].alpha, body_angle(world, to)) -
-        material_at<fills>(from, alpha_head(cable, tail), body_angle(world, from)) +
+        material_at<plain>(to, cable.segments[i].alpha, body_angle(world, to)) -
+        material_at<plain>(from, alpha_head(cable, tail), body_angle(world, from)) +
         (i == 0 ? cable.length : 0.0);
   }
 }
 
 void update_rest_lengths(const World& world, CableState& cable) {
-  (cable.fills ? update_rest_lengths<true> : update_rest_lengths<false>)(world, cable);
+  (cable.fills || cable.creeps ? update_rest_lengths<false> : update_rest_lengths<true>)(world,
+                                                                                         cable);
 }
 
 }  // namespace
@@ -218,9 +222,23 @@ void update_segments(World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(work.parts, c)) continue;
     const bool moved = update_cable(world, world.cables[c], true);
+    if (world.cables[c].creeps) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }
 }
+
+namespace {
+
+/// What the rim of the later of two links on a body carries becomes part of the earlier one's.
+void take_over(Link& link, const Link& later) {
+  if (link.laid.empty()) return;
+  for (const Laid& laid : later.laid) {
+    if (laid.place <= link.laid.back().place) continue;
+    link.laid.push_back({laid.place, laid.material + (later.material - link.material)});
+  }
+}
+
+}  // namespace
 
 void remove_link(const World& world, CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
@@ -244,6 +262,7 @@ void remove_link(const World& world, CableState& cable, int link) {
     cable.segments.erase(cable.segments.begin() + i);
   };
   if (merge) {
+    take_over(at(cable.links, before), at(cable.links, after));
     erase(std::max(link, after));
     erase(std::min(link, after));
   } else {
@@ -262,6 +281,7 @@ void remove_link(const World& world, CableState& cable, int link) {
     }
   }
   update_wraps_and_rest_lengths(world, cable);
+  if (cable.creeps) lay_down(world, cable);
 }
 
 bool needed(const CableState& cable, std::size_t i) {
@@ -349,7 +369,9 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   if (is_side(cable.links[from], added)) arrives = start + first.length;
   if (is_side(added, cable.links[to])) arrives = end - second.length - stored;
   added.material += arrives - tail_material(cable, position, body_angle(world, added));
+  begin_to_carry(world, cable, position);
   update_wraps_and_rest_lengths(world, cable);
+  if (cable.creeps) lay_down(world, cable);
 }
 
 void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches) {
@@ -371,10 +393,12 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
       middle.orientation = -whole.orientation;
       middle.radius = at(world.bodies, next->body).radius + cable.half_width;
       middle.pinch_middle = true;
-      const double pressed =
-          whole.material + whole.signed_radius() * (between.alpha - body_angle(world, whole));
+      const double pressed = material_at<false>(whole, between.alpha, body_angle(world, whole));
       middle.material =
           pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
+      if (!whole.laid.empty() && at(world.bodies, next->body).cable_friction == infinity) {
+        middle.laid = {{pressed - middle.material, pressed - middle.material}};
+      }
       for (const Link& link : {middle, whole}) {
         added.push_back(links.size());
         links.push_back(link);
@@ -391,6 +415,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
     cable.segments[s].previous_head = cable.segments[s].head;
   }
   update_wraps_and_rest_lengths(world, cable);
+  if (cable.creeps) lay_down(world, cable);
 }
 
 }  // namespace pinchlab

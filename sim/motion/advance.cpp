@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
@@ -100,6 +101,13 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
   strike_all(scene, world, work, time, rebounds);
 }
 
+/// Elastic cables have come on to rims and off them in an interval.
+void lay_down_cables(World& world, const Parts& parts) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (world.cables[c].creeps && !sleeps(parts, c)) lay_down(world, world.cables[c]);
+  }
+}
+
 StepStatus fail_by_changes(World& world) {
   world.failure = fmt::format(
       "step {} (t = {} s): cables meet and leave bodies without end; move apart what they are in",
@@ -146,6 +154,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     bool met = true;
     const double length = move(scene, world, work, left, events < most_events, met, watch);
     if (!check_finite(scene, world)) return StepStatus::not_finite;
+    lay_down_cables(world, work.parts);
     if (first && world.configuration.diagnostics) {
       work.lag_before = lag;
       work.kick_before = lag + 0.5 * length;

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
@@ -124,6 +125,8 @@ double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
 // it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
 
 //
+// C changes by J v and by what rims carry less than they turn (creep.h).
+//
 // A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the lag.
 
 /// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
@@ -143,8 +146,9 @@ void make_elastic(const World& world, const Cable& given, const Link& from, cons
   const double damped =
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
   const double b = 0.25 * (1.0 - damped);
+  const double creep = creep_speed(world, from, true) - creep_speed(world, to, false);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                        speed_of(world, to.body, bodies.jb);                 // dC/dt(v-), m/s
+                        speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
   double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
     if (damped > 0.0) return;
@@ -165,7 +169,8 @@ void make_elastic(const World& world, const Cable& given, const Link& from, cons
   row.clamped = both_ways;
   row.on = both_ways || !segment.slack;
   row.compliance = flexibility / scale;
-  row.bias = known / scale;
+  row.curvature = -creep;  // and what else there is of it is found at the interval's end
+  row.bias = known / scale - creep;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the

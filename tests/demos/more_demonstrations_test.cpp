@@ -10,9 +10,9 @@
 
 #include "demos/scenes/scene_json.h"
 #include "render/picture/compose.h"
-#include "sim/cable/tangent.h"
 #include "sim/promises.h"
 #include "sim/step.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 namespace {
