@@ -95,7 +95,7 @@ double potential_energy(const Scene& scene, const World& world) {
       if (!cable.rod) stretch = std::max(stretch, 0.0);
       energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
     }
-    if (cable.creeps) energy += energy_carried(world, cable, stiffness);
+    if (!cable.rims.empty()) energy += energy_carried(world, cable, stiffness);
   }
   return energy;
 }

@@ -175,6 +175,8 @@ void refuse_impossible_figures(const Scene& scene) {
     const std::string place = pointer("cables", c);
     refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
     refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+    refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
+           "only an elastic cable creeps");
     refuse(!(cable.damping >= 0.0 && cable.damping < infinity), place,
            "the damping must be at least 0");
     refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");

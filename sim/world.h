@@ -29,12 +29,6 @@ struct Layers {
   double length(double turned) const { return (inner + 0.5 * growth * turned) * turned; }
 };
 
-/// A place on a rim that carries an elastic cable, and the material that lies on it up to there.
-struct Laid {
-  double place = 0.0;     // m along the rim: p (alpha - angle), see Link
-  double material = 0.0;  // m
-};
-
 /// A circle fixed to a body, which a cable touches: rolling round it, or (of radius 0) attached to
 /// it at an end of the cable. On a polygon a cable has a link at each corner that it bends round;
 /// the segments between them are its sides, and rigid.
@@ -43,7 +37,7 @@ struct Laid {
 /// that at its head tangent material + p (alpha_head - angle), where p = orientation * radius,
 /// alpha is the direction of the segment before or after, and angle is the body's. Without slip
 /// `material` is constant, so the cable's total length is conserved by construction. Of an elastic cable
-/// that a rim carries over stretched it is material + laid_material(p (alpha - angle)).
+/// that a rim carries over stretched it is material + what its rim carries up to p (alpha - angle).
 struct Link {
   int body = -1;        // index, or -1: attached to the world
   int orientation = 0;  // +1 counter-clockwise, -1 clockwise, 0 attachment
@@ -59,12 +53,23 @@ struct Link {
   int contact = -1;            // pinch_middle: the contact that presses it, by confirm_pinches
   Layers layers;               // of a drum that fills; `radius` is then that of the outermost turn,
                                // by update_tangent
-  std::vector<Laid> laid;  // of an elastic cable, by lay_down: ascending; between two of them the
-                           // strain is one. Empty: the rim carries as much as it turns
-  double comes_on_at_tail = 1.0,
-         comes_on_at_head = 1.0;  // m of material on a m of rim, by lay_down
 
   double signed_radius() const { return orientation * radius; }
+};
+
+/// A place on a rim that carries an elastic cable, and the material that lies on it up to there.
+struct Laid {
+  double place = 0.0;     // m along the rim: p (alpha - angle), see Link
+  double material = 0.0;  // m
+  double slope = 1.0;     // m of material in a m of the rim, from here to the next
+};
+
+/// What a link's rim carries of an elastic cable, stretched as it came on: creep.h.
+struct Rim {
+  std::vector<Laid> laid;  // ascending; between two the strain is one. Empty: as much as it turns
+  double comes_on_at_tail = 1.0, comes_on_at_head = 1.0;  // m of material on a m of rim
+  double slope = 0.0;  // m of material in a m of the segment before, when the interval began; 0:
+                       // not known
 };
 
 /// The free span that arrives at the link of the same index from the link before it.
@@ -97,11 +102,11 @@ struct CableState {
   bool closed = false;
   bool rod = false;  // bears force both ways: a piece between nodes, or a joint
   Joint joint = Joint::none;
-  bool creeps = false;   // elastic, and carried over by rims with the strain that it came on with
   bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far
   std::vector<Link> links;
+  std::vector<Rim> rims;  // as many, of an elastic cable that creeps; else none. By lay_down
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
                                   // from the last link to the first when closed
 };
@@ -122,18 +127,6 @@ inline double thickness_of_layers(const Link& link) {
 /// m of cable on a link, the wraps being up to date.
 inline double stored_length(const Link& link) {
   return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
-}
-
-/// Material on a rim up to a place (m); beyond what lies there, what comes on.
-inline double laid_material(const Link& link, double place) {
-  const Laid &first = link.laid.front(), &last = link.laid.back();
-  if (place <= first.place) return first.material + (place - first.place) * link.comes_on_at_tail;
-  if (place >= last.place) return last.material + (place - last.place) * link.comes_on_at_head;
-  const auto after =
-      std::upper_bound(link.laid.begin(), link.laid.end(), place,
-                       [](double value, const Laid& laid) { return value < laid.place; });
-  const Laid &a = *(after - 1), &b = *after;
-  return a.material + (place - a.place) * (b.material - a.material) / (b.place - a.place);
 }
 
 enum class StepStatus { ok, not_finite };

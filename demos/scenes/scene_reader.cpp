@@ -183,6 +183,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "half_width_m", cable.half_width);
   take(from, "slack_m", cable.slack);
   take(from, "axial_stiffness_n", cable.axial_stiffness);
+  cable.creep = from.value("creep", false);
   take(from, "squeeze", cable.squeeze);
   take(from, "grip", cable.grip);
   take(from, "mass_per_metre_kg", cable.mass_per_metre);
@@ -193,7 +194,10 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
     refuse_keys(from, place, {"nodes", "contact_friction", "linear_drag_per_s"},
                 "a cable without mass_per_metre_kg");
   } else {
-    refuse_keys(from, place, {"squeeze", "grip"}, "a cable with mass_per_metre_kg");
+    refuse_keys(from, place, {"squeeze", "grip", "creep"}, "a cable with mass_per_metre_kg");
+  }
+  if (cable.creep && !from.contains("axial_stiffness_n")) {
+    problem(place + "/creep", "belongs to an elastic cable; give axial_stiffness_n too");
   }
   cable.closed = from.value("closed", false);
   for (const char* end : {"start", "end"}) {

@@ -44,23 +44,26 @@ double material_in_layers(const Link& link, double alpha, double angle) {
   return link.material + link.layers.way * link.layers.length(turned_until(link, alpha, angle));
 }
 
-/// Material coordinate at which the cable has the direction alpha on a link. A plain cable neither fills
-/// nor creeps.
+/// Material coordinate at which the cable has the direction alpha on link i. A plain cable neither fills
+/// nor creeps; where it does, `at_head` says which end of the link is the nearer.
 template <bool plain>
-double material_at(const Link& link, double alpha, double angle) {
+double material_at(const CableState& cable, std::size_t i, bool at_head, double alpha,
+                   double angle) {
+  const Link& link = cable.links[i];
   if (!plain && link.layers.way != 0) return material_in_layers(link, alpha, angle);
   const double place = link.signed_radius() * (alpha - angle);
-  return link.material + (plain || link.laid.empty() ? place : laid_material(link, place));
+  const bool turns = plain || cable.rims.empty() || cable.rims[i].laid.empty();
+  return link.material + (turns ? place : laid_near_end(cable.rims[i], at_head, place));
 }
 
 }  // namespace
 
 double tail_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<false>(cable.links[i], cable.segments[i].alpha, angle);
+  return material_at<false>(cable, i, false, cable.segments[i].alpha, angle);
 }
 
 double head_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<false>(cable.links[i], alpha_head(cable, i), angle);
+  return material_at<false>(cable, i, true, alpha_head(cable, i), angle);
 }
 
 void begin_layers(const World& world, CableState& cable, std::size_t i, int way) {
@@ -175,15 +178,15 @@ void update_rest_lengths(const World& world, CableState& cable) {
     const std::size_t tail = tail_link(cable, i);
     const Link &to = cable.links[i], &from = cable.links[tail];
     cable.segments[i].rest_length =
-        material_at<plain>(to, cable.segments[i].alpha, body_angle(world, to)) -
-        material_at<plain>(from, alpha_head(cable, tail), body_angle(world, from)) +
+        material_at<plain>(cable, i, false, cable.segments[i].alpha, body_angle(world, to)) -
+        material_at<plain>(cable, tail, true, alpha_head(cable, tail), body_angle(world, from)) +
         (i == 0 ? cable.length : 0.0);
   }
 }
 
 void update_rest_lengths(const World& world, CableState& cable) {
-  (cable.fills || cable.creeps ? update_rest_lengths<false> : update_rest_lengths<true>)(world,
-                                                                                         cable);
+  const bool plain = !cable.fills && cable.rims.empty();
+  (plain ? update_rest_lengths<true> : update_rest_lengths<false>)(world, cable);
 }
 
 }  // namespace
@@ -222,7 +225,7 @@ void update_segments(World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(work.parts, c)) continue;
     const bool moved = update_cable(world, world.cables[c], true);
-    if (world.cables[c].creeps) lay_down(world, world.cables[c]);
+    if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }
 }
@@ -230,11 +233,13 @@ void update_segments(World& world, Workspace& work) {
 namespace {
 
 /// What the rim of the later of two links on a body carries becomes part of the earlier one's.
-void take_over(Link& link, const Link& later) {
-  if (link.laid.empty()) return;
-  for (const Laid& laid : later.laid) {
-    if (laid.place <= link.laid.back().place) continue;
-    link.laid.push_back({laid.place, laid.material + (later.material - link.material)});
+void take_over(CableState& cable, int link, int later) {
+  if (cable.rims.empty() || at(cable.rims, link).laid.empty()) return;
+  const double shift = at(cable.links, later).material - at(cable.links, link).material;
+  std::vector<Laid>& all = at(cable.rims, link).laid;
+  for (const Laid& laid : at(cable.rims, later).laid) {
+    if (laid.place > all.back().place)
+      all.push_back({laid.place, laid.material + shift, laid.slope});
   }
 }
 
@@ -260,9 +265,10 @@ void remove_link(const World& world, CableState& cable, int link) {
   const auto erase = [&cable](int i) {
     cable.links.erase(cable.links.begin() + i);
     cable.segments.erase(cable.segments.begin() + i);
+    if (!cable.rims.empty()) cable.rims.erase(cable.rims.begin() + i);
   };
   if (merge) {
-    take_over(at(cable.links, before), at(cable.links, after));
+    take_over(cable, before, after);
     erase(std::max(link, after));
     erase(std::min(link, after));
   } else {
@@ -281,7 +287,7 @@ void remove_link(const World& world, CableState& cable, int link) {
     }
   }
   update_wraps_and_rest_lengths(world, cable);
-  if (cable.creeps) lay_down(world, cable);
+  if (!cable.rims.empty()) lay_down(world, cable);
 }
 
 bool needed(const CableState& cable, std::size_t i) {
@@ -339,6 +345,7 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   Segment arriving = old;
   if (segment == 0) arriving.alpha = old.alpha + cable.turning;
   cable.segments.insert(cable.segments.begin() + offset(position), arriving);
+  if (!cable.rims.empty()) cable.rims.insert(cable.rims.begin() + offset(position), Rim{});
 
   const std::size_t leaving = segment == 0 ? 0 : position + 1;
   update_tangent(world, cable, position);
@@ -371,12 +378,13 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   added.material += arrives - tail_material(cable, position, body_angle(world, added));
   begin_to_carry(world, cable, position);
   update_wraps_and_rest_lengths(world, cable);
-  if (cable.creeps) lay_down(world, cable);
+  if (!cable.rims.empty()) lay_down(world, cable);
 }
 
 void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches) {
   std::vector<Link> links;
   std::vector<Segment> segments;
+  std::vector<Rim> rims;
   links.reserve(cable.links.size() + 2 * pinches.size());
   segments.reserve(links.capacity());
   std::vector<std::size_t> added;  // segments
@@ -385,6 +393,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
     const Link& whole = cable.links[i];
     links.push_back(whole);
     segments.push_back(cable.segments[i]);
+    if (!cable.rims.empty()) rims.push_back(cable.rims[i]);
     for (; next != pinches.end() && static_cast<std::size_t>(next->link) == i; ++next) {
       Segment between;
       between.alpha = cable.segments[i].alpha + whole.orientation * next->arc;
@@ -393,11 +402,18 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
       middle.orientation = -whole.orientation;
       middle.radius = at(world.bodies, next->body).radius + cable.half_width;
       middle.pinch_middle = true;
-      const double pressed = material_at<false>(whole, between.alpha, body_angle(world, whole));
+      const double pressed =
+          material_at<false>(cable, i, false, between.alpha, body_angle(world, whole));
       middle.material =
           pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
-      if (!whole.laid.empty() && at(world.bodies, next->body).cable_friction == infinity) {
-        middle.laid = {{pressed - middle.material, pressed - middle.material}};
+      if (!cable.rims.empty()) {
+        const double place = pressed - middle.material;
+        const bool carries =
+            !cable.rims[i].laid.empty() && at(world.bodies, next->body).cable_friction == infinity;
+        rims.emplace_back();
+        if (carries) rims.back().laid = {{place, place, 1.0}};
+        rims.push_back(cable.rims[i]);
+        rims.back().slope = 0.0;
       }
       for (const Link& link : {middle, whole}) {
         added.push_back(links.size());
@@ -408,6 +424,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
   }
   cable.links.swap(links);
   cable.segments.swap(segments);
+  cable.rims.swap(rims);
   cable.changes += static_cast<int>(pinches.size());
   for (const std::size_t s : added) {
     update_tangent(world, cable, s);
@@ -415,7 +432,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
     cable.segments[s].previous_head = cable.segments[s].head;
   }
   update_wraps_and_rest_lengths(world, cable);
-  if (cable.creeps) lay_down(world, cable);
+  if (!cable.rims.empty()) lay_down(world, cable);
 }
 
 }  // namespace pinchlab

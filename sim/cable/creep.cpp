@@ -16,109 +16,157 @@ double place_on_rim(const World& world, const Link& link, double alpha) {
   return link.signed_radius() * (alpha - body_angle(world, link));
 }
 
-double slope_between(const Laid& a, const Laid& b) {
-  return (b.material - a.material) / (b.place - a.place);
+struct Span {
+  double tail = 0.0, head = 0.0;  // m, places on a rim
+};
+
+/// What the cable lies on of a link's rim.
+Span span_of(const World& world, const CableState& cable, std::size_t i) {
+  const Link& link = cable.links[i];
+  const double tail = place_on_rim(world, link, cable.segments[i].alpha);
+  return {tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i)))};
 }
 
-/// Keeps of the rim what lies between two places, which may be beyond what it has.
-void keep_between(Link& link, double tail, double head) {
-  const Laid first{tail, laid_material(link, tail)}, last{head, laid_material(link, head)};
-  std::vector<Laid>& laid = link.laid;
-  std::erase_if(laid, [&](const Laid& l) { return l.place <= tail || l.place >= head; });
-  laid.insert(laid.begin(), first);
-  if (head > tail) laid.push_back(last);
-  // Pieces of one strain are one.
-  constexpr double same = 1e-13;
-  const auto joins = [&](std::size_t i) {
-    return std::abs(slope_between(laid[i - 1], laid[i]) - slope_between(laid[i], laid[i + 1])) <
-           same;
-  };
-  if (laid.size() > 2 && joins(laid.size() - 2)) laid.erase(laid.end() - 2);
-  if (laid.size() > 2 && joins(1)) laid.erase(laid.begin() + 1);
+/// What comes on of one strain is one piece, but for round-off.
+constexpr double same_slope = 1e-13;
+
+/// Moves the end at the head to a place beyond it, or back.
+void move_head(Rim& rim, double place) {
+  std::vector<Laid>& laid = rim.laid;
+  const Laid end{place, laid_material(rim, place)};
+  while (laid.size() > 1 && laid[laid.size() - 2].place >= place) laid.pop_back();
+  const bool extends = place > laid.back().place;
+  if (extends && (laid.size() == 1 ||
+                  std::abs(laid[laid.size() - 2].slope - rim.comes_on_at_head) > same_slope)) {
+    laid.back().slope = rim.comes_on_at_head;
+    laid.push_back(end);
+  } else {
+    laid.back() = end;
+  }
+}
+
+/// The same at the tail.
+void move_tail(Rim& rim, double place) {
+  std::vector<Laid>& laid = rim.laid;
+  Laid end{place, laid_material(rim, place), rim.comes_on_at_tail};
+  const auto kept =
+      std::find_if(laid.begin(), laid.end(), [place](const Laid& l) { return l.place > place; });
+  if (kept == laid.end()) {
+    laid.assign(1, end);
+  } else if (kept != laid.begin()) {
+    end.slope = (kept - 1)->slope;
+    *laid.erase(laid.begin(), kept - 1) = end;
+  } else if (laid.size() > 1 && std::abs(laid.front().slope - end.slope) <= same_slope) {
+    end.slope = laid.front().slope;
+    laid.front() = end;
+  } else {
+    laid.insert(laid.begin(), end);
+  }
+}
+
+/// Ends what the rim carries where the cable leaves it. So little that tensions cannot tell waits for more to come.
+void keep(Rim& rim, const Span& span, double radius) {
+  const double rounding = 1e-10 * radius;
+  if (std::abs(span.head - rim.laid.back().place) > rounding) move_head(rim, span.head);
+  if (std::abs(span.tail - rim.laid.front().place) > rounding) move_tail(rim, span.tail);
 }
 
 /// Material that lies in a metre of the rim at its end towards a segment.
-double slope_at_end(const Link& link, bool at_head) {
-  const std::vector<Laid>& laid = link.laid;
-  if (laid.size() < 2) return at_head ? link.comes_on_at_head : link.comes_on_at_tail;
-  return at_head ? slope_between(laid[laid.size() - 2], laid.back())
-                 : slope_between(laid[0], laid[1]);
+double slope_at_end(const Rim& rim, bool at_head) {
+  const std::vector<Laid>& laid = rim.laid;
+  if (laid.size() < 2) return at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
+  return at_head ? laid[laid.size() - 2].slope : laid[0].slope;
 }
 
 /// Material in a metre of what comes off a segment on to a rim: its own strain's, or, through a pinch, that of
 /// the rim beyond.
-double slope_of(const CableState& cable, std::size_t i) {
+double slope_of(const CableState& cable, std::size_t i, std::size_t before) {
   const Segment& segment = cable.segments[i];
   if (!segment.pinched) {
     const bool stretched = segment.length > segment.rest_length && segment.rest_length > 0.0;
     return stretched ? segment.rest_length / segment.length : 1.0;
   }
-  const Link& from = at(cable.links, previous_link(cable, static_cast<int>(i)));
-  const Link& to = cable.links[i];
-  if (!from.laid.empty() && !from.pinch_middle) return slope_at_end(from, true);
+  const Rim &from = cable.rims[before], &to = cable.rims[i];
+  if (!from.laid.empty() && !cable.links[before].pinch_middle) return slope_at_end(from, true);
   return to.laid.empty() ? 1.0 : slope_at_end(to, false);
+}
+
+/// m/s, by which a link's rim takes less of a segment's material than it turns by, or gives it less; forward
+/// positive.
+double creep_at(const World& world, const Link& link, const Rim& rim, bool at_head) {
+  if (rim.laid.empty()) return 0.0;
+  const double speed = link.signed_radius() * at(world.angular_velocity, link.body);
+  const bool comes_on = at_head == (speed < 0.0);
+  const double comes = at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
+  const double goes = slope_at_end(rim, at_head);
+  return (1.0 - (comes_on ? comes : goes)) * speed;
 }
 
 }  // namespace
 
+double laid_material(const Rim& rim, double place) {
+  const Laid &first = rim.laid.front(), &last = rim.laid.back();
+  if (place <= first.place) return first.material + (place - first.place) * rim.comes_on_at_tail;
+  if (place >= last.place) return last.material + (place - last.place) * rim.comes_on_at_head;
+  const auto after =
+      std::upper_bound(rim.laid.begin(), rim.laid.end(), place,
+                       [](double value, const Laid& laid) { return value < laid.place; });
+  const Laid& piece = *(after - 1);
+  return piece.material + (place - piece.place) * piece.slope;
+}
+
 void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
-  Link& link = cable.links[i];
-  if (!cable.creeps || link.orientation == 0 || link.corner >= 0 || link.layers.way != 0 ||
+  const Link& link = cable.links[i];
+  if (cable.rims.empty() || link.orientation == 0 || link.corner >= 0 || link.layers.way != 0 ||
       at(world.bodies, link.body).cable_friction < infinity) {
     return;
   }
-  const double tail = place_on_rim(world, link, cable.segments[i].alpha);
-  const double head = place_on_rim(world, link, alpha_head(cable, i));
-  link.laid = {{tail, tail}};
-  if (head > tail) link.laid.push_back({head, head});
+  const Span span = span_of(world, cable, i);
+  std::vector<Laid>& laid = cable.rims[i].laid;
+  laid.assign(1, {span.tail, span.tail, 1.0});
+  if (span.head > span.tail) laid.push_back({span.head, span.head, 1.0});
 }
 
 // The strain at the middle of the interval to come is extrapolated from those at its start and at the start of the
 // one before, so that creep is of second order.
 void lay_down(const World& world, CableState& cable) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
-    Link& link = cable.links[i];
-    if (link.laid.empty()) continue;
-    const double tail = place_on_rim(world, link, cable.segments[i].alpha);
-    keep_between(link, tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i))));
+    Rim& rim = cable.rims[i];
+    if (!rim.laid.empty()) keep(rim, span_of(world, cable, i), cable.links[i].radius);
   }
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-    Segment& segment = cable.segments[i];
-    const double now = slope_of(cable, i);
-    const bool extrapolates = !segment.pinched && segment.slope > 0.0;
+    const std::size_t before = index(previous_link(cable, static_cast<int>(i)));
+    Rim& rim = cable.rims[i];
+    const double now = slope_of(cable, i, before);
+    const bool extrapolates = !cable.segments[i].pinched && rim.slope > 0.0;
     const double soon =
-        extrapolates ? std::clamp(1.5 * now - 0.5 * segment.slope, 0.5 * now, 1.0) : now;
-    segment.slope = now;
-    cable.links[i].comes_on_at_tail = soon;
-    at(cable.links, previous_link(cable, static_cast<int>(i))).comes_on_at_head = soon;
+        extrapolates ? std::clamp(1.5 * now - 0.5 * rim.slope, 0.5 * now, 1.0) : now;
+    rim.slope = now;
+    rim.comes_on_at_tail = cable.rims[before].comes_on_at_head = soon;
   }
 }
 
-double creep_speed(const World& world, const Link& link, bool at_head) {
-  if (link.laid.empty()) return 0.0;
-  const double speed = link.signed_radius() * at(world.angular_velocity, link.body);
-  const bool comes_on = at_head == (speed < 0.0);
-  const double comes = at_head ? link.comes_on_at_head : link.comes_on_at_tail;
-  return (1.0 - (comes_on ? comes : slope_at_end(link, at_head))) * speed;
+double creep_speed(const World& world, const CableState& cable, int segment) {
+  const int before = previous_link(cable, segment);
+  return creep_at(world, at(cable.links, before), at(cable.rims, before), true) -
+         creep_at(world, at(cable.links, segment), at(cable.rims, segment), false);
 }
 
 double wrapped_material(const World& world, const CableState& cable, std::size_t i) {
-  const Link& link = cable.links[i];
-  if (link.laid.empty()) return stored_length(link);
-  const double angle = body_angle(world, link);
+  if (cable.rims.empty() || cable.rims[i].laid.empty()) return stored_length(cable.links[i]);
+  const double angle = body_angle(world, cable.links[i]);
   return head_material(cable, i, angle) - tail_material(cable, i, angle);
 }
 
 double energy_carried(const World& world, const CableState& cable, double stiffness) {
   double energy = 0.0;
-  for (std::size_t i = 0; i < cable.links.size(); ++i) {
-    if (cable.links[i].laid.empty()) continue;
-    Link link = cable.links[i];
-    const double tail = place_on_rim(world, link, cable.segments[i].alpha);
-    keep_between(link, tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i))));
-    for (std::size_t k = 1; k < link.laid.size(); ++k) {
-      const double material = link.laid[k].material - link.laid[k - 1].material;
-      const double stretch = link.laid[k].place - link.laid[k - 1].place - material;
+  for (std::size_t i = 0; i < cable.rims.size(); ++i) {
+    if (cable.rims[i].laid.empty()) continue;
+    Rim rim = cable.rims[i];
+    keep(rim, span_of(world, cable, i), cable.links[i].radius);
+    for (std::size_t k = 1; k < rim.laid.size(); ++k) {
+      const double material = rim.laid[k].material - rim.laid[k - 1].material;
+      const double stretch = rim.laid[k].place - rim.laid[k - 1].place - material;
       if (material > 0.0) energy += 0.5 * stiffness * stretch * stretch / material;
     }
   }

@@ -10,17 +10,36 @@
 
 namespace pinchlab {
 
-/// Gives a link, newly on its body, a rim that carries what it turns by so far, if it is one that may
-/// do otherwise.
+/// Material on a rim up to a place (m), beyond what lies there by what comes on.
+double laid_material(const Rim& rim, double place);
+
+/// The same near the end where the cable leaves the rim, or comes to it: whichever way the place lies off that by
+/// round-off, without a jump.
+inline double laid_near_end(const Rim& rim, bool at_head, double place) {
+  const std::size_t last = rim.laid.size() - 1;
+  const Laid& end = at_head ? rim.laid[last] : rim.laid[0];
+  const double beyond = place - end.place;
+  if (last == 0) return laid_material(rim, place);
+  if (at_head) {
+    const Laid& piece = rim.laid[last - 1];
+    if (place < piece.place) return laid_material(rim, place);
+    return end.material + beyond * (beyond < 0.0 ? piece.slope : rim.comes_on_at_head);
+  }
+  if (place > rim.laid[1].place) return laid_material(rim, place);
+  return end.material + beyond * (beyond > 0.0 ? end.slope : rim.comes_on_at_tail);
+}
+
+/// Gives a link of a cable that creeps, newly on its body, a rim that has carried what it turned by so far,
+/// if it is one that may do otherwise from now on.
 void begin_to_carry(const World& world, CableState& cable, std::size_t link);
 
 /// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has gone off
 /// them is forgotten; and sets what will come on in the next.
 void lay_down(const World& world, CableState& cable);
 
-/// m/s, by which a link's rim takes less material from the segment before it (or after it, `at_head`), or gives
-/// it less, than it turns by at the world's velocities; forward positive.
-double creep_speed(const World& world, const Link& link, bool at_head);
+/// m/s, by which the rims at the ends of a segment of a cable that creeps change its material otherwise than they turn, at the world's velocities:
+/// what comes and goes is less than the way that they turn.
+double creep_speed(const World& world, const CableState& cable, int segment);
 
 /// m of material on a link, which has wraps.
 double wrapped_material(const World& world, const CableState& cable, std::size_t link);

@@ -278,16 +278,17 @@ CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
   cable.closed = given.closed;
   cable.rod = given.rod;
   cable.joint = given.joint;
-  cable.creeps = given.axial_stiffness < infinity && !given.rod &&
-                 world.configuration.solver == Solver::direct;
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);
   lay_wraps(scene, course);
   lay_layers(world, course);
   lay_material(world, course);
-  for (std::size_t i = 0; i < cable.links.size(); ++i) begin_to_carry(world, cable, i);
+  if (given.creep && world.configuration.solver == Solver::direct) {
+    cable.rims.resize(cable.links.size());
+    for (std::size_t i = 0; i < cable.links.size(); ++i) begin_to_carry(world, cable, i);
+  }
   update_wraps_and_rest_lengths(world, cable);
-  if (cable.creeps) lay_down(world, cable);
+  if (!cable.rims.empty()) lay_down(world, cable);
   for (Segment& segment : cable.segments) {
     segment.previous_tail = segment.tail;
     segment.previous_head = segment.head;

@@ -104,7 +104,7 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
 /// Elastic cables have come on to rims and off them in an interval.
 void lay_down_cables(World& world, const Parts& parts) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (world.cables[c].creeps && !sleeps(parts, c)) lay_down(world, world.cables[c]);
+    if (!world.cables[c].rims.empty() && !sleeps(parts, c)) lay_down(world, world.cables[c]);
   }
 }
 

@@ -146,7 +146,8 @@ void make_elastic(const World& world, const Cable& given, const Link& from, cons
   const double damped =
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
   const double b = 0.25 * (1.0 - damped);
-  const double creep = creep_speed(world, from, true) - creep_speed(world, to, false);
+  const CableState& cable = at(world.cables, row.index);
+  const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
                         speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
   double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s

@@ -313,6 +313,11 @@ std::string scene_of(std::string_view bytes) {
     add_shapes(made, choices);
     add_joints(made, choices);
     add_compounds(made, choices);
+    for (json& cable : made["cables"]) {
+      const bool elastic =
+          cable.contains("axial_stiffness_n") && !cable.contains("mass_per_metre_kg");
+      if (choices.one_in(2) && elastic) cable["creep"] = true;
+    }
   }
   return made.dump(1);
 }

@@ -78,6 +78,7 @@ Scene hoist(int steps_per_frame) {
   scene.bodies.push_back(body("counterweight", BodyKind::rail, -0.35, -2.0, 0.1, 3.0));
   scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(1)));
   scene.cables[0].axial_stiffness = 400.0;
+  scene.cables[0].creep = true;
   return scene;
 }
 
@@ -114,6 +115,7 @@ Scene random_elastic(unsigned seed) {
   }
   scene.cables.push_back(cable(on(pulleys), wraps, on(pulleys + 1), 0.03));
   scene.cables[0].axial_stiffness = std::pow(10.0, random.uniform(2.5, 4.0));
+  scene.cables[0].creep = true;
   if (random.below(2) == 0) {
     scene.bodies.push_back(body("falling", BodyKind::free, 0.6, 1.5, 0.15, 0.5));
     scene.bodies.back().angular_velocity = random.uniform(-3.0, 3.0);

@@ -15,24 +15,27 @@ inline bool same_layers(const Layers& p, const Layers& q) {
 }
 
 inline bool same_laid(const Laid& p, const Laid& q) {
-  return p.place == q.place && p.material == q.material;
+  return p.place == q.place && p.material == q.material && p.slope == q.slope;
+}
+
+inline bool same_rim(const Rim& p, const Rim& q) {
+  return std::equal(p.laid.begin(), p.laid.end(), q.laid.begin(), q.laid.end(), same_laid) &&
+         p.comes_on_at_tail == q.comes_on_at_tail && p.comes_on_at_head == q.comes_on_at_head &&
+         p.slope == q.slope;
 }
 
 inline bool same_link(const Link& p, const Link& q) {
   return p.body == q.body && p.orientation == q.orientation && p.corner == q.corner &&
          p.radius == q.radius && p.offset == q.offset && p.material == q.material &&
          p.wrap == q.wrap && p.pinch_middle == q.pinch_middle && p.slip == q.slip &&
-         p.slip_speed == q.slip_speed &&
-         std::equal(p.laid.begin(), p.laid.end(), q.laid.begin(), q.laid.end(), same_laid) &&
-         p.comes_on_at_tail == q.comes_on_at_tail && p.comes_on_at_head == q.comes_on_at_head &&
-         p.contact == q.contact && same_layers(p.layers, q.layers);
+         p.slip_speed == q.slip_speed && p.contact == q.contact && same_layers(p.layers, q.layers);
 }
 
 inline bool same_segment(const Segment& p, const Segment& q) {
   return p.tail == q.tail && p.head == q.head && p.direction == q.direction && p.alpha == q.alpha &&
-         p.length == q.length && p.rest_length == q.rest_length && p.slope == q.slope &&
-         p.tension == q.tension && p.moved == q.moved && p.slack == q.slack &&
-         p.pinched == q.pinched && p.was_pinched == q.was_pinched && p.contact == q.contact &&
+         p.length == q.length && p.rest_length == q.rest_length && p.tension == q.tension &&
+         p.moved == q.moved && p.slack == q.slack && p.pinched == q.pinched &&
+         p.was_pinched == q.was_pinched && p.contact == q.contact &&
          p.previous_tail == q.previous_tail && p.previous_head == q.previous_head &&
          p.tail_centre == q.tail_centre && p.head_centre == q.head_centre;
 }
@@ -57,7 +60,7 @@ inline bool same_state(const World& a, const World& b) {
          equal(a.cables, b.cables,
                [&](const CableState& p, const CableState& q) {
                  return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
-                        equal(p.links, q.links, same_link) &&
+                        equal(p.links, q.links, same_link) && equal(p.rims, q.rims, same_rim) &&
                         equal(p.segments, q.segments, same_segment);
                }) &&
          equal(a.contacts, b.contacts, same_contact) &&

@@ -200,6 +200,8 @@ const BadScene bad_scenes[] = {
      "s.json: /cables/0/wraps/1: is on the same body as the wrap before it; say extra_turns for "
      "more than one "
      "turn"},
+    {"/cables/0/creep", "true",
+     "s.json: /cables/0/creep: belongs to an elastic cable; give axial_stiffness_n too"},
     {"/cables/0/slack_m", "-0.1",
      "s.json: /cables/0/slack_m: a cable that cannot stretch cannot be shorter than its path; give "
      "axial_stiffness_n too"},
