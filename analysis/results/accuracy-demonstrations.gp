@@ -96,7 +96,7 @@ plot 7.739540722126814e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 7.917932975770974e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -224,7 +224,7 @@ plot 7.739540722126814e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 7.917932975770974e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \

@@ -37,8 +37,8 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t link);
 /// them is forgotten; and sets what will come on in the next.
 void lay_down(const World& world, CableState& cable);
 
-/// m/s, by which the rims at the ends of a segment of a cable that creeps change its material otherwise than they turn, at the world's velocities:
-/// what comes and goes is less than the way that they turn.
+/// m/s, by which the rims at the ends of a segment of a cable that creeps change its material otherwise than
+/// they turn, at the world's velocities.
 double creep_speed(const World& world, const CableState& cable, int segment);
 
 /// m of material on a link, which has wraps.
