@@ -116,8 +116,8 @@ struct Cable {
   double slack = 0.0;                 ///< m, total length beyond the taut path at time 0; >= 0,
                                       ///< negative (pre-stretched) only with finite stiffness
   double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
-  bool creep = false;                 ///< elastic: rims carry it over as stretched as it came on (creep.h)
-  double damping = 0.0;               ///< N s/m, of a spring: force per speed of its lengthening
+  bool creep = false;    ///< elastic: rims carry it over as stretched as it came on (creep.h)
+  double damping = 0.0;  ///< N s/m, of a spring: force per speed of its lengthening
   Joint joint = Joint::none;
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
