@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "sim/cable/mass.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
-struct Workspace;
+/// How bodies, and cables with mass, move at one time.
+struct Instant {
+  std::vector<Vec2> velocity;   // m/s
+  std::vector<double> turning;  // rad/s
+  CableMasses masses;           // as they lie then
+};
+
+void note_instant(const World& world, Instant& instant);
 
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
@@ -17,9 +25,9 @@ bool check_positions(const Scene& scene, World& world);
 /// Energy of gravity and of stretched cables at the present positions (J).
 double potential_energy(const Scene& scene, const World& world);
 
-/// Kinetic energy at the step's start (J), from the velocities before and after its first kick:
-/// those between them are right to second order.
-double kinetic_energy(const World& world, const Workspace& work);
+/// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a kick:
+/// what is between them, by the share `after`, is right to second order.
+double kinetic_energy(const World& world, const Instant& before, double after);
 
 /// Stretch, gaps and cable lengths at the present positions.
 void measure_cables(const Scene& scene, World& world);

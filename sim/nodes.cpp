@@ -68,13 +68,6 @@ double shortest_piece(const Scene& scene, const Cable& cable, double length) {
 }
 
 void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
-  if (cable.closed)
-    throw SceneError(place, "a closed cable cannot have a mass; leave out mass_per_metre_kg");
-  if (!cable.wraps.empty()) {
-    throw SceneError(place + "/wraps",
-                     "a cable with mass_per_metre_kg lies on bodies by its nodes; leave out its "
-                     "wraps, or its mass");
-  }
   if (!(cable.mass_per_metre < infinity) || cable.nodes < 0) {
     throw SceneError(place, "mass_per_metre_kg must be finite and nodes at least 1");
   }
@@ -161,7 +154,7 @@ std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
   const std::size_t given = scene.cables.size();
   for (std::size_t c = 0; c < given; ++c) {
-    if (scene.cables[c].mass_per_metre > 0.0) made.push_back(spread(scene, c));
+    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c));
   }
   return made;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Cables with mass: chains of nodes with massless pieces of cable between them.
+// Cables with mass that hang: chains of nodes with massless pieces of cable between them. Those that run
+// over bodies are in cable/mass.h.
 
 #include <vector>
 
@@ -18,7 +19,12 @@ struct NodedCable {
   int first_piece = 0, pieces = 0;  // its other pieces, likewise
 };
 
-/// Replaces every cable of the scene that has a mass by n nodes and n + 1 massless pieces of equal
+/// Whether spread_nodes makes a chain of it: a cable with mass that does not run over bodies.
+inline bool becomes_nodes(const Cable& cable) {
+  return cable.mass_per_metre > 0.0 && cable.wraps.empty();
+}
+
+/// Replaces every cable of the scene that has a mass, and runs over no bodies, by n nodes and n + 1 massless pieces of equal
 /// length l between them: node i has the mass (l_(i-1) + l_i) / 2 times that of a metre, and those next to
 /// an end on a body that can move have the end's half piece too. Nodes are discs as wide as the cable
 /// that do not turn: they lie on walls and bodies, and on one another, with friction.
@@ -28,7 +34,7 @@ struct NodedCable {
 /// twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension runs in a step,
 /// h sqrt(g L), beyond which nodes vibrate faster than steps can follow.
 ///
-/// Throws SceneError where a cable cannot have a mass: closed, with wraps, with more nodes than fit.
+/// Throws SceneError where a cable has no length, or more nodes than fit.
 std::vector<NodedCable> spread_nodes(Scene& scene);
 
 }  // namespace pinchlab

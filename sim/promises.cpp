@@ -8,7 +8,6 @@
 
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
-#include "sim/diagnostics.h"
 
 namespace pinchlab {
 namespace {
@@ -36,22 +35,17 @@ std::string name_of_side(const Scene& scene, int side) {
 
 }  // namespace
 
-Promises::Promises(const Scene& scene, const World& world)
-    : velocity_(world.velocity), angular_(world.angular_velocity) {
+Promises::Promises(const Scene& scene, const World& world) {
   const bool direct = world.configuration.solver == Solver::direct;
   watches_spans_ = direct;
   watches_gaps_ = direct && world.configuration.method == Method::pinch;
   watches_energy_ = direct && is_undriven(scene);
   if (!watches_energy_) return;
+  note_instant(world, before_);
   potential_ = potential_energy(scene, world);
-  double kinetic = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (body.kind == BodyKind::fixed) continue;
-    kinetic += 0.5 * inertia_of(body) * angular_[b] * angular_[b];
-    if (!can_move(body)) continue;
-    kinetic += 0.5 * body.mass * velocity_[b].squaredNorm();
-    at_play_ += body.mass * scene.gravity.norm() * body.radius;
+  const double kinetic = kinetic_energy(world, before_, 0.0);
+  for (const Body& body : scene.bodies) {
+    if (can_move(body)) at_play_ += body.mass * scene.gravity.norm() * body.radius;
   }
   start_energy_ = kinetic + potential_;
   at_play_ = std::max(at_play_, kinetic);
@@ -103,16 +97,7 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
 // step after it tells.
 void Promises::note_energy(const Scene& scene, const World& world) {
   const double after = lag_ / (lag_ + 0.5 * world.step_length);
-  double kinetic = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (body.kind == BodyKind::fixed) continue;
-    const double omega = (1.0 - after) * angular_[b] + after * world.angular_velocity[b];
-    kinetic += 0.5 * inertia_of(body) * omega * omega;
-    if (!can_move(body)) continue;
-    const Vec2 v = (1.0 - after) * velocity_[b] + after * world.velocity[b];
-    kinetic += 0.5 * body.mass * v.squaredNorm();
-  }
+  const double kinetic = kinetic_energy(world, before_, after);
   at_play_ = std::max(at_play_, kinetic);
   const bool whole = world.diagnostics.intervals - intervals_ <= 1;
   if (at_play_ > 0.0 && whole) {
@@ -120,8 +105,7 @@ void Promises::note_energy(const Scene& scene, const World& world) {
                world.step, -1, -1);
   }
   potential_ = potential_energy(scene, world);
-  velocity_ = world.velocity;
-  angular_ = world.angular_velocity;
+  note_instant(world, before_);
   lag_ = world.lag;
   intervals_ = world.diagnostics.intervals;
 }

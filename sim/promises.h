@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/world.h"
+#include "sim/diagnostics.h"
 
 namespace pinchlab {
 
@@ -62,8 +62,7 @@ class Promises {
                                  // by its radius, whichever is more
   double potential_ = 0.0;       // J, at the last step's end
   double lag_ = 0.0;             // s, that velocities were before that
-  std::vector<Vec2> velocity_;   // m/s
-  std::vector<double> angular_;  // rad/s
+  Instant before_;                // then
   std::int64_t intervals_ = 0;   // Diagnostics::intervals
 };
 

@@ -105,7 +105,7 @@ enum class Joint : std::int8_t {
 // friction of a pinch is at most grip * mu * N of either body. Arcs keep their capstan law, spans
 // their length, and a body without slip that lies on the pinched cable's way does not slip.
 
-/// A cable, massless but for its nodes (nodes.h), from `start` over `wraps` to `end`; a closed one has wraps only (at least
+/// A cable, massless unless it says so, from `start` over `wraps` to `end`; a closed one has wraps only (at least
 /// two).
 struct Cable {
   std::string name;          ///< unique in the scene
@@ -122,9 +122,11 @@ struct Cable {
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
   bool rod = false;      ///< bears force both ways, and nothing hits it: between nodes, and joints
-  double mass_per_metre = 0.0;    ///< kg/m; above 0 only until spread_nodes (nodes.h)
-  int nodes = 0;                  ///< of a cable with mass; 0: as spread_nodes chooses
-  double contact_friction = 0.5;  ///< Coulomb coefficient of a cable with mass on bodies and walls
+  /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes a chain
+  /// of nodes that have its mass (nodes.h).
+  double mass_per_metre = 0.0;
+  int nodes = 0;                  ///< of such a chain; 0: as spread_nodes chooses
+  double contact_friction = 0.5;  ///< Coulomb coefficient of its nodes on bodies and walls
   double linear_drag = 0.0;       ///< 1/s, of its nodes
 };
 

@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/detect/broad_phase.h"
+#include "sim/nodes.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
@@ -62,6 +63,25 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
              "that away from each",
              centre.x(), centre.y()));
   refuse(!body.inertia && body.carrier < 0, "a polygon needs its inertia (make_polygon)");
+}
+
+/// What slides along a cable has no mass of its own to slide with: cable/mass.h.
+void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::string& place) {
+  if (cable.mass_per_metre == 0.0) return;
+  const auto refuse = [&place](bool wrong, const char* message) {
+    if (wrong) throw SceneError(place, message);
+  };
+  refuse(!(cable.mass_per_metre > 0.0 && cable.mass_per_metre < infinity),
+         "the mass of a metre must be a number of at least 0");
+  refuse(becomes_nodes(cable), "a cable with mass needs its nodes (spread_nodes)");
+  refuse(cable.start.layers || cable.end.layers, "a cable with mass cannot lie in layers");
+  refuse(cable.creep, "a cable with mass cannot creep");
+  for (const Body& body : scene.bodies) {
+    if (body.cable_friction == infinity) continue;
+    throw SceneError(place, fmt::format("a cable with mass cannot slip, and could on body '{}'; leave "
+                                        "out the body's cable_friction, or the cable's mass",
+                                        body.name));
+  }
 }
 
 }  // namespace
@@ -181,7 +201,7 @@ void refuse_impossible_figures(const Scene& scene) {
            "the damping must be at least 0");
     refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
     refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
-    refuse(cable.mass_per_metre != 0.0, place, "a cable with mass needs its nodes (spread_nodes)");
+    refuse_impossible_mass(scene, cable, place);
     refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
     for (const Attachment* end : {&cable.start, &cable.end}) {
       const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();

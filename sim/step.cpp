@@ -94,11 +94,6 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
   d.total_solves += d.active_set_solves;
 }
 
-void note_velocities(const World& world, Workspace& work) {
-  work.velocity_before = world.velocity;
-  work.angular_velocity_before = world.angular_velocity;
-}
-
 /// A step in one: events take effect in the step in which they fall.
 StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
@@ -107,9 +102,8 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   solve_parts(scene, world, work, watch);
   if (!check_finite(scene, world)) return StepStatus::not_finite;
   if (world.configuration.diagnostics) {
-    work.lag_before = world.lag;
-    work.kick_before = whole_step(world).kick;
-    world.diagnostics.energy += kinetic_energy(world, work);
+    const double after = world.lag / whole_step(world).kick;
+    world.diagnostics.energy += kinetic_energy(world, work.before, after);
   }
   watch.lap(Stage::diagnose);
   work.start.position = world.position;
@@ -130,7 +124,7 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
     return StepStatus::ok;
   }
   if (world.configuration.diagnostics) {
-    note_velocities(world, work);
+    note_instant(world, work.before);
     world.diagnostics.energy = potential_energy(scene, world);
   }
   const StepStatus status = locates_events(world.configuration)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/detect/broad_phase.h"
+#include "sim/diagnostics.h"
 #include "sim/parts.h"
 #include "sim/solve/part_system.h"
 #include "sim/solve/solve_scratch.h"
@@ -81,9 +82,7 @@ struct Workspace {
   double local_error = 0.0;                      // m, of the last trial; by move_part
   std::vector<Happening> events;                 // of the interval being tried
 
-  std::vector<Vec2> velocity_before;  // m/s, at the start of the step; with diagnostics
-  std::vector<double> angular_velocity_before;
-  double lag_before = 0.0, kick_before = 0.0;  // s, of the kick that followed
+  Instant before;                               // at the start of the step; with diagnostics
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

@@ -95,6 +95,7 @@ struct Segment {
 
 struct CableState {
   double half_width = 0.0;  // m
+  double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
   double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
                             // Method::pinch_no_contact
   double grip = 1.0;        // factor on the friction of its pinches

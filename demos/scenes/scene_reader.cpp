@@ -193,6 +193,9 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   if (!from.contains("mass_per_metre_kg")) {
     refuse_keys(from, place, {"nodes", "contact_friction", "linear_drag_per_s"},
                 "a cable without mass_per_metre_kg");
+  } else if (from.contains("wraps")) {
+    refuse_keys(from, place, {"nodes", "contact_friction", "linear_drag_per_s", "creep"},
+                "a cable with mass_per_metre_kg that runs over bodies");
   } else {
     refuse_keys(from, place, {"squeeze", "grip", "creep"}, "a cable with mass_per_metre_kg");
   }
@@ -304,7 +307,7 @@ void Reader::spread(SceneContent& to) {
   int nodes = 0;
   for (std::size_t c = 0; c < to.scene.cables.size(); ++c) {
     const Cable& cable = to.scene.cables[c];
-    if (cable.mass_per_metre > 0.0) nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
+    if (becomes_nodes(cable)) nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
     if (nodes <= most_nodes) continue;
     problem(
         fmt::format("/cables/{}", c),

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -312,7 +313,7 @@ void remove_links(World& world, Workspace& work) {
         const Link& link = cable.links[i];
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
           work.released.push_back({static_cast<int>(c), link.body});
-          remove_link(world, cable, static_cast<int>(i));
+          leave_body(world, cable, static_cast<int>(i));
           changed = true;
           break;
         }

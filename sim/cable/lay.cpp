@@ -271,6 +271,7 @@ CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
   Course course{given, c, overlap_allowed(scene), {}, {}};
   CableState& cable = course.cable;
   cable.half_width = given.half_width;
+  cable.density = given.mass_per_metre;
   if (world.configuration.method == Method::pinch) {
     cable.least_gap = 2.0 * given.half_width * (1.0 - given.squeeze);
   }

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -196,7 +197,7 @@ void remove_open_pinches(World& world, const Parts& parts) {
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
           (!presses(world, cable, *contact) && contact->gap > width * (1.0 + 5e-4))) {
-        remove_link(world, cable, i);
+        leave_body(world, cable, i);
       }
     }
   }

@@ -3,6 +3,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -244,8 +245,8 @@ void add_hit_links(World& world, const Workspace& work) {
         }
       }
       if (earliest.found) {
-        insert_link(world, cable, earliest.segment, earliest.body, earliest.corner,
-                    earliest.orientation);
+        meet_body(world, cable, earliest.segment, earliest.body, earliest.corner,
+                  earliest.orientation);
         ++added;
         again = true;
       }

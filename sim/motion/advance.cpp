@@ -156,9 +156,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (!check_finite(scene, world)) return StepStatus::not_finite;
     lay_down_cables(world, work.parts);
     if (first && world.configuration.diagnostics) {
-      work.lag_before = lag;
-      work.kick_before = lag + 0.5 * length;
-      d.energy += kinetic_energy(world, work);
+      d.energy += kinetic_energy(world, work.before, lag / (lag + 0.5 * length));
     }
     ++d.intervals;
     d.local_error = std::max(d.local_error, work.local_error);

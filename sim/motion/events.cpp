@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/span_hits.h"
 #include "sim/motion/clearance.h"
@@ -135,9 +136,9 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     if (event.kind == EventKind::link_gone) {
       work.released.push_back({event.cable, at(cable.links, event.item).body});
-      remove_link(world, cable, event.item);
+      leave_body(world, cable, event.item);
     } else {
-      insert_link(world, cable, index(event.item), event.body, event.corner, event.orientation);
+      meet_body(world, cable, index(event.item), event.body, event.corner, event.orientation);
     }
     cable_changed = event.cable;
     item_changed = event.item;

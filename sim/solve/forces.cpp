@@ -2,8 +2,10 @@
 #include "sim/solve/forces.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/mass.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/workspace.h"
@@ -62,6 +64,87 @@ BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties no
   return now;
 }
 
+/// The part's velocities as its rows see them: before a kick, with the world's after the last.
+void list_velocities(const World& world, std::span<const int> bodies,
+                     std::vector<Eigen::Vector3d>& velocities) {
+  velocities.clear();
+  for (const int b : bodies) {
+    const Vec2& v = at(world.velocity, b);
+    velocities.emplace_back(v.x(), v.y(), at(world.angular_velocity, b));
+  }
+  velocities.emplace_back(Eigen::Vector3d::Zero());
+}
+
+/// Measures what the part's bodies carry of cables with mass.
+void measure_masses(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                    PartSystem& s) {
+  s.masses.clear();
+  for (const int c : cables_of(parts, part)) {
+    if (is_massed(at(world.cables, c))) add_masses(world, at(world.cables, c), s.masses);
+  }
+  const auto place = [&](int& body) {
+    const bool is_world = index(body) == world.bodies.size();
+    const int local = is_world ? -1 : at(parts.local, body);
+    body = local >= 0 ? local : s.ground();
+  };
+  for (MassedSpan& span : s.masses.spans) {
+    place(span.a);
+    place(span.b);
+  }
+  for (MassedArc& arc : s.masses.arcs) place(arc.body);
+  s.carried.assign(s.mobility.size(), {});
+  add_carried(s.masses, scene.gravity, s.carried);
+}
+
+/// Mobility and free velocity of a body that carries mass M beside its own,
+///     (M_b + M + k C / 2) v' = (M_b + M - k C / 2) v + k f,   C: drag,
+/// where v' is given in what the body cannot do by itself.
+void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
+          int place, PartSystem& s) {
+  const CarriedMass& carried = at(s.carried, place);
+  const double inertia = inertia_of(body);
+  const Eigen::Vector3d own(body.mass, body.mass, inertia);
+  const Eigen::Vector3d drag(body.linear_drag, body.linear_drag, body.angular_drag);
+  Eigen::Vector3d force = carried.weight + at(s.flow, place);
+  force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
+  const Eigen::Matrix3d half = (0.5 * k * own.cwiseProduct(drag)).asDiagonal();
+  Eigen::Matrix3d all = carried.mass;
+  all.diagonal() += own;
+  const Eigen::Matrix3d inverse = inverse_for(body, all + half);
+  Eigen::Vector3d& free = at(s.free_velocity, place);
+  Eigen::Vector3d given = Eigen::Vector3d::Zero();
+  if (body.driven_angular_velocity) given.z() = free.z();
+  free = given + inverse * ((all - half) * v + k * force - (all + half) * given);
+  at(s.mobility, place) = {inverse(0, 0), inverse(0, 1), inverse(1, 1),
+                           inverse(2, 2), inverse(0, 2), inverse(1, 2)};
+}
+
+/// Loads the part's bodies with the cables that they carry, and their motors.
+void load_bodies(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                 const TimeSpan& t, PartSystem& s) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  measure_masses(scene, world, parts, part, s);
+  list_velocities(world, bodies, s.velocity);
+  s.flow.resize(s.mobility.size());
+  find_flow_forces(s.masses, s.velocity, s.flow);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (s.carried[i].mass(0, 0) == 0.0) continue;
+    const Body& given = at(scene.bodies, bodies[i]);
+    const BodyProperties& body = at(world.bodies, bodies[i]);
+    const int place = static_cast<int>(i);
+    load(given.motor.empty() ? body : driven_now(given, t, body), scene.gravity, s.velocity[i],
+         t.kick, place, s);
+  }
+  for (Motor& motor : s.motors) {
+    const CarriedMass& carried = at(s.carried, motor.place);
+    motor.inertia += carried.mass(2, 2);
+    const double torque = carried.weight.z() + at(s.flow, motor.place).z();
+    motor.before += t.kick * torque / motor.inertia;
+    find_first_state(motor);
+  }
+  s.mobility_changed = true;
+}
+
 }  // namespace
 
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Workspace& work) {
@@ -88,14 +171,43 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
         add_motor(world.bodies[b], static_cast<int>(i), s.free_velocity[i].z(), omega, k, s);
       }
     }
-    drive(s);
+    bool massed = false;
     for (const int c : cables_of(work.parts, part)) {
       const CableState& cable = at(world.cables, c);
+      massed = massed || is_massed(cable);
       const auto segments = static_cast<double>(cable.segments.size());
       s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
     }
     s.reach = within_reach * s.extent;
+    s.carried.clear();
+    if (massed) load_bodies(scene, world, work.parts, part, t, s);
+    drive(s);
   }
+}
+
+double follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& t,
+                   PartSystem& s) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  const double after = t.kick > 0.0 ? t.lag / t.kick : 0.0;
+  s.flow_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Vec2& v = at(start.velocity, bodies[i]);
+    const Eigen::Vector3d before(v.x(), v.y(), at(start.angular_velocity, bodies[i]));
+    s.flow_velocity[i] = before + after * (s.velocity[i] - before);
+  }
+  s.flow_before.swap(s.flow);
+  s.flow.resize(s.mobility.size());
+  find_flow_forces(s.masses, s.flow_velocity, s.flow);
+  double most = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Eigen::Vector3d change = t.kick * (s.mobility[i] * (s.flow[i] - s.flow_before[i]));
+    s.free_velocity[i] += change;
+    const double furthest = std::sqrt(s.carried[i].mass(2, 2) /
+                                      std::max(s.carried[i].mass(0, 0), 1e-300));  // of its masses
+    most = std::max({most, std::abs(change.x()), std::abs(change.y()),
+                     std::abs(change.z()) * furthest});
+  }
+  return most * t.length;
 }
 
 }  // namespace pinchlab

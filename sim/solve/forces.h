@@ -3,8 +3,12 @@
 
 namespace pinchlab {
 
-struct TimeSpan;
+struct Part;
+struct PartSystem;
+struct Parts;
 struct Scene;
+struct Start;
+struct TimeSpan;
 struct Workspace;
 struct World;
 
@@ -12,5 +16,10 @@ struct World;
 /// what moves the bodies, into their parts' systems.
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   Workspace& work);
+
+/// Takes the flow of cables with mass at the middle of the kick, the part's velocities after it being those
+/// just solved for, into the free velocities; how far bodies move otherwise by that (m).
+double follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& interval,
+                   PartSystem& system);
 
 }  // namespace pinchlab

@@ -59,6 +59,7 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
     mobility.xx *= share;
     mobility.xy *= share;
     mobility.yy *= share;
+    mobility.xz = mobility.yz = 0.0;
     return;
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
@@ -71,13 +72,15 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
   mobility.xx = inverse(0, 0);
   mobility.xy = inverse(0, 1);
   mobility.yy = inverse(1, 1);
+  mobility.xz = mobility.yz = 0.0;
 }
 
 /// Mobilities as they are without spans.
 void restore(const World& world, std::span<const int> bodies, double kick, PartSystem& system) {
   for (std::size_t i = 0; i < bodies.size() && !system.span_masses.empty(); ++i) {
     SpanMass& span = system.span_masses[i];
-    if (span.steadied) {
+    const bool loaded = !system.carried.empty() && system.carried[i].mass(0, 0) > 0.0;
+    if (span.steadied && !loaded) {  // of loaded ones they are new with each kick
       system.mobility[i] = mobility_of(at(world.bodies, bodies[i]), kick);
       system.mobility_changed = true;
     }

@@ -85,10 +85,15 @@ void add_motor(const BodyProperties& body, int place, double speed, double befor
   motor.inertia = inertia_of(body);
   motor.moves = can_move(body);
   motor.most = body.torque_limit < infinity ? kick * body.torque_limit : infinity;
-  const double needed = motor.inertia * (speed - before);
-  if (std::abs(needed) > motor.most || motor.most == 0.0) {
-    motor.state = needed > 0.0 ? MotorState::forward : MotorState::backward;
-  }
+  find_first_state(motor);
+}
+
+void find_first_state(Motor& motor) {
+  const double needed = motor.inertia * (motor.speed - motor.before);
+  const bool gives = std::abs(needed) > motor.most || motor.most == 0.0;
+  motor.state = !gives         ? MotorState::holds
+                : needed > 0.0 ? MotorState::forward
+                               : MotorState::backward;
 }
 
 void drive(PartSystem& s) {

@@ -16,6 +16,9 @@ namespace pinchlab {
 void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
                PartSystem& system);
 
+/// Whether it can hold its speed by itself, or gives all it can.
+void find_first_state(Motor& motor);
+
 /// What the motors do to the free velocities and mobilities of the part's bodies.
 void drive(PartSystem& system);
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sim/cable/mass.h"
 #include "sim/contact.h"
 #include "sim/scene.h"
 #include "sim/solve/profile_ldl.h"
@@ -16,9 +17,11 @@ namespace pinchlab {
 struct Mobility {
   double xx = 0.0, xy = 0.0, yy = 0.0;  // 1/kg, symmetric: a rail body moves along its axis only
   double angular = 0.0;                 // 1/(kg m^2)
+  double xz = 0.0, yz = 0.0;            // 1/(kg m), of a body that carries cables with mass
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& j) const {
-    return {xx * j.x() + xy * j.y(), xy * j.x() + yy * j.y(), angular * j.z()};
+    return {xx * j.x() + xy * j.y() + xz * j.z(), xy * j.x() + yy * j.y() + yz * j.z(),
+            xz * j.x() + yz * j.y() + angular * j.z()};
   }
 };
 
@@ -140,6 +143,11 @@ struct PartSystem {
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
   std::vector<SpanMass> span_masses;           // empty until one body is too light
   std::vector<Motor> motors;                   // of its driven bodies
+  CableMasses masses;                          // of its cables; bodies are places in the part
+  std::vector<CarriedMass> carried;            // by its bodies; empty: cables without mass
+  std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
+  std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
+  std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before

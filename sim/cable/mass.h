@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Cables with mass that run over bodies: belts, and ropes over pulleys and on drums, tight enough to be
+// straight. Half of a span's mass moves with its end on either body, and what lies on a rim turns with
+// it, so that along a taut cable all of its mass and weight is there, whatever its spans' lengths.
+//
+// With z = left(x) for a place x from a body's centre, u = v + omega z is the velocity there, and what a
+// body carries of cables has the kinetic energy
+//     T = sum 1/2 rho l |u|^2 / 2 (ends of spans) + 1/2 integral rho |u|^2 ds (rims),
+// whose Hessian joins the body's own mass. T depends on where things are too: material flows, tangents
+// turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in velocities.
+
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// A straight piece between two links. Of its ends a and b: body that it moves with, or the number of
+/// bodies for the world, whose centre is its origin; p and centre of the link's circle, see Link.
+struct MassedSpan {
+  int a = 0, b = 0;
+  double p_a = 0.0, p_b = 0.0;                   // m
+  Vec2 centre_a = Vec2::Zero(), centre_b = centre_a;  // m, from the bodies' centres
+  Vec2 z_a = centre_a, z_b = centre_a;                // m, of the ends
+  Vec2 direction = Vec2(1.0, 0.0);
+  double distance = 0.0;  // m, over which ends that move across it turn it
+  bool pinched = false;   // turns with the line of centres
+  double material = 0.0;  // m
+  double density = 0.0;   // kg/m
+};
+
+/// What lies on a rim.
+struct MassedArc {
+  int body = 0;
+  Vec2 centre = Vec2::Zero();    // m, of the circle from the body's centre
+  double mass = 0.0;             // kg
+  Vec2 first = Vec2::Zero();     // kg m, integral of z
+  double second = 0.0;           // kg m^2, of |z|^2
+};
+
+struct CableMasses {
+  std::vector<MassedSpan> spans;
+  std::vector<MassedArc> arcs;
+
+  bool empty() const { return spans.empty(); }
+  void clear() {
+    spans.clear();
+    arcs.clear();
+  }
+};
+
+/// What cables add to a body at rest.
+struct CarriedMass {
+  Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();  // kg, kg m, kg m^2: for (x, y, angle)
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  // N, N, N m
+};
+
+/// Whether the cable has mass that bodies carry.
+inline bool is_massed(const CableState& cable) {
+  return cable.density > 0.0;
+}
+
+/// Adds a cable's masses, its geometry being up to date.
+void add_masses(const World& world, const CableState& cable, CableMasses& to);
+
+/// Those of all cables of the world.
+void find_masses(const World& world, CableMasses& masses);
+
+/// Adds what they are to bodies, one after another as in the spans, and the world after the last.
+void add_carried(const CableMasses& masses, const Vec2& gravity, std::span<CarriedMass> to);
+
+/// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`.
+void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
+                      std::span<Eigen::Vector3d> to);
+
+/// J.
+double kinetic_energy(const CableMasses& masses,
+                      const std::function<Eigen::Vector3d(int)>& velocity_of);
+double potential_energy(const CableMasses& masses, const World& world, const Vec2& gravity);
+
+/// Inverse of a matrix for (x, y, angle) on what the body can do: move, move along its rail, turn.
+Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& matrix);
+
+/// insert_link and remove_link of a cable that may have mass: a body that it meets, and those that it is
+/// left to, take up the momentum of their new share, which they and no others bear.
+void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
+               int orientation);
+void leave_body(World& world, CableState& cable, int link);
+
+}  // namespace pinchlab
