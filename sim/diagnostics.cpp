@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/cable/cable.h"
 #include "base/at.h"
+#include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/mass.h"
 

@@ -8,6 +8,7 @@
 
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 namespace {
@@ -78,6 +79,23 @@ void Promises::note_cables(const Scene& scene, const World& world) {
   }
 }
 
+// A parabola's, w l^2 / 8 T by the weight w of a metre across the span; slack, it hangs by all of its length.
+void Promises::note_sag(const Scene& scene, const World& world) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    if (!is_massed(cable)) continue;
+    double sag = 0.0;
+    for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
+      const Segment& span = cable.segments[i];
+      const double weight =
+          cable.density * span.length * std::abs(cross(span.direction, scene.gravity));
+      if (weight > 0.0)
+        sag = std::max(sag, std::min(0.125 * weight / std::max(span.tension, 0.0), 1.0));
+    }
+    note_value(Promise::straight, sag, limits_.sag, world.step, static_cast<int>(c), -1);
+  }
+}
+
 void Promises::note_contacts(const Scene& scene, const World& world) {
   for (const Contact& contact : world.contacts) {
     const double depth = contact.target - contact.gap;
@@ -113,6 +131,7 @@ void Promises::note_energy(const Scene& scene, const World& world) {
 void Promises::note(const Scene& scene, const World& world) {
   now_.fill({});
   note_cables(scene, world);
+  note_sag(scene, world);
   if (watches_gaps_) note_contacts(scene, world);
   if (watches_energy_) note_energy(scene, world);
   if (world.diagnostics.fallbacks > fallbacks_) {
@@ -159,6 +178,12 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
             "the scene gained {} of the energy at play, and nothing drives it "
             "(limit {})",
             percent(w.value), percent(limits_.energy));
+        break;
+      case Promise::straight:
+        what = fmt::format(
+            "cable '{}', whose spans have mass and are straight, would have hung by {} of one's "
+            "length (limit {})",
+            scene.cables[at(w.item)].name, percent(w.value), percent(limits_.sag));
         break;
       default:
         what = "the solver did not settle and took its fallback";

@@ -18,9 +18,10 @@ struct PromiseLimits {
   double squeeze = 1e-3;  ///< of the pinched cable's width, or of the smaller radius without cable
   double length = 1e-6;   ///< wraps and spans against the cable's length, over it
   double energy = 1e-2;   ///< gained since the start, of the energy at play; undriven scenes only
+  double sag = 0.125;     ///< that a span of a cable with mass would have, over its length
 };
 
-enum class Promise { strain, squeeze, length, energy, settled, count };
+enum class Promise { strain, squeeze, length, energy, straight, settled, count };
 
 /// Watches one world from its start. What is promised depends on the configuration: `squeeze` needs
 /// Method::pinch, and sweeps (Solver::iterative) promise nothing but the cables' lengths.
@@ -48,6 +49,7 @@ class Promises {
   void note_value(Promise promise, double value, double limit, std::int64_t step, int item,
                   int other);
   void note_cables(const Scene& scene, const World& world);
+  void note_sag(const Scene& scene, const World& world);
   void note_contacts(const Scene& scene, const World& world);
   void note_energy(const Scene& scene, const World& world);
 
@@ -57,13 +59,13 @@ class Promises {
   std::array<Worst, static_cast<std::size_t>(Promise::count)> now_;  // of the step being noted
   std::int64_t fallbacks_ = 0;
 
-  double start_energy_ = 0.0;    // J
-  double at_play_ = 0.0;         // J: the largest kinetic energy so far, or what lifts each body
-                                 // by its radius, whichever is more
-  double potential_ = 0.0;       // J, at the last step's end
-  double lag_ = 0.0;             // s, that velocities were before that
-  Instant before_;                // then
-  std::int64_t intervals_ = 0;   // Diagnostics::intervals
+  double start_energy_ = 0.0;   // J
+  double at_play_ = 0.0;        // J: the largest kinetic energy so far, or what lifts each body
+                                // by its radius, whichever is more
+  double potential_ = 0.0;      // J, at the last step's end
+  double lag_ = 0.0;            // s, that velocities were before that
+  Instant before_;              // then
+  std::int64_t intervals_ = 0;  // Diagnostics::intervals
 };
 
 }  // namespace pinchlab

@@ -78,9 +78,10 @@ void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::s
   refuse(cable.creep, "a cable with mass cannot creep");
   for (const Body& body : scene.bodies) {
     if (body.cable_friction == infinity) continue;
-    throw SceneError(place, fmt::format("a cable with mass cannot slip, and could on body '{}'; leave "
-                                        "out the body's cable_friction, or the cable's mass",
-                                        body.name));
+    throw SceneError(place,
+                     fmt::format("a cable with mass cannot slip, and could on body '{}'; leave "
+                                 "out the body's cable_friction, or the cable's mass",
+                                 body.name));
   }
 }
 

@@ -82,7 +82,7 @@ struct Workspace {
   double local_error = 0.0;                      // m, of the last trial; by move_part
   std::vector<Happening> events;                 // of the interval being tried
 
-  Instant before;                               // at the start of the step; with diagnostics
+  Instant before;  // at the start of the step; with diagnostics
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

@@ -92,6 +92,14 @@ std::vector<Ladder> climb_all(bool quick, Progress& progress) {
       "a load on a drum in layers", [](int n) { return layered_hoist(8, 0.02, n); }, 1.0, nullptr,
       finest, rungs));
   progress.done(1.0);
+  const Scene atwood = rope_atwood(1);
+  const double k = std::sqrt(0.8 * atwood.gravity.norm() / 4.35);  // 1/s
+  const Vec2 fallen = atwood.bodies[1].position - Vec2(0.0, 0.625 * (std::cosh(k) - 1.0));
+  ladders.push_back(
+      climb("Atwood's machine with a heavy rope", rope_atwood, 1.0, &fallen, 0, rungs));
+  ladders.push_back(
+      climb("a tackle with a heavy rope swings", heavy_tackle, 0.4, nullptr, finest, rungs));
+  progress.done(1.0);
   return ladders;
 }
 
@@ -326,7 +334,7 @@ std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Poly
 
 void run_shapes(const Options& options) {
   Output output(options.out);
-  Progress progress("shapes", 8.0);
+  Progress progress("shapes", 9.0);
   const std::vector<Ladder> ladders = climb_all(options.quick, progress);
   const std::vector<Polygon> polygons = compare_polygons();
   progress.done(1.0);

@@ -163,6 +163,32 @@ Scene belt_drive(double radius, double tension, double difference, int steps_per
   return scene;
 }
 
+Scene rope_atwood(int steps_per_frame) {
+  constexpr double radius = 0.2, half_width = 0.01;  // m, of the rope on the pulley
+  const double span = 0.5 * (4.0 - radius * std::numbers::pi);
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("light", BodyKind::free, -radius, -span, 0.05));
+  scene.bodies.push_back(body("heavy", BodyKind::free, radius, -span, 0.05, 1.5));
+  scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 0.0, 0.0, radius - half_width));
+  scene.bodies[2].inertia = 0.25 * radius * radius;
+  scene.cables.push_back(cable(on(0), {{2, -1, 0}}, on(1), half_width));
+  scene.cables[0].mass_per_metre = 0.4;
+  return scene;
+}
+
+Scene heavy_tackle(int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("block", BodyKind::free, 0.05, -1.0, 0.19));
+  scene.bodies.push_back(body("weight", BodyKind::free, 0.62, -0.8, 0.1, 0.7));
+  scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 0.45, 0.0, 0.14));
+  const Attachment hook{1, {0.005, 0.05}};
+  scene.cables.push_back(cable(at(-0.3, 0.3), {{0, 1, 0}, {2, -1, 0}}, hook, 0.01));
+  scene.cables[0].mass_per_metre = 0.8;
+  return scene;
+}
+
 Scene catenary(int pieces, int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

@@ -49,6 +49,15 @@ constexpr double belt_half_width = 0.01;  // m
 /// m, is driven at 6 rad/s; drag on body 1, of `radius` (m), asks for `difference` (N) between its spans.
 Scene belt_drive(double radius, double tension, double difference, int steps_per_frame);
 
+/// Atwood's machine with a heavy rope, of 4 m and 0.4 kg/m in all: weights of 1 and 1.5 kg, bodies 0 and
+/// 1, hang level over a pulley with I / R^2 = 0.25 kg. From rest the heavier one falls by
+/// x = 0.625 m (cosh k t - 1), k^2 = 0.8 kg/m g / 4.35 kg.
+Scene rope_atwood(int steps_per_frame);
+
+/// A block, body 0, in the bight of a rope of 0.8 kg/m, which runs on over a pulley to a weight, body 1. From
+/// rest both swing.
+Scene heavy_tackle(int steps_per_frame);
+
 /// A cable of 2 m and 1 kg/m whose ends are 1 m apart at one height, in so many pieces (0: as the program
 /// chooses). Before spread_nodes.
 Scene catenary(int pieces, int steps_per_frame);

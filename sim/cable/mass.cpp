@@ -96,8 +96,8 @@ void add_flow_forces(const MassedSpan& span, std::span<const Vector3d> v, std::s
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
   const double mass = 0.5 * rho * span.material;
-  const double growth = 0.5 * rho *
-                        (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));  // kg/s
+  const double growth =
+      0.5 * rho * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));      // kg/s
   const double e_a = 0.5 * rho * u_a.squaredNorm(), e_b = 0.5 * rho * u_b.squaredNorm();  // J/m
 
   // A point mass whose place on the body moves, and what rims gain by the span's turning.
@@ -196,8 +196,7 @@ void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> veloc
   }
 }
 
-double kinetic_energy(const CableMasses& masses,
-                      const std::function<Vector3d(int)>& velocity_of) {
+double kinetic_energy(const CableMasses& masses, const std::function<Vector3d(int)>& velocity_of) {
   double twice = 0.0;
   for (const MassedSpan& span : masses.spans) {
     const double mass = 0.5 * span.density * span.material;

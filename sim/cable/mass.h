@@ -23,7 +23,7 @@ namespace pinchlab {
 /// bodies for the world, whose centre is its origin; p and centre of the link's circle, see Link.
 struct MassedSpan {
   int a = 0, b = 0;
-  double p_a = 0.0, p_b = 0.0;                   // m
+  double p_a = 0.0, p_b = 0.0;                        // m
   Vec2 centre_a = Vec2::Zero(), centre_b = centre_a;  // m, from the bodies' centres
   Vec2 z_a = centre_a, z_b = centre_a;                // m, of the ends
   Vec2 direction = Vec2(1.0, 0.0);
@@ -36,10 +36,10 @@ struct MassedSpan {
 /// What lies on a rim.
 struct MassedArc {
   int body = 0;
-  Vec2 centre = Vec2::Zero();    // m, of the circle from the body's centre
-  double mass = 0.0;             // kg
-  Vec2 first = Vec2::Zero();     // kg m, integral of z
-  double second = 0.0;           // kg m^2, of |z|^2
+  Vec2 centre = Vec2::Zero();  // m, of the circle from the body's centre
+  double mass = 0.0;           // kg
+  Vec2 first = Vec2::Zero();   // kg m, integral of z
+  double second = 0.0;         // kg m^2, of |z|^2
 };
 
 struct CableMasses {
@@ -55,7 +55,7 @@ struct CableMasses {
 
 /// What cables add to a body at rest.
 struct CarriedMass {
-  Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();  // kg, kg m, kg m^2: for (x, y, angle)
+  Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();    // kg, kg m, kg m^2: for (x, y, angle)
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  // N, N, N m
 };
 

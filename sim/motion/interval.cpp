@@ -141,20 +141,19 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
     part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
-    double flowed = 0.0;
-    if (!s.carried.empty() && most_rounds > 0) {
-      flowed = follow_flow(work.start, work.parts, part, t, s);
-    }
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = std::max(add_missed(scene, world, work, t, s), flowed);
+    const double missed = add_missed(scene, world, work, t, s);
+    const bool follows = round < 2 && most_rounds > 0 && !s.carried.empty();
+    if (follows) follow_flow(work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
     if (round == 1) work.local_error = std::max(work.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.
-    if (missed <= exact * s.reach || t.length < shortest_corrected * t.repair) return true;
+    const bool meets = missed <= exact * s.reach || t.length < shortest_corrected * t.repair;
+    if (meets && !follows) return true;
     // Where states flip it may get worse for a round.
     work.missed = std::max(work.missed, missed / s.extent);
     if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))

@@ -2,7 +2,6 @@
 #include "sim/solve/forces.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/mass.h"
@@ -185,8 +184,8 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
   }
 }
 
-double follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& t,
-                   PartSystem& s) {
+void follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& t,
+                 PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
   const double after = t.kick > 0.0 ? t.lag / t.kick : 0.0;
   s.flow_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
@@ -198,16 +197,11 @@ double follow_flow(const Start& start, const Parts& parts, const Part& part, con
   s.flow_before.swap(s.flow);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, s.flow_velocity, s.flow);
-  double most = 0.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Eigen::Vector3d change = t.kick * (s.mobility[i] * (s.flow[i] - s.flow_before[i]));
     s.free_velocity[i] += change;
-    const double furthest = std::sqrt(s.carried[i].mass(2, 2) /
-                                      std::max(s.carried[i].mass(0, 0), 1e-300));  // of its masses
-    most = std::max({most, std::abs(change.x()), std::abs(change.y()),
-                     std::abs(change.z()) * furthest});
+    s.velocity[i] += change;
   }
-  return most * t.length;
 }
 
 }  // namespace pinchlab

@@ -199,6 +199,26 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
+/// Cables with mass over bodies, which then let nothing slip. No bytes: none.
+void add_heavy_cables(json& scene, Choices& choices) {
+  bool any = false;
+  for (json& cable : scene["cables"]) {
+    if (choices.below(3) != 1 || cable["wraps"].empty()) continue;
+    cable["mass_per_metre_kg"] = choices.magnitude(-3.0, 3.0);
+    cable.erase("creep");
+    for (const char* end : {"start", "end"}) {
+      if (cable.contains(end)) cable[end].erase("layers");
+    }
+    any = true;
+  }
+  if (!any) return;
+  for (json& body : scene["bodies"]) {
+    body.erase("cable_friction");
+    if (!body.contains("shapes")) continue;
+    for (json& shape : body["shapes"]) shape.erase("cable_friction");
+  }
+}
+
 json joint_end(Choices& choices, std::size_t bodies) {
   if (choices.one_in(3))
     return {{"world_m", {choices.between(-4.0, 4.0), choices.between(-4.0, 4.0)}}};
@@ -318,6 +338,7 @@ std::string scene_of(std::string_view bytes) {
           cable.contains("axial_stiffness_n") && !cable.contains("mass_per_metre_kg");
       if (choices.one_in(2) && elastic) cable["creep"] = true;
     }
+    add_heavy_cables(made, choices);
   }
   return made.dump(1);
 }

@@ -178,9 +178,9 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
   };
   EXPECT_EQ(error("{}"), "no error");
   EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}]})"),
-            "s.json: /cables/0/wraps: a cable with mass_per_metre_kg lies on bodies by its nodes; "
-            "leave out its "
-            "wraps, or its mass");
+            "s.json: /cables/0/nodes: has no effect on a cable with mass_per_metre_kg that runs "
+            "over bodies; "
+            "leave it out");
   EXPECT_EQ(error(R"({"nodes": 1000})"),
             "s.json: /cables/0/nodes: pieces of 4.5 mm between nodes are no longer than the cable "
             "is wide; at most "
