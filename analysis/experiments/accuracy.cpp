@@ -30,6 +30,9 @@ std::vector<ProblemResult> problems(const Extent& extent) {
   for (Problem& problem : known_problems()) {
     results.push_back({std::move(problem), false, {}, {}});
   }
+  for (Problem& problem : finely_solved_problems(extent.reference_steps)) {
+    results.push_back({std::move(problem), false, {}, {}});
+  }
   const std::vector<std::filesystem::path> paths = find_scenes({demos_folder()});
   Progress progress("the demonstrations' own solutions", static_cast<double>(paths.size()));
   for (const std::filesystem::path& path : paths) {

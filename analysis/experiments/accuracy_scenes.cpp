@@ -10,6 +10,8 @@
 
 #include "analysis/experiments/references.h"
 #include "demos/scenes/build.h"
+#include "demos/scenes/shape_scenes.h"
+#include "sim/nodes.h"
 
 namespace pinchlab::experiments {
 
@@ -198,9 +200,71 @@ Problem hanging_load() {
   return problem;
 }
 
+Problem rope_atwood() {
+  Problem problem;
+  problem.name = "rope-atwood";
+  problem.title = "Atwood's machine with a heavy rope";
+  problem.scene = build::rope_atwood(4);
+  problem.watched = {0, 1};
+  problem.reference = "closed form";
+  const double k = std::sqrt(0.8 * g / 4.35);  // 1/s
+  set_exact(problem, [&](double t, std::size_t b) {
+    const double down = (b == 1 ? 0.625 : -0.625) * (std::cosh(k * t) - 1.0);
+    return Place{problem.scene.bodies[b].position - Vec2(0.0, down), 0.0};
+  });
+  problem.length_m = reach(problem.exact, false);
+  problem.length = "the way of the weights";
+  return problem;
+}
+
+Problem square_unwinding() {
+  const build::SquareDrum drum;
+  Problem problem;
+  problem.name = "square-unwinding";
+  problem.title = "A bob whose cable unwinds from a square";
+  problem.scene = drum.scene(4);
+  problem.frames = 72;
+  problem.watched = {1};
+  problem.reference = "independent equations of motion, Runge and Kutta's method";
+  set_exact(problem, [&](double t, std::size_t) { return Place{drum.bob_after(t), 0.0}; });
+  problem.length_m = reach(problem.exact, false);
+  problem.length = "the farthest that the bob gets from its start";
+  return problem;
+}
+
+Problem hanging_cable() {
+  Problem problem;
+  problem.name = "hanging-cable";
+  problem.title = "A cable with mass that hangs at rest";
+  problem.scene = build::catenary(50, 4);
+  spread_nodes(problem.scene);
+  for (std::size_t b = 0; b < problem.scene.bodies.size(); ++b) problem.watched.push_back(b);
+  problem.length_m = 2.0;
+  problem.length = "the cable's length";
+  stay(problem);
+  return problem;
+}
+
 std::vector<Problem> known_problems() {
-  return {atwood(),         slipping_atwood(), pulley_chain(), swinging_load(),
-          roller_on_drum(), resting_stack(),   hanging_load()};
+  return {atwood(),        slipping_atwood(), pulley_chain(), swinging_load(),    roller_on_drum(),
+          resting_stack(), hanging_load(),    rope_atwood(),  square_unwinding(), hanging_cable()};
+}
+
+std::vector<Problem> finely_solved_problems(int steps_per_frame) {
+  const auto solved = [=](const char* name, const char* title, Scene scene, double seconds) {
+    scene.title = title;
+    return own_solution(name, scene, seconds, steps_per_frame);
+  };
+  const std::vector<Vec2> square = build::box_corners(0.6, 0.6);
+  return {
+      solved("square-turning", "A square drum turns under a bob",
+             build::turning_drum(square, 2.5, 4), 1.6),
+      solved("layered-drum", "A load on a drum in layers", build::layered_hoist(8, 0.02, 4), 1.0),
+      solved("heavy-tackle", "A tackle with a heavy rope swings", build::heavy_tackle(4), 0.4),
+      solved("creeping-belt", "A belt creeps over its pulleys",
+             build::belt_drive(0.35, 150.0, 101.0, 4), 1.0),
+      solved("folded-chain", "A folded chain of 20 pieces is let go", build::folded_chain(20, 4),
+             0.3)};
 }
 
 Problem own_solution(const std::string& name, const Scene& scene, double seconds,

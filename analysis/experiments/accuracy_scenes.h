@@ -18,8 +18,15 @@ Problem roller_on_drum();   ///< a roller over the crown of a wrapped drum, pinc
 Problem resting_stack();    ///< four pinched pulleys on a wrapped one, and a weight: all at rest
 Problem hanging_load();     ///< 100 kg at rest on two metres of cable
 
+Problem rope_atwood();       ///< 1 and 1.5 kg on a rope of 1.6 kg over a pulley
+Problem square_unwinding();  ///< a bob whose cable comes off the corners of a fixed square
+Problem hanging_cable();     ///< 2 m of a cable with mass, of 50 pieces, at rest
+
 /// All of the above.
 std::vector<Problem> known_problems();
+
+/// Corners, layers, masses and creep whose motion is known from their own solutions only.
+std::vector<Problem> finely_solved_problems(int steps_per_frame);
 
 /// A scene against its own solution (pinch, direct) at `steps_per_frame`, over `seconds`: for
 /// scenes whose motion is not known otherwise. All bodies are watched, rims too. Throws SceneError

@@ -14,9 +14,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "sim/outline.h"
+
 namespace pinchlab::experiments {
 
 namespace {
+
+/// Why neither can take part, or nothing.
+[[maybe_unused]] std::string cannot_by_shape(const Problem& problem) {
+  const Scene& scene = problem.scene;
+  const bool corners = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                   [](const Body& body) { return is_polygon(body); });
+  if (corners) return "corners are not built";
+  for (const Cable& cable : scene.cables) {
+    if (cable.mass_per_metre > 0.0 || cable.rod) return "cables with mass are not built";
+    if (cable.start.layers || cable.end.layers) return "layers are not built";
+    if (cable.axial_stiffness < infinity) return "elastic cables are not built";
+  }
+  return "";
+}
 
 Peer box2d() {
   Peer peer;
@@ -31,7 +49,10 @@ Peer box2d() {
       "friction and is no cable.";
 #ifdef PINCHLAB_BOX2D
   peer.version = fmt::format("{}.{}", b2_version.major, b2_version.minor);
-  peer.cannot = box2d_cannot;
+  peer.cannot = [](const Problem& problem) {
+    const std::string why = cannot_by_shape(problem);
+    return why.empty() ? box2d_cannot(problem) : why;
+  };
   peer.settings = [](const Problem&, bool quick) {
     std::vector<PeerSetting> settings;
     const std::vector<double> links = quick ? std::vector{0.2} : std::vector{0.2, 0.1};
@@ -76,7 +97,10 @@ Peer mujoco() {
       "leapfrog of second order, and against RK4.";
 #ifdef PINCHLAB_MUJOCO
   peer.version = mj_versionString();
-  peer.cannot = mujoco_cannot;
+  peer.cannot = [](const Problem& problem) {
+    const std::string why = cannot_by_shape(problem);
+    return why.empty() ? mujoco_cannot(problem) : why;
+  };
   peer.settings = [](const Problem&, bool) {
     std::vector<PeerSetting> settings;
     const auto add = [&](const std::string& text, const std::string& integrator, bool leapfrog) {
