@@ -44,6 +44,9 @@ Item fast_bodies(bool quick);
 Item frames_and_steps(bool quick);
 Item long_swing(bool quick);
 Item impacts(bool quick);
+Item corners(bool quick);
+Item heavy_ropes(bool quick);
+Item folding(bool quick);
 
 /// 10^from, 10^(from + 1/per_decade) .. 10^to.
 std::vector<double> decades(double from, double to, int per_decade);

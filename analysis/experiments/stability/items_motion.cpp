@@ -150,11 +150,17 @@ Item long_swing(bool quick) {
       "The leapfrog is symplectic as long as its constraints are met exactly: its energy swings "
       "about a constant; sweeps leave some of the constraint's speed in, and damp.";
   item.scene =
-      "A load swings on a cable that winds and unwinds on a drum, and a roller runs to and fro in "
-      "the bight of a cable: after up to a million steps their energy must be the same.";
+      "A load swings on a cable that winds and unwinds on a drum, without mass and on one of 0.2 "
+      "kg "
+      "a metre, and a roller runs to and fro in the bight of a cable: after up to a million steps "
+      "their energy must be the same.";
   for (const double steps : decades(3, quick ? 5 : 6, 1)) {
     item.cases.push_back(
         swings("unwinding pendulum", steps, unwinding_pendulum(), steps / 240.0, 1.0));
+    Scene heavy = unwinding_pendulum();
+    heavy.cables[0].mass_per_metre = 0.2;
+    item.cases.push_back(
+        swings("unwinding from a drum, heavy rope", steps, std::move(heavy), steps / 240.0, 1.0));
     item.cases.push_back(swings("roller in a bight", steps, roller_in_bight(), steps / 240.0, 1.0));
   }
   return item;

@@ -110,6 +110,7 @@ void note_positions(const Scene& scene, const World& world, Measures& m) {
 double squeeze(const Scene& scene, const World& world) {
   double worst = 0.0;
   for (const CableState& cable : world.cables) {
+    if (is_passed(cable)) continue;
     double deepest = 0.0;
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
       deepest = std::max(deepest, wrap_overlap(scene, world, cable, i));
