@@ -27,6 +27,15 @@ struct Part {
   bool slides = false;                       // by solve_parts: cable may slide over bodies
 };
 
+inline bool has_contacts(const Part& part) {
+  return part.contacts_begin != part.contacts_end;
+}
+
+/// Whether cable of the part can slide over bodies, over those of finite friction or in pinches.
+inline bool can_slide(const Part& part) {
+  return part.may_slide || has_contacts(part);
+}
+
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
 struct Parts {
   std::vector<Part> list;

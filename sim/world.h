@@ -105,6 +105,8 @@ struct CableState {
   bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far
+  bool unwound =
+      false;  // a link that it rolls on has lost its wrap, by update_wraps_and_rest_lengths
   std::vector<Link> links;
   std::vector<Rim> rims;  // as many, of an elastic cable that creeps; else none. By lay_down
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs

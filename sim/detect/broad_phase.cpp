@@ -218,7 +218,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   const Margin margin(scene, world);
   bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
   for (std::size_t b = 0; valid && b < count; ++b) {
-    valid = !can_move(world.bodies[b]) || is_still(work.parts, static_cast<int>(b)) ||
+    valid = is_still(work.parts, static_cast<int>(b)) || !can_move(world.bodies[b]) ||
             holds(broad.boxes[b], world.position[b], reach_of_body(world, margin, b));
   }
   if (valid) return;

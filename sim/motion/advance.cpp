@@ -73,11 +73,17 @@ void apply_no_forces(const Scene& scene, const World& world, double time, Worksp
 }
 
 /// Whether a contact is, that can give.
-bool is_squeezed(const World& world) {
-  return std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
-    if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) return false;
-    return can_move(at(world.bodies, c.a)) || (c.b >= 0 && can_move(at(world.bodies, c.b)));
-  });
+bool is_squeezed(const World& world, const Parts& parts) {
+  for (const Part& part : parts.list) {
+    if (!part.can_move) continue;
+    for (const int number : contacts_of(parts, part)) {
+      const Contact& c = at(world.contacts, number);
+      if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
+      if (can_move(at(world.bodies, c.a))) return true;
+      if (c.b >= 0 && can_move(at(world.bodies, c.b))) return true;
+    }
+  }
+  return false;
 }
 
 void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
@@ -181,8 +187,8 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     detect_after_moving(scene, world, work, times);
     watch = Stopwatch(times);
     empty_pinches(world, work.parts);
-    const bool violated =
-        !met || work.violated || changes_of_cables(world) != changes || is_squeezed(world);
+    const bool violated = !met || work.violated || changes_of_cables(world) != changes ||
+                          is_squeezed(world, work.parts);
     settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);
     watch.lap(Stage::solve);
   }

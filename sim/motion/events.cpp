@@ -81,6 +81,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
   key.reach = s.reach;
   for (const int c : cables_of(work.parts, part)) {
     const CableState& cable = at(world.cables, c);
+    if (!cable.unwound && work.events.empty()) continue;
     key.cable = c;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
       const Link& link = at(cable.links, i);

@@ -12,16 +12,30 @@ namespace pinchlab {
 
 namespace {
 
+/// Whether the body only turns, at what angular velocity rows leave it.
+bool coasts(const Body& given, const BodyProperties& body) {
+  return body.kind == BodyKind::fixed_axle && !body.driven_angular_velocity &&
+         given.motor.empty() && body.angular_drag == 0.0 && body.torque == 0.0;
+}
+
 /// What of a part's bodies lasts from step to step.
-void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
+void make_system(const Scene& scene, const World& world, std::span<const int> bodies, double kick,
+                 PartSystem& s) {
   s.mobility_changed = true;
   s.mobility_kick = kick;
   s.mobility.clear();
   s.mobile.clear();
   s.span_masses.clear();
+  s.coasts.clear();
+  s.extent_of_coasting = 0.0;
   for (const int b : bodies) {
-    s.mobility.push_back(mobility_of(at(world.bodies, b), kick));
-    s.mobile.push_back(is_mobile(at(world.bodies, b)));
+    const BodyProperties& body = at(world.bodies, b);
+    s.mobility.push_back(mobility_of(body, kick));
+    s.mobile.push_back(is_mobile(body));
+    s.coasts.push_back(coasts(at(scene.bodies, b), body));
+    if (!s.coasts.back()) continue;
+    s.extent_of_coasting =
+        std::max(s.extent_of_coasting, at(world.position, b).cwiseAbs().maxCoeff());
   }
   s.mobility.emplace_back();  // nothing moves the world
   s.mobile.push_back(false);
@@ -71,11 +85,15 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
     PartSystem& s = at(work.systems, part.system);
     const std::span<const int> bodies = bodies_of(work.parts, part);
     s.mobility_changed = false;
-    if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
-    s.extent = 0.0;
+    if (s.mobility.empty() || s.mobility_kick != k) make_system(scene, world, bodies, k, s);
+    s.extent = s.extent_of_coasting;
     s.motors.clear();
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto b = index(bodies[i]);
+      if (s.coasts[i]) {
+        s.free_velocity[i] = {0.0, 0.0, world.angular_velocity[b]};
+        continue;
+      }
       const Body& given = scene.bodies[b];
       const Vec2& v = world.velocity[b];
       const double omega = world.angular_velocity[b];
