@@ -116,8 +116,10 @@ int number_parts(const World& world, Parts& parts) {
   int count = 0;
   parts.of_body.assign(index(bodies), -1);
   parts.immobile.resize(index(bodies));
+  parts.movers.clear();
   for (int b = 0; b < bodies; ++b) {
     at(parts.immobile, b) = !can_move(at(world.bodies, b));
+    if (!at(parts.immobile, b)) parts.movers.push_back(b);
     if (is_static(at(world.bodies, b))) continue;
     const int root = find_root(parts.root, b);
     at(parts.of_body, b) = root == b ? count++ : at(parts.of_body, root);
@@ -145,6 +147,12 @@ void describe(const World& world, Parts& parts, Part& part) {
   for (const int shape : carried_of(parts, part)) {
     at(parts.local, shape) = at(parts.local, at(world.bodies, shape).carrier);
     part.can_move = true;  // by turning, at least
+  }
+  // Between bodies that cannot give way a cable that none of them lets slip is held.
+  if (!has_contacts(part)) return;
+  part.can_slip = part.can_move;
+  for (const int c : cables_of(parts, part)) {
+    part.can_slip = part.can_slip || at(world.cables, c).grip == 0.0;
   }
 }
 

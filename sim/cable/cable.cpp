@@ -210,17 +210,19 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
 
 bool update_cable(const World& world, CableState& cable, bool begins) {
   bool moved = false;
-  Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
+  const Link* from = &cable.links[tail_link(cable, first_segment(cable))];
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
     Segment& segment = cable.segments[i];
-    const Vec2 to = link_centre(world, cable.links[i]);
+    const Link* to = &cable.links[i];
     if (begins && segment.moved) {
       segment.previous_tail = segment.tail;
       segment.previous_head = segment.head;
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    if (cable.fills || from != segment.tail_centre || to != segment.head_centre) {
+    const bool stands = from->still && to->still && !cable.fills;
+    if (!stands && (cable.fills || link_centre(world, *from) != segment.tail_centre ||
+                    link_centre(world, *to) != segment.head_centre)) {
       update_tangent(world, cable, i);
     }
     moved = moved || segment.moved;
@@ -339,6 +341,7 @@ Link rolling_link(const BodyProperties& properties, int body, int corner, int or
   link.corner = corner;
   link.orientation = orientation;
   link.radius = (corner < 0 ? properties.radius : properties.corner_radius) + half_width;
+  link.still = corner < 0 && !can_move(properties);
   if (corner >= 0) link.offset = at(properties.corners, corner);
   return link;
 }
@@ -412,6 +415,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
       middle.body = next->body;
       middle.orientation = -whole.orientation;
       middle.radius = at(world.bodies, next->body).radius + cable.half_width;
+      middle.still = !can_move(at(world.bodies, next->body));
       middle.pinch_middle = true;
       const double pressed = material_at(cable, i, false, between.alpha, body_angle(world, whole));
       middle.material =

@@ -143,7 +143,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
-    part.slides = !set.capstan.runs.empty() || has_contacts(part);
+    part.slides = !set.capstan.runs.empty() || part.can_slip;
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
     watch.lap(Stage::move_bodies);

@@ -82,7 +82,7 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   return friction;
 }
 
-void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scratch) {
+bool find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scratch) {
   std::vector<int>& first_middle = scratch.middle_row_of_contact;
   first_middle.resize(world.contacts.size());
   const auto contact_of = [&world](const Row& row) {
@@ -97,6 +97,7 @@ void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
   for (const Friction& friction : s.frictions) {
     if (may_repeat(friction)) at(first_middle, contact_of(at(s.rows, friction.row))) = -1;
   }
+  bool repeats = false;
   for (Friction& friction : s.frictions) {
     if (!may_repeat(friction)) continue;
     int& first = at(first_middle, contact_of(at(s.rows, friction.row)));
@@ -116,12 +117,14 @@ void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
     const double size = std::max(j.cwiseAbs().maxCoeff(), k.cwiseAbs().maxCoeff());
     if (difference > rounding * size) continue;
     friction.repeats = first;
-    at(s.rows, friction.row).on = false;
     ++at(s.frictions, at(s.rows, first).friction).repeated;
+    repeats = true;
   }
+  return repeats;
 }
 
 void share_among_repeated(PartSystem& s) {
+  if (!s.repeats) return;
   for (const Friction& friction : s.frictions) {
     Row& row = at(s.rows, friction.row);
     if (friction.repeated > 0) row.impulse /= 1 + friction.repeated;

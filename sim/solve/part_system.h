@@ -157,12 +157,15 @@ struct PartSystem {
   std::vector<int> row_of_segment;  // cable after cable; -1: none
   std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
   int first_contact_row = 0;
-  std::vector<int> middles;   // rows of kind pinch_middle
-  std::vector<int> pressed;   // rows of transitional pinches that a contact presses
-  RowsMade made;              // what they are for
-  bool same_rows = false;     // all rows are of what they were of in the step before
-  bool rows_stand = false;    // bodies and diagonals of all rows are those of the step before
-  std::vector<char> changed;  // of each row: they are not
+  std::vector<int> middles;     // rows of kind pinch_middle
+  std::vector<int> pressed;     // rows of transitional pinches that a contact presses
+  RowsMade made;                // what they are for
+  bool same_segments = false;   // rows of segments are of what they were of when last made
+  bool segments_stand = false;  // and so are their bodies and diagonals
+  bool repeats = false;         // rows of middle bodies repeat others; by find_repeated_middles
+  bool same_rows = false;       // all rows are of what they were of in the step before
+  bool rows_stand = false;      // bodies and diagonals of all rows are those of the step before
+  std::vector<char> changed;    // of each row: they are not
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.
   std::vector<int> structure, order;

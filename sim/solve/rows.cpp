@@ -309,6 +309,46 @@ void add_friction(PartSystem& s, const Friction& friction) {
   s.frictions.push_back(friction);
 }
 
+/// The rows of a contact that can give way.
+void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
+                         const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
+  const Contact& contact = at(world.contacts, number);
+  const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
+  const int normal = append_row(s, a, b);
+  at(scratch.normal_row_of_contact, number) = normal;
+  s.rows.back().index = number;
+  set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
+  weigh(s, s.bodies.back(), s.rows.back());
+
+  const double mu = coefficient_of(scene, world, contact);
+  if (mu == 0.0) return;
+  const int tangent = append_row(s, a, b);
+  Row& row = s.rows.back();
+  row.kind = RowKind::tangent;
+  row.index = number;
+  row.slip = contact.slip;
+  set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
+  weigh(s, s.bodies.back(), row);
+  add_friction(s, contact_friction(tangent, normal, mu));
+}
+
+/// The rows of middle bodies as they are before a solve, by what bounds them.
+void begin_middles(PartSystem& s) {
+  for (std::size_t i = 0; i < s.frictions.size(); ++i) {
+    Friction& friction = s.frictions[i];
+    Row& row = at(s.rows, friction.row);
+    if (row.kind != RowKind::pinch_middle) continue;
+    friction.dropped = friction.frozen = false;
+    friction.slid = Slip::stick;
+    row.friction = static_cast<int>(i);
+    if (friction.normal < 0 && friction.coefficient == infinity) {
+      row.on = true;
+      row.slip = Slip::stick;
+    }
+    if (friction.repeats >= 0) row.on = false;
+  }
+}
+
 /// The row of the force that clamps the cable of a transitional pinch between two bodies neither of
 /// which it can slide over; or -1.
 int presser_of(const World& world, const SolveScratch& scratch, const Row& row) {
@@ -365,10 +405,9 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
   s.made = made;
-  s.same_rows = again && !has_contacts(part);
-  s.rows_stand = s.rows_stand && s.same_rows && !s.mobility_changed;
+  s.same_segments = again;
+  s.segments_stand = again && !s.mobility_changed;
   s.pressed.clear();
-  s.frictions.clear();
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
   s.bodies.resize(index(s.first_contact_row));
@@ -427,7 +466,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     const bool moved = segment.moved || row.turns || row.is_new || (plain && segment.pinched);
     if (moved) {
       place_segment_row(world, cable, segment, interval, plain, bodies, row);
-      s.rows_stand = row.is_new = false;
+      s.segments_stand = row.is_new = false;
     }
     if (moved || s.mobility_changed) {
       weigh(s, bodies, row);
@@ -452,45 +491,31 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                        const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   scratch.normal_row_of_contact.resize(world.contacts.size());
+  const bool again = s.segments_stand && !part.can_move;  // as the middle bodies' friction was
+  if (!again) {
+    s.frictions.clear();
+    s.repeats = false;
+  }
   for (const int number : contacts_of(parts, part)) {
+    at(scratch.normal_row_of_contact, number) = -1;
+    if (!part.can_move) continue;
     const Contact& contact = at(world.contacts, number);
-    int& normal = at(scratch.normal_row_of_contact, number);
-    normal = -1;
-    const BodyProperties& body = at(world.bodies, contact.a);
-    const BodyProperties* other = contact.b >= 0 ? &at(world.bodies, contact.b) : nullptr;
-    if (!can_move(body) && (!other || !can_move(*other))) continue;
-    const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
-    normal = append_row(s, a, b);
-    s.rows.back().index = number;
-    set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
-    weigh(s, s.bodies.back(), s.rows.back());
-
-    const double mu = coefficient_of(scene, world, contact);
-    if (mu == 0.0) continue;
-    const int tangent = append_row(s, a, b);
-    Row& row = s.rows.back();
-    row.kind = RowKind::tangent;
-    row.index = number;
-    row.slip = contact.slip;
-    set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
-    weigh(s, s.bodies.back(), row);
-    add_friction(s, contact_friction(tangent, normal, mu));
+    const bool gives = can_move(at(world.bodies, contact.a)) ||
+                       (contact.b >= 0 && can_move(at(world.bodies, contact.b)));
+    if (gives) append_contact_rows(scene, world, parts, number, interval, s, scratch);
   }
-  for (const int r : s.pressed) {
-    if (interval.clamps) at(s.rows, r).presser = presser_of(world, scratch, at(s.rows, r));
+  s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
+  s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;
+  if (interval.clamps) {
+    for (const int r : s.pressed) at(s.rows, r).presser = presser_of(world, scratch, at(s.rows, r));
   }
-  for (const int r : s.middles) {
-    Row& row = at(s.rows, r);
-    const Friction friction = middle_friction(world, s, scratch, r);
-    add_friction(s, friction);
-    if (friction.normal < 0 && friction.coefficient == infinity) {
-      row.on = true;
-      row.slip = Slip::stick;
-    }
+  if (s.middles.empty()) return;
+  if (!again) {
+    for (const int r : s.middles) add_friction(s, middle_friction(world, s, scratch, r));
+    s.repeats =
+        world.configuration.solver == Solver::direct && find_repeated_middles(world, s, scratch);
   }
-  if (!s.middles.empty() && world.configuration.solver == Solver::direct) {
-    find_repeated_middles(world, s, scratch);
-  }
+  begin_middles(s);
 }
 
 void make_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
