@@ -69,23 +69,23 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
 double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
                   PartSystem& s) {
   const CapstanScratch& capstan = work.solve.capstan;
+  const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
-    const int group = capstan.runs.empty() ? -1 : capstan.group_of_row[r];
+    const int group = slides ? capstan.group_of_row[r] : -1;
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
-    const bool gives = row.diagonal > 0.0 || group >= 0;
-    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0 && gives);
-    if (!row.on && row.kind == RowKind::pinch_middle) continue;
-    if (group >= 0 && !row.on && !shares) continue;
+    const bool violated = row.clearance < -t.made_up;
+    if (violated && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
+      work.violated = true;
+    }
+    if (!row.on && (row.kind == RowKind::pinch_middle || (group >= 0 && !shares))) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
-    const double left = row.clearance < -t.made_up ? row.clearance
-                        : made_up                  ? still_left * row.clearance
-                                                   : 0.0;
+    const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
     double missed = clearance_of(scene, world, row) - left;
     if (row.compliance > 0.0) {
       if (!row.on || group >= 0) continue;

@@ -82,7 +82,7 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   return friction;
 }
 
-bool find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scratch) {
+void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scratch) {
   std::vector<int>& first_middle = scratch.middle_row_of_contact;
   first_middle.resize(world.contacts.size());
   const auto contact_of = [&world](const Row& row) {
@@ -97,7 +97,6 @@ bool find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
   for (const Friction& friction : s.frictions) {
     if (may_repeat(friction)) at(first_middle, contact_of(at(s.rows, friction.row))) = -1;
   }
-  bool repeats = false;
   for (Friction& friction : s.frictions) {
     if (!may_repeat(friction)) continue;
     int& first = at(first_middle, contact_of(at(s.rows, friction.row)));
@@ -118,14 +117,16 @@ bool find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
     if (difference > rounding * size) continue;
     friction.repeats = first;
     ++at(s.frictions, at(s.rows, first).friction).repeated;
-    repeats = true;
   }
-  return repeats;
+  for (std::size_t i = 0; i < s.frictions.size(); ++i) {
+    const Friction& friction = s.frictions[i];
+    if (friction.repeated > 0 || friction.repeats >= 0) s.repeated.push_back(static_cast<int>(i));
+  }
 }
 
 void share_among_repeated(PartSystem& s) {
-  if (!s.repeats) return;
-  for (const Friction& friction : s.frictions) {
+  for (const int number : s.repeated) {
+    const Friction& friction = at(s.frictions, number);
     Row& row = at(s.rows, friction.row);
     if (friction.repeated > 0) row.impulse /= 1 + friction.repeated;
     if (friction.repeats < 0) continue;

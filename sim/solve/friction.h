@@ -69,8 +69,8 @@ inline Slip slip_of(double p, double most) {
 
 /// Where several turns of cable without slip lie under one pinch, their middle rows say the same.
 /// The first stands for all, and its force is shared among them in the end, as by equally stiff
-/// cables; the system then has no repeated rows. Returns whether there are any.
-bool find_repeated_middles(const World& world, PartSystem& system, SolveScratch& scratch);
+/// cables; the system then has no repeated rows.
+void find_repeated_middles(const World& world, PartSystem& system, SolveScratch& scratch);
 
 /// Impulses of repeated rows: their shares of the first one's.
 void share_among_repeated(PartSystem& system);

@@ -162,7 +162,7 @@ struct PartSystem {
   RowsMade made;                // what they are for
   bool same_segments = false;   // rows of segments are of what they were of when last made
   bool segments_stand = false;  // and so are their bodies and diagonals
-  bool repeats = false;         // rows of middle bodies repeat others; by find_repeated_middles
+  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending
   bool same_rows = false;       // all rows are of what they were of in the step before
   bool rows_stand = false;      // bodies and diagonals of all rows are those of the step before
   std::vector<char> changed;    // of each row: they are not

@@ -68,7 +68,7 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
 }
 
 /// What the row has left before it bears force, and what its speed must therefore be.
-void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
+inline void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
   row.clearance = clearance;
   row.idle = clearance > interval.reach || (interval.held_only && !row.on);
   row.on = row.on && !row.idle;
@@ -86,7 +86,8 @@ double clearance_left(const Segment& segment, bool plain) {
 }
 
 /// All of a segment's row but its bodies, as it is before a solve.
-void set_segment_values(const Segment& segment, bool plain, const TimeSpan& interval, Row& row) {
+inline void set_segment_values(const Segment& segment, bool plain, const TimeSpan& interval,
+                               Row& row) {
   row.on = !segment.slack;
   row.returned = false;
   row.slip = Slip::stick;
@@ -108,7 +109,7 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
 }
 
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
-double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
+inline double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
   if (body < 0) return 0.0;
   const int mover = mover_of(world, body);
   const Vec2& v = at(world.velocity, mover);
@@ -482,7 +483,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     if (row.kind == RowKind::pinch_middle) {
       row.idle = false;
       row.slip = at(cable.links, row.item).slip;
-    } else if (segment.pinched && segment.contact >= 0) {
+    } else if (part.can_move && segment.pinched && segment.contact >= 0) {
       s.pressed.push_back(r);
     }
   }
@@ -494,11 +495,11 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   const bool again = s.segments_stand && !part.can_move;  // as the middle bodies' friction was
   if (!again) {
     s.frictions.clear();
-    s.repeats = false;
+    s.repeated.clear();
   }
-  for (const int number : contacts_of(parts, part)) {
-    at(scratch.normal_row_of_contact, number) = -1;
-    if (!part.can_move) continue;
+  const std::span<const int> contacts = contacts_of(parts, part);
+  for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
+  for (const int number : part.can_move ? contacts : std::span<const int>()) {
     const Contact& contact = at(world.contacts, number);
     const bool gives = can_move(at(world.bodies, contact.a)) ||
                        (contact.b >= 0 && can_move(at(world.bodies, contact.b)));
@@ -512,8 +513,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   if (s.middles.empty()) return;
   if (!again) {
     for (const int r : s.middles) add_friction(s, middle_friction(world, s, scratch, r));
-    s.repeats =
-        world.configuration.solver == Solver::direct && find_repeated_middles(world, s, scratch);
+    if (world.configuration.solver == Solver::direct) find_repeated_middles(world, s, scratch);
   }
   begin_middles(s);
 }

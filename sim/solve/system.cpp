@@ -240,8 +240,11 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
 
 /// Brings the matrix up to date where rows have changed since it was assembled for the same ones.
 void reassemble_changed(PartSystem& s) {
+  int last_changed = -1;
   for (int u = 0; u < s.ldl.size(); ++u) {
     const int r = s.assembled[index(u)], first = s.ldl.first(u);
+    if (at(s.changed, r)) last_changed = u;
+    if (last_changed < first) continue;
     const RowBodies& row = at(s.bodies, r);
     double* entries = s.ldl.row(u) - first;
     for (int v = first; v < u; ++v) {
