@@ -34,11 +34,12 @@ void join(std::vector<int>& root, int a, int b) {
   root[index(std::max(a, b))] = std::min(a, b);
 }
 
-/// The pairs in contact and the changes of all cables; false if they are those of the last time.
-bool structure_changed(const World& world, Parts& parts) {
+/// The pairs in contact and the changes of all cables; false if they are those of the last time, as
+/// contacts are that were kept.
+bool structure_changed(const World& world, bool contacts_kept, Parts& parts) {
   const int changes = changes_of_cables(world);
   bool same = changes == parts.changes && parts.structure.size() == 2 * world.contacts.size();
-  for (std::size_t i = 0; same && i < world.contacts.size(); ++i) {
+  for (std::size_t i = 0; same && !contacts_kept && i < world.contacts.size(); ++i) {
     same = parts.structure[2 * i] == world.contacts[i].a &&
            parts.structure[2 * i + 1] == world.contacts[i].b;
   }
@@ -252,7 +253,8 @@ bool rests(const Parts& parts, const Part& part, const World& world) {
 
 void find_parts(const World& world, Workspace& work) {
   Parts& parts = work.parts;
-  if (structure_changed(world, parts)) divide(world, work.parts_before, parts, work.systems);
+  if (structure_changed(world, work.contacts.contacts_kept, parts))
+    divide(world, work.parts_before, parts, work.systems);
   parts.any_moves = false;
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {

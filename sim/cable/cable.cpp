@@ -210,8 +210,10 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
 
 bool update_cable(const World& world, CableState& cable, bool begins) {
   bool moved = false;
-  const Link* from = &cable.links[tail_link(cable, first_segment(cable))];
-  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+  const std::size_t first = first_segment(cable), count = cable.segments.size();
+  const bool fills = cable.fills;
+  const Link* from = &cable.links[tail_link(cable, first)];
+  for (std::size_t i = first; i < count; ++i) {
     Segment& segment = cable.segments[i];
     const Link* to = &cable.links[i];
     if (begins && segment.moved) {
@@ -220,8 +222,8 @@ bool update_cable(const World& world, CableState& cable, bool begins) {
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    const bool stands = from->still && to->still && !cable.fills;
-    if (!stands && (cable.fills || link_centre(world, *from) != segment.tail_centre ||
+    const bool stands = from->still && to->still && !fills;
+    if (!stands && (fills || link_centre(world, *from) != segment.tail_centre ||
                     link_centre(world, *to) != segment.head_centre)) {
       update_tangent(world, cable, i);
     }
@@ -315,7 +317,8 @@ bool needed(const CableState& cable, std::size_t i) {
   return true;
 }
 
-void remove_links(World& world, Workspace& work) {
+bool remove_links(World& world, Workspace& work) {
+  bool any = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
     bool changed = cable.unwound && !sleeps(work.parts, c);
@@ -326,12 +329,13 @@ void remove_links(World& world, Workspace& work) {
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
           work.released.push_back({static_cast<int>(c), link.body});
           remove_link(world, cable, static_cast<int>(i));
-          changed = true;
+          changed = any = true;
           break;
         }
       }
     }
   }
+  return any;
 }
 
 Link rolling_link(const BodyProperties& properties, int body, int corner, int orientation,

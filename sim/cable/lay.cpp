@@ -267,9 +267,9 @@ void lay_material(const World& world, Course& course) {
 
 }  // namespace
 
-CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
+CableState lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c) {
   const Cable& given = scene.cables[c];
-  Course course{given, c, overlap_allowed(scene), {}, {}};
+  Course course{given, c, allowed, {}, {}};
   CableState& cable = course.cable;
   cable.half_width = given.half_width;
   if (world.configuration.method == Method::pinch) {

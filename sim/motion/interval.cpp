@@ -175,8 +175,6 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   t.clamps = true;
   t.kick = world.lag + 0.5 * length;
   t.start = work.start.time;
-  apply_forces(scene, world, t, work);
-  watch.lap(Stage::apply_forces);
   work.local_error = 0.0;
   work.settled = true;
   work.violated = false;
@@ -187,6 +185,8 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
     Part& part = at(work.parts.list, p);
     if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
+    apply_forces(scene, world, t, work.parts, part, s);
+    watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
     t.reach = locate ? s.reach : infinity;
     met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;

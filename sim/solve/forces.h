@@ -3,6 +3,9 @@
 
 namespace pinchlab {
 
+struct Part;
+struct Parts;
+struct PartSystem;
 struct TimeSpan;
 struct Scene;
 struct Workspace;
@@ -12,5 +15,9 @@ struct World;
 /// what moves the bodies, into their parts' systems.
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   Workspace& work);
+
+/// The same of one part.
+void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
+                  const Parts& parts, const Part& part, PartSystem& system);
 
 }  // namespace pinchlab

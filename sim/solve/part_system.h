@@ -22,6 +22,15 @@ struct Mobility {
   }
 };
 
+/// What forces make of a body's velocity in a kick, whatever that is.
+struct Forcing {
+  Vec2 pull = Vec2::Zero();            // m/s, that gravity adds
+  double linear = 0.0, angular = 0.0;  // half of what drag takes, as a share
+  double spin = 0.0;                   // rad/s, that a torque adds
+  bool moves = false, turned = false;  // the body's centre can; something turns it
+  bool has_motor = false;              // what turns it is driven, or follows a table
+};
+
 /// What a solve is for. Positions move on by `length` with the velocities that it finds, after
 /// forces have acted for `kick`.
 struct TimeSpan {
@@ -138,7 +147,7 @@ struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
   std::vector<char> mobile;                    // impulses can move or turn it
-  std::vector<char> coasts;                    // only turns, and nothing but impulses changes that
+  std::vector<Forcing> forcing;                // what the mobilities' kick adds
   std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
   std::vector<SpanMass> span_masses;           // empty until one body is too light
@@ -146,7 +155,7 @@ struct PartSystem {
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
-  double extent_of_coasting = 0.0;             // m, coordinates of bodies that coast at most
+  double extent_of_still = 0.0;                // m, coordinates of bodies that cannot move at most
   double extent = 0.0;                         // m, coordinates and cable lengths at most
   double reach = 0.0;                          // m, TimeSpan::reach where events are located
 
