@@ -48,10 +48,10 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
   Happening key{EventKind::catches};
   key.part = number;
   key.reach = s.reach;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const Row& row = s.rows[r];
+  for (const Row& row : s.rows) {
     if (!row.idle || row.compliance > 0.0) continue;
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
+    const auto r = static_cast<std::size_t>(&row - s.rows.data());
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     key.row = static_cast<int>(r);
     const double clearance = clearance_of(scene, world, row);

@@ -104,7 +104,7 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
 
 /// Whether a row may contradict the solution at all: if none does, nobody needs to know how much of
 /// it would be round-off.
-bool is_suspicious(const PartSystem& s, const Row& row) {
+inline bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
   if (row.clamped) return false;
   return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;

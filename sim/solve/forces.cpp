@@ -27,7 +27,7 @@ Forcing forcing_of(const Scene& scene, const BodyProperties& body, double k) {
 }
 
 /// Velocity of a body after a kick by forces alone.
-Eigen::Vector3d free_velocity(const Forcing& f, const Vec2& v, double omega) {
+inline Eigen::Vector3d free_velocity(const Forcing& f, const Vec2& v, double omega) {
   Vec2 free = Vec2::Zero();
   if (f.moves) free = ((1.0 - f.linear) * v + f.pull) / (1.0 + f.linear);
   if (f.turned) omega = ((1.0 - f.angular) * omega + f.spin) / (1.0 + f.angular);
@@ -97,6 +97,10 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto b = index(bodies[i]);
     const Forcing& f = s.forcing[i];
+    if (!f.moves && !f.turned && !f.has_motor) {
+      s.free_velocity[i] = {0.0, 0.0, world.angular_velocity[b]};
+      continue;
+    }
     s.free_velocity[i] = free_velocity(f, world.velocity[b], world.angular_velocity[b]);
     if (f.moves) s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
     if (f.has_motor) drive_body(scene, world, t, bodies[i], static_cast<int>(i), s);
