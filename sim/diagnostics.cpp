@@ -14,6 +14,13 @@
 namespace pinchlab {
 
 bool check_finite(const Scene& scene, World& world) {
+  // Zero times what is finite is zero, and sums of that are.
+  double sum = 0.0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    sum +=
+        0.0 * world.velocity[b].x() + 0.0 * world.velocity[b].y() + 0.0 * world.angular_velocity[b];
+  }
+  if (sum == 0.0) return true;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     if (std::isfinite(world.velocity[b].x()) && std::isfinite(world.velocity[b].y()) &&
         std::isfinite(world.angular_velocity[b])) {
@@ -45,8 +52,7 @@ constexpr std::size_t most_corners_met = 20'000;
 }  // namespace
 
 bool check_positions(const Scene& scene, World& world) {
-  // Zero times what is finite is zero, and sums of that are.
-  double sum = 0.0;
+  double sum = 0.0;  // as above
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     sum += 0.0 * (world.position[b].x() + world.position[b].y() + world.angle[b]);
   }

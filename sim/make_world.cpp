@@ -11,6 +11,7 @@
 #include "sim/compound.h"
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
+#include "sim/scene_words.h"
 #include "sim/step.h"
 
 namespace pinchlab {
@@ -39,6 +40,15 @@ World bodies_of_scene(const Scene& scene) {
   return world;
 }
 
+void lay_cables(const Scene& scene, World& world) {
+  const double allowed = overlap_allowed(scene);
+  world.cables.clear();
+  world.cables.reserve(scene.cables.size());
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    world.cables.push_back(lay_cable(scene, world, allowed, c));
+  }
+}
+
 /// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not
 /// held yet gives way and lowers them, so that it takes some trials.
 void find_first_tensions(const Scene& scene, World& world) {
@@ -59,6 +69,7 @@ void find_first_tensions(const Scene& scene, World& world) {
         segments[s].tension = trial.cables[c].segments[s].tension;
       }
     }
+    if (work.parts.movers.empty()) return;  // no body is light
   }
 }
 
@@ -79,9 +90,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   world.configuration = Method::pinch;
   find_body_pairs(scene, world, work);
   refuse_overlaps(scene, world, work.broad_phase);
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    world.cables.push_back(lay_cable(scene, world, c));
-  }
+  lay_cables(scene, world);
   find_body_pairs(scene, world, work);
   find_span_pairs(world, work);
   refuse_cables_through_bodies(scene, world, work.broad_phase);
@@ -95,10 +104,7 @@ World make_world(const Scene& scene, Configuration configuration) {
     world.configuration.error = scene.error;
   }
   if (configuration.method != Method::pinch) {
-    world.cables.clear();
-    for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-      world.cables.push_back(lay_cable(scene, world, c));
-    }
+    lay_cables(scene, world);
     world.contacts.clear();
     work = {};  // nothing is known of the new contacts
     detect(scene, world, work);

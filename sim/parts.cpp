@@ -34,11 +34,12 @@ void join(std::vector<int>& root, int a, int b) {
   root[index(std::max(a, b))] = std::min(a, b);
 }
 
-/// The pairs in contact and the changes of all cables; false if they are those of the last time.
-bool structure_changed(const World& world, Parts& parts) {
+/// The pairs in contact and the changes of all cables; false if they are those of the last time, as
+/// contacts are that were kept.
+bool structure_changed(const World& world, bool contacts_kept, Parts& parts) {
   const int changes = changes_of_cables(world);
   bool same = changes == parts.changes && parts.structure.size() == 2 * world.contacts.size();
-  for (std::size_t i = 0; same && i < world.contacts.size(); ++i) {
+  for (std::size_t i = 0; same && !contacts_kept && i < world.contacts.size(); ++i) {
     same = parts.structure[2 * i] == world.contacts[i].a &&
            parts.structure[2 * i + 1] == world.contacts[i].b;
   }
@@ -116,8 +117,10 @@ int number_parts(const World& world, Parts& parts) {
   int count = 0;
   parts.of_body.assign(index(bodies), -1);
   parts.immobile.resize(index(bodies));
+  parts.movers.clear();
   for (int b = 0; b < bodies; ++b) {
     at(parts.immobile, b) = !can_move(at(world.bodies, b));
+    if (!at(parts.immobile, b)) parts.movers.push_back(b);
     if (is_static(at(world.bodies, b))) continue;
     const int root = find_root(parts.root, b);
     at(parts.of_body, b) = root == b ? count++ : at(parts.of_body, root);
@@ -145,6 +148,12 @@ void describe(const World& world, Parts& parts, Part& part) {
   for (const int shape : carried_of(parts, part)) {
     at(parts.local, shape) = at(parts.local, at(world.bodies, shape).carrier);
     part.can_move = true;  // by turning, at least
+  }
+  // Between bodies that cannot give way a cable that none of them lets slip is held.
+  if (!has_contacts(part)) return;
+  part.can_slip = part.can_move;
+  for (const int c : cables_of(parts, part)) {
+    part.can_slip = part.can_slip || at(world.cables, c).grip == 0.0;
   }
 }
 
@@ -244,7 +253,8 @@ bool rests(const Parts& parts, const Part& part, const World& world) {
 
 void find_parts(const World& world, Workspace& work) {
   Parts& parts = work.parts;
-  if (structure_changed(world, parts)) divide(world, work.parts_before, parts, work.systems);
+  if (structure_changed(world, work.contacts.contacts_kept, parts))
+    divide(world, work.parts_before, parts, work.systems);
   parts.any_moves = false;
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {

@@ -24,8 +24,18 @@ struct Part {
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool kept = false;                         // asleep, and was so in the step before
+  bool can_slip = false;                     // a contact of it presses a cable that may slip there
   bool slides = false;                       // by solve_parts: cable may slide over bodies
 };
+
+inline bool has_contacts(const Part& part) {
+  return part.contacts_begin != part.contacts_end;
+}
+
+/// Whether cable of the part can slide over bodies, over those of finite friction or in pinches.
+inline bool can_slide(const Part& part) {
+  return part.may_slide || part.can_slip;
+}
 
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
 struct Parts {
@@ -40,6 +50,7 @@ struct Parts {
                                // -1: fixed
   bool any_moves = true;       // a body of a part that is awake can do more than turn
   std::vector<char> immobile;  // whether the body's centre cannot move
+  std::vector<int> movers;     // bodies whose centre can
   std::vector<int> structure;  // what the parts were found for: pairs in contact
   int changes = -1;            // and CableState::changes of all cables
   std::vector<int> root;       // of each body's tree while parts are found

@@ -45,7 +45,7 @@ struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<double> material;  // of the links, cable after cable
+  std::vector<double> material;  // of the links of cables that can slide, cable after cable
   std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
@@ -74,7 +74,7 @@ struct Workspace {
   SweepScratch sweeps;  // of the iterative solver
 
   Start start;                  // of the last interval
-  std::vector<int> first_link;  // of each cable, in `start`
+  std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide
   bool settled = true;          // every solve of the last trial; by move_part
   double missed = 0.0;  // by lengths and gaps, over the part's extent, where not met; by move_part
   bool violated = false;  // what an interval began with, more than it makes up for; by move_part

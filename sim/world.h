@@ -46,13 +46,14 @@ struct Link {
   Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
   double material = 0.0;       // m along the cable; changed by slip only
   double wrap = 0.0;           // rad, angle of cable stored on the body, may exceed 2 pi
-  bool pinch_middle = false;   // middle link of a non-transitional pinch: no wrap, the links
-                               // before and after lie on the pinched body
-  Slip slip = Slip::stick;     // by the active set
-  double slip_speed = 0.0;     // m/s of material over the body's surface, forward positive
-  int contact = -1;            // pinch_middle: the contact that presses it, by confirm_pinches
-  Layers layers;               // of a drum that fills; `radius` is then that of the outermost turn,
-                               // by update_tangent
+  bool still = false;         // the circle never moves: about a centre that cannot, or in the world
+  bool pinch_middle = false;  // middle link of a non-transitional pinch: no wrap, the links
+                              // before and after lie on the pinched body
+  Slip slip = Slip::stick;    // by the active set
+  double slip_speed = 0.0;    // m/s of material over the body's surface, forward positive
+  int contact = -1;           // pinch_middle: the contact that presses it, by confirm_pinches
+  Layers layers;              // of a drum that fills; `radius` is then that of the outermost turn,
+                              // by update_tangent
 
   double signed_radius() const { return orientation * radius; }
 };
@@ -74,20 +75,20 @@ struct Rim {
 
 /// The free span that arrives at the link of the same index from the link before it.
 struct Segment {
+  double alpha = 0.0;               // rad, angle of `direction`, continuous in time
+  double length = 0.0;              // m, distance along the tangent; 0 when pinched
+  double rest_length = 0.0;         // m of material; may be negative by round-off when pinched
+  double tension = 0.0;             // N, of the last step; in a non-transitional pinch the change
+                                    // of tension that the middle body takes up
+  Vec2 direction = Vec2(1.0, 0.0);  // unit, from tail to head
+  bool moved = true;                // in the last step, or made in it; by update_tangent
+  bool slack = false;               // by the active set
+  bool pinched = false;             // between two touching bodies: zero length, never hit-tested
+  bool was_pinched = false;         // at the interval's start
+  int contact = -1;                 // pressing a transitional pinch, by confirm_pinches; or -1
+  double slope = 0.0;               // m of material in a m of it when the interval began, by
+                                    // lay_down; 0: not known
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
-  Vec2 direction = Vec2(1.0, 0.0);                // unit, from tail to head
-  double alpha = 0.0;                             // rad, angle of `direction`, continuous in time
-  double length = 0.0;                            // m, distance along the tangent; 0 when pinched
-  double rest_length = 0.0;  // m of material; may be negative by round-off when pinched
-  double tension = 0.0;      // N, of the last step; in a non-transitional pinch the change
-                             // of tension that the middle body takes up
-  bool moved = true;         // in the last step, or made in it; by update_tangent
-  bool slack = false;        // by the active set
-  bool pinched = false;      // between two touching bodies: zero length, never hit-tested
-  double slope =
-      0.0;  // m of material in a m of it when the interval began, by lay_down; 0: not known
-  bool was_pinched = false;  // at the interval's start
-  int contact = -1;          // pressing a transitional pinch, by confirm_pinches; or -1
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
   Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();      // m, of the circles that the
                                                                     // tangent is for
@@ -106,6 +107,8 @@ struct CableState {
   bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far
+  bool unwound =
+      false;  // a link that it rolls on has lost its wrap, by update_wraps_and_rest_lengths
   std::vector<Link> links;
   std::vector<Rim> rims;  // as many, of an elastic cable that creeps; else none. By lay_down
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs

@@ -32,6 +32,8 @@ struct StressResult {
   StepCost cost;
 };
 
+constexpr std::int64_t steps_of_bare = 5000;  // after which its scenes begin again
+
 /// Ours against the bare pass over as many segments.
 struct BareResult {
   std::string scene;

@@ -45,26 +45,25 @@ double material_in_layers(const Link& link, double alpha, double angle) {
   return link.material + link.layers.way * link.layers.length(turned_until(link, alpha, angle));
 }
 
-/// Material coordinate at which the cable has the direction alpha on link i. A plain cable neither fills
-/// nor creeps; where it does, `at_head` says which end of the link is the nearer.
-template <bool plain>
+/// Material coordinate at which the cable has the direction alpha on link i; `at_head` says which end of
+/// the link is the nearer.
 double material_at(const CableState& cable, std::size_t i, bool at_head, double alpha,
                    double angle) {
   const Link& link = cable.links[i];
-  if (!plain && link.layers.way != 0) return material_in_layers(link, alpha, angle);
+  if (link.layers.way != 0) return material_in_layers(link, alpha, angle);
   const double place = link.signed_radius() * (alpha - angle);
-  const bool turns = plain || cable.rims.empty() || cable.rims[i].laid.empty();
+  const bool turns = cable.rims.empty() || cable.rims[i].laid.empty();
   return link.material + (turns ? place : laid_near_end(cable.rims[i], at_head, place));
 }
 
 }  // namespace
 
 double tail_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<false>(cable, i, false, cable.segments[i].alpha, angle);
+  return material_at(cable, i, false, cable.segments[i].alpha, angle);
 }
 
 double head_material(const CableState& cable, std::size_t i, double angle) {
-  return material_at<false>(cable, i, true, alpha_head(cable, i), angle);
+  return material_at(cable, i, true, alpha_head(cable, i), angle);
 }
 
 void begin_layers(const World& world, CableState& cable, std::size_t i, int way) {
@@ -164,59 +163,75 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
 
 namespace {
 
-void update_wraps(CableState& cable) {
-  for (std::size_t i = 0; i < cable.links.size(); ++i) {
-    Link& link = cable.links[i];
-    if (link.orientation != 0) {
-      link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
-    }
-  }
+void update_wrap(CableState& cable, Link& link, double arrives, double leaves) {
+  if (link.orientation == 0) return;
+  link.wrap = link.orientation * (leaves - arrives);
+  if (!(link.wrap >= 0.0 || link.pinch_middle)) cable.unwound = true;
 }
 
-template <bool plain>
-void update_rest_lengths(const World& world, CableState& cable) {
+/// Of a cable that lies in layers, or creeps.
+void update_laid_cable(const World& world, CableState& cable) {
+  cable.unwound = false;
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    update_wrap(cable, cable.links[i], cable.segments[i].alpha, alpha_head(cable, i));
+  }
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
     const std::size_t tail = tail_link(cable, i);
     const Link &to = cable.links[i], &from = cable.links[tail];
-    cable.segments[i].rest_length =
-        material_at<plain>(cable, i, false, cable.segments[i].alpha, body_angle(world, to)) -
-        material_at<plain>(cable, tail, true, alpha_head(cable, tail), body_angle(world, from)) +
-        (i == 0 ? cable.length : 0.0);
+    cable.segments[i].rest_length = tail_material(cable, i, body_angle(world, to)) -
+                                    head_material(cable, tail, body_angle(world, from)) +
+                                    (i == 0 ? cable.length : 0.0);
   }
-}
-
-void update_rest_lengths(const World& world, CableState& cable) {
-  const bool plain = !cable.fills && cable.rims.empty();
-  (plain ? update_rest_lengths<true> : update_rest_lengths<false>)(world, cable);
 }
 
 }  // namespace
 
 void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
-  update_wraps(cable);
-  update_rest_lengths(world, cable);
+  if (cable.fills || !cable.rims.empty()) return update_laid_cable(world, cable);
+  cable.unwound = false;
+  const std::size_t count = cable.links.size();
+  double left_before = 0.0;  // m, material coordinate where the cable leaves the link before
+  double first = 0.0;        // where it meets the first
+  for (std::size_t i = 0; i < count; ++i) {
+    Link& link = cable.links[i];
+    Segment& segment = cable.segments[i];
+    const double arrives = segment.alpha, leaves = alpha_head(cable, i);
+    update_wrap(cable, link, arrives, leaves);
+    const double radius = link.signed_radius(), angle = body_angle(world, link);
+    const double met = link.material + radius * (arrives - angle);
+    if (i == 0) {
+      first = met;
+    } else {
+      segment.rest_length = met - left_before;
+    }
+    left_before = link.material + radius * (leaves - angle);
+  }
+  if (cable.closed) cable.segments[0].rest_length = first - left_before + cable.length;
 }
 
 bool update_cable(const World& world, CableState& cable, bool begins) {
   bool moved = false;
-  Vec2 from = link_centre(world, cable.links[tail_link(cable, first_segment(cable))]);
-  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+  const std::size_t first = first_segment(cable), count = cable.segments.size();
+  const bool fills = cable.fills;
+  const Link* from = &cable.links[tail_link(cable, first)];
+  for (std::size_t i = first; i < count; ++i) {
     Segment& segment = cable.segments[i];
-    const Vec2 to = link_centre(world, cable.links[i]);
-    if (begins) {
+    const Link* to = &cable.links[i];
+    if (begins && segment.moved) {
       segment.previous_tail = segment.tail;
       segment.previous_head = segment.head;
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    if (cable.fills || from != segment.tail_centre || to != segment.head_centre) {
+    const bool stands = from->still && to->still && !fills;
+    if (!stands && (fills || link_centre(world, *from) != segment.tail_centre ||
+                    link_centre(world, *to) != segment.head_centre)) {
       update_tangent(world, cable, i);
     }
     moved = moved || segment.moved;
     from = to;
   }
-  if (moved) update_wraps(cable);
-  update_rest_lengths(world, cable);
+  update_wraps_and_rest_lengths(world, cable);
   return moved;
 }
 
@@ -303,10 +318,11 @@ bool needed(const CableState& cable, std::size_t i) {
   return true;
 }
 
-void remove_links(World& world, Workspace& work) {
+bool remove_links(World& world, Workspace& work) {
+  bool any = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
-    bool changed = !sleeps(work.parts, c);
+    bool changed = cable.unwound && !sleeps(work.parts, c);
     while (changed) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
@@ -314,12 +330,13 @@ void remove_links(World& world, Workspace& work) {
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
           work.released.push_back({static_cast<int>(c), link.body});
           leave_body(world, cable, static_cast<int>(i));
-          changed = true;
+          changed = any = true;
           break;
         }
       }
     }
   }
+  return any;
 }
 
 Link rolling_link(const BodyProperties& properties, int body, int corner, int orientation,
@@ -329,6 +346,7 @@ Link rolling_link(const BodyProperties& properties, int body, int corner, int or
   link.corner = corner;
   link.orientation = orientation;
   link.radius = (corner < 0 ? properties.radius : properties.corner_radius) + half_width;
+  link.still = corner < 0 && !can_move(properties);
   if (corner >= 0) link.offset = at(properties.corners, corner);
   return link;
 }
@@ -402,9 +420,9 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
       middle.body = next->body;
       middle.orientation = -whole.orientation;
       middle.radius = at(world.bodies, next->body).radius + cable.half_width;
+      middle.still = !can_move(at(world.bodies, next->body));
       middle.pinch_middle = true;
-      const double pressed =
-          material_at<false>(cable, i, false, between.alpha, body_angle(world, whole));
+      const double pressed = material_at(cable, i, false, between.alpha, body_angle(world, whole));
       middle.material =
           pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
       if (!cable.rims.empty()) {

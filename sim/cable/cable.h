@@ -140,8 +140,8 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable);
 bool needed(const CableState& cable, std::size_t i);
 
 /// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
-/// RemoveJoints).
-void remove_links(World& world, Workspace& work);
+/// RemoveJoints). Returns whether there were any.
+bool remove_links(World& world, Workspace& work);
 
 /// Takes link i out of the cable. If its neighbours lie on one body they become one link.
 void remove_link(const World& world, CableState& cable, int link);

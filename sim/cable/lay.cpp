@@ -43,11 +43,12 @@ std::string place_of(const Course& course, std::size_t link) {
 }
 
 /// An end whose layers have a way marks that its body's other link is to have them.
-Link attached_link(const Attachment& attachment, int way) {
+Link attached_link(const World& world, const Attachment& attachment, int way) {
   Link link;
   if (attachment.layers) link.layers.way = way;
   link.body = attachment.body;
   link.offset = attachment.point;
+  link.still = link.body < 0 || (is_central(link) && !can_move(at(world.bodies, link.body)));
   return link;
 }
 
@@ -119,9 +120,9 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
   const Cable& given = course.given;
   const int first_stop = given.closed ? 0 : -1;
   std::vector<std::vector<Link>> stops;
-  if (!given.closed) stops.push_back({attached_link(given.start, 1)});
+  if (!given.closed) stops.push_back({attached_link(world, given.start, 1)});
   for (const Wrap& wrap : given.wraps) stops.push_back(choices(world, given, wrap));
-  if (!given.closed) stops.push_back({attached_link(given.end, -1)});
+  if (!given.closed) stops.push_back({attached_link(world, given.end, -1)});
   const std::size_t count = stops.size();
   std::vector<Link> arrives(count), leaves(count);
   for (std::size_t i = given.closed ? 0 : 1; i < count; ++i) {
@@ -266,9 +267,9 @@ void lay_material(const World& world, Course& course) {
 
 }  // namespace
 
-CableState lay_cable(const Scene& scene, const World& world, std::size_t c) {
+CableState lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c) {
   const Cable& given = scene.cables[c];
-  Course course{given, c, overlap_allowed(scene), {}, {}};
+  Course course{given, c, allowed, {}, {}};
   CableState& cable = course.cable;
   cable.half_width = given.half_width;
   cable.density = given.mass_per_metre;

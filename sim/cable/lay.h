@@ -7,7 +7,8 @@
 
 namespace pinchlab {
 
-/// Cable c of the scene, for the bodies' positions in `world`. Throws SceneError where it does not fit.
-CableState lay_cable(const Scene& scene, const World& world, std::size_t c);
+/// Cable c of the scene, for the bodies' positions in `world`. Throws SceneError where it does not fit,
+/// to `allowed` (m; overlap_allowed).
+CableState lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c);
 
 }  // namespace pinchlab

@@ -184,6 +184,19 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
   return true;
 }
 
+/// Whether all bodies are where their boxes allow for.
+bool boxes_hold(const Scene& scene, const World& world, const Parts& parts,
+                const BroadPhase& broad) {
+  if (broad.boxes.size() != world.bodies.size() || broad.cables != world.cables.size())
+    return false;
+  if (parts.immobile.empty()) return world.bodies.empty();  // not divided yet
+  const Margin margin(scene, world);
+  return std::all_of(parts.movers.begin(), parts.movers.end(), [&](int b) {
+    return is_still(parts, b) ||
+           holds(at(broad.boxes, b), at(world.position, b), reach_of_body(world, margin, index(b)));
+  });
+}
+
 }  // namespace
 
 void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs) {
@@ -215,13 +228,7 @@ Box span_box(const Segment& segment) {
 void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   BroadPhase& broad = work.broad_phase;
   const std::size_t count = world.bodies.size();
-  const Margin margin(scene, world);
-  bool valid = broad.boxes.size() == count && broad.cables == world.cables.size();
-  for (std::size_t b = 0; valid && b < count; ++b) {
-    valid = !can_move(world.bodies[b]) || is_still(work.parts, static_cast<int>(b)) ||
-            holds(broad.boxes[b], world.position[b], reach_of_body(world, margin, b));
-  }
-  if (valid) return;
+  if (boxes_hold(scene, world, work.parts, broad)) return;
   broad.cables = world.cables.size();
   broad.bodies_changed = true;
   broad.body_pairs.clear();

@@ -19,14 +19,15 @@ void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times
   Stopwatch watch(times);
   update_segments(world, work);
   watch.lap(Stage::update_segments);
-  detect_after_moving(scene, world, work, times);
+  detect_after_moving(scene, world, work, false, times);
 }
 
-void detect_after_moving(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+void detect_after_moving(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
+                         StageTimes* times) {
   Stopwatch watch(times);
-  remove_links(world, work);
+  const bool removed = remove_links(world, work);
   watch.lap(Stage::remove_links);
-  find_pairs(scene, world, work);
+  if (removed || !pairs_stand) find_pairs(scene, world, work);
   watch.lap(Stage::broad_phase);
   add_hit_links(world, work);
   watch.lap(Stage::intersect_segments);

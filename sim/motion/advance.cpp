@@ -73,11 +73,17 @@ void apply_no_forces(const Scene& scene, const World& world, double time, Worksp
 }
 
 /// Whether a contact is, that can give.
-bool is_squeezed(const World& world) {
-  return std::any_of(world.contacts.begin(), world.contacts.end(), [&world](const Contact& c) {
-    if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) return false;
-    return can_move(at(world.bodies, c.a)) || (c.b >= 0 && can_move(at(world.bodies, c.b)));
-  });
+bool is_squeezed(const World& world, const Parts& parts) {
+  for (const Part& part : parts.list) {
+    if (!part.can_move) continue;
+    for (const int number : contacts_of(parts, part)) {
+      const Contact& c = at(world.contacts, number);
+      if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
+      if (can_move(at(world.bodies, c.a))) return true;
+      if (c.b >= 0 && can_move(at(world.bodies, c.b))) return true;
+    }
+  }
+  return false;
 }
 
 void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
@@ -142,17 +148,18 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   Diagnostics& d = world.diagnostics;
   d.active_set_solves = 0;
   const std::int64_t fallbacks = d.fallbacks;
-  const std::int64_t allowed = changes_of_cables(world) + most_changes +
-                               most_changes_a_body * static_cast<std::int64_t>(world.bodies.size());
+  int changes = changes_of_cables(world);
+  const std::int64_t allowed =
+      changes + most_changes + most_changes_a_body * static_cast<std::int64_t>(world.bodies.size());
   double left = world.step_length;
   int events = 0;
   // Velocities that the scene starts with need not fit its cables: they meet them at once.
   if (world.step == 0) strike_all(scene, world, work, 0.0, true);
   for (bool first = true; left > 0.0; first = false) {
     const double lag = world.lag;
-    const int changes = changes_of_cables(world);
+    const bool locates = events < most_events;
     bool met = true;
-    const double length = move(scene, world, work, left, events < most_events, met, watch);
+    const double length = move(scene, world, work, left, locates, met, watch);
     if (!check_finite(scene, world)) return StepStatus::not_finite;
     lay_down_cables(world, work.parts);
     if (first && world.configuration.diagnostics) {
@@ -176,11 +183,13 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     for (const Part& part : work.parts.list) {
       if (left == 0.0 && !part.asleep) note_rest(scene, work.parts, part, world);
     }
-    detect_after_moving(scene, world, work, times);
+    detect_after_moving(scene, world, work, locates && !happened, times);
     watch = Stopwatch(times);
     empty_pinches(world, work.parts);
+    const int before = changes;
+    changes = changes_of_cables(world);
     const bool violated =
-        !met || work.violated || changes_of_cables(world) != changes || is_squeezed(world);
+        !met || work.violated || changes != before || is_squeezed(world, work.parts);
     settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);
     watch.lap(Stage::solve);
   }

@@ -7,12 +7,7 @@
 
 namespace pinchlab {
 
-double clearance_of(const Scene& scene, const World& world, const Row& row) {
-  if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
-    const Segment& segment = at(at(world.cables, row.index).segments, row.item);
-    return segment.rest_length - segment.length;
-  }
-  const Contact& contact = at(world.contacts, row.index);
+double clearance_of(const Scene& scene, const World& world, const Contact& contact) {
   if (contact.touch != Touch::circles) {
     return meeting_of(scene, world, contact).gap - target_of(world, contact);
   }

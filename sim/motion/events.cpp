@@ -49,10 +49,10 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
   Happening key{EventKind::catches};
   key.part = number;
   key.reach = s.reach;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const Row& row = s.rows[r];
+  for (const Row& row : s.rows) {
     if (!row.idle || row.compliance > 0.0) continue;
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
+    const auto r = static_cast<std::size_t>(&row - s.rows.data());
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     key.row = static_cast<int>(r);
     const double clearance = clearance_of(scene, world, row);
@@ -82,6 +82,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
   key.reach = s.reach;
   for (const int c : cables_of(work.parts, part)) {
     const CableState& cable = at(world.cables, c);
+    if (!cable.unwound && work.events.empty()) continue;
     key.cable = c;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
       const Link& link = at(cable.links, i);

@@ -45,7 +45,9 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
   const Start& start = work.start;
   for (const int number : bodies_of(work.parts, part)) {
     const auto b = index(number);
-    world.position[b] = start.position[b] + length * world.velocity[b];
+    if (!work.parts.immobile[b]) {
+      world.position[b] = start.position[b] + length * world.velocity[b];
+    }
     world.angle[b] = start.angle[b] + length * world.angular_velocity[b];
   }
   carry(world, carried_of(work.parts, part));
@@ -67,22 +69,23 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
 double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
                   PartSystem& s) {
   const CapstanScratch& capstan = work.solve.capstan;
+  const bool slides = !capstan.runs.empty();
+  const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
-    const int group = capstan.runs.empty() ? -1 : capstan.group_of_row[r];
+    const int group = slides ? capstan.group_of_row[r] : -1;
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
-    const bool gives = row.diagonal > 0.0 || group >= 0;
-    work.violated = work.violated || (row.clearance < -t.made_up && row.compliance == 0.0 && gives);
-    if (!row.on && row.kind == RowKind::pinch_middle) continue;
-    if (group >= 0 && !row.on && !shares) continue;
+    const bool violated = row.clearance < -t.made_up;
+    if (violated && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
+      work.violated = true;
+    }
+    if (!row.on && (row.kind == RowKind::pinch_middle || (group >= 0 && !shares))) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
-    const double left = row.clearance < -t.made_up ? row.clearance
-                        : made_up                  ? (1.0 - t.length / t.repair) * row.clearance
-                                                   : 0.0;
+    const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
     double missed = clearance_of(scene, world, row) - left;
     if (row.compliance > 0.0) {
       if (!row.on || group >= 0) continue;
@@ -130,9 +133,9 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   for (int round = 0;; ++round) {
     if (round > 0) settled = solve_again(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
-    if (round == 0) {
-      fastest = greatest_speed(world, bodies, s.velocity, nullptr);
-    } else if (greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
+    if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
+    if (round > 0 &&
+        greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
       work.missed = infinity;
       return false;
     }
@@ -140,7 +143,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
-    part.slides = !set.capstan.runs.empty() || part.contacts_begin != part.contacts_end;
+    part.slides = !set.capstan.runs.empty() || part.can_slip;
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, begins && round == 0);
     watch.lap(Stage::move_bodies);
@@ -175,8 +178,6 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   t.clamps = true;
   t.kick = world.lag + 0.5 * length;
   t.start = work.start.time;
-  apply_forces(scene, world, t, work);
-  watch.lap(Stage::apply_forces);
   work.local_error = 0.0;
   work.settled = true;
   work.violated = false;
@@ -187,6 +188,8 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
     Part& part = at(work.parts.list, p);
     if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
+    apply_forces(scene, world, t, work.parts, part, s);
+    watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
     t.reach = locate ? s.reach : infinity;
     met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
@@ -209,11 +212,15 @@ void go_back(World& world, Workspace& work) {
   world.velocity = start.velocity;
   world.angle = start.angle;
   world.angular_velocity = start.angular_velocity;
-  std::size_t k = 0;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (sleeps(work.parts, c)) continue;
     CableState& cable = world.cables[c];
-    for (Link& link : cable.links) link.material = start.material[k++];
-    if (!sleeps(work.parts, c)) update_cable(world, cable, false);
+    if (const int first = work.first_link[c]; first >= 0) {
+      for (std::size_t i = 0; i < cable.links.size(); ++i) {
+        cable.links[i].material = start.material[index(first) + i];
+      }
+    }
+    update_cable(world, cable, false);
   }
 }
 
@@ -295,10 +302,13 @@ void begin_interval(const World& world, Workspace& work, double time) {
   start.angle = world.angle;
   start.angular_velocity = world.angular_velocity;
   start.material.clear();
-  work.first_link.clear();
-  for (const CableState& cable : world.cables) {
-    work.first_link.push_back(static_cast<int>(start.material.size()));
-    for (const Link& link : cable.links) start.material.push_back(link.material);
+  work.first_link.assign(world.cables.size(), -1);
+  for (const Part& part : work.parts.list) {
+    if (part.asleep || !can_slide(part)) continue;
+    for (const int c : cables_of(work.parts, part)) {
+      at(work.first_link, c) = static_cast<int>(start.material.size());
+      for (const Link& link : at(world.cables, c).links) start.material.push_back(link.material);
+    }
   }
   work.released.clear();
   work.spans_moved = false;

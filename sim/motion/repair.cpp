@@ -65,28 +65,37 @@ bool opens(const World& world, const CableState& cable, int segment) {
   return !is_closed(world, cable, segment);
 }
 
+/// Lets go on what has gathered in a closed pinch.
+void empty_pinch(const World& world, CableState& cable, int pinch) {
+  if (!is_closed(world, cable, pinch)) return;
+  const int before = previous_link(cable, pinch), after = next_link(cable, pinch);
+  if (after < 0) return;
+  const bool opens_before = opens(world, cable, before);
+  const bool opens_after = opens(world, cable, after);
+  if (!opens_before && !opens_after) return;
+  const double slack = at(cable.segments, pinch).rest_length;
+  const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
+  at(cable.links, before).material += share * slack;
+  at(cable.links, pinch).material -= (1.0 - share) * slack;
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+void empty_pinches_of(const World& world, CableState& cable) {
+  const double rounding = 1e-15 * cable.length;
+  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+    const Segment& pinch = cable.segments[i];
+    if (pinch.pinched && !(pinch.rest_length <= rounding)) {
+      empty_pinch(world, cable, static_cast<int>(i));
+    }
+  }
+}
+
 }  // namespace
 
 void empty_pinches(World& world, const Parts& parts) {
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(parts, c)) continue;
-    CableState& cable = world.cables[c];
-    const double rounding = 1e-15 * cable.length;
-    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
-      const double slack = at(cable.segments, i).rest_length;
-      if (slack <= rounding || !at(cable.segments, i).pinched || !is_closed(world, cable, i)) {
-        continue;
-      }
-      const int before = previous_link(cable, i), after = next_link(cable, i);
-      if (after < 0) continue;
-      const bool opens_before = opens(world, cable, before);
-      const bool opens_after = opens(world, cable, after);
-      if (!opens_before && !opens_after) continue;
-      const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
-      at(cable.links, before).material += share * slack;
-      at(cable.links, i).material -= (1.0 - share) * slack;
-      update_wraps_and_rest_lengths(world, cable);
-    }
+  for (const Part& part : parts.list) {
+    if (part.asleep || !has_contacts(part)) continue;
+    for (const int c : cables_of(parts, part)) empty_pinches_of(world, at(world.cables, c));
   }
 }
 

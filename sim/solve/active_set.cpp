@@ -44,7 +44,7 @@ void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
 /// Cable between two surfaces that press it, and over which it cannot slide, moves as both do: it is
 /// pushed as well as pulled.
 void clamp_pinches(PartSystem& s) {
-  for (int r = 0; r < s.first_contact_row; ++r) {
+  for (const int r : s.pressed) {
     Row& row = at(s.rows, r);
     if (row.presser < 0) continue;
     const Row& presser = at(s.rows, row.presser);
@@ -104,7 +104,7 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
 
 /// Whether a row may contradict the solution at all: if none does, nobody needs to know how much of
 /// it would be round-off.
-bool is_suspicious(const PartSystem& s, const Row& row) {
+inline bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
   if (row.clamped) return false;
   return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
@@ -113,11 +113,10 @@ bool is_suspicious(const PartSystem& s, const Row& row) {
 /// Which states the solution contradicts.
 void check(const PartSystem& s, SolveScratch& set) {
   set.flips.clear();
-  if (set.capstan.runs.empty() && std::none_of(s.rows.begin(), s.rows.end(), [&s](const Row& row) {
-        return is_suspicious(s, row);
-      })) {
-    return;
-  }
+  set.suspicious = !set.capstan.runs.empty() ||
+                   std::any_of(s.rows.begin(), s.rows.end(),
+                               [&s](const Row& row) { return is_suspicious(s, row); });
+  if (!set.suspicious) return;
   const Tolerances tolerance = tolerances(s, set);
   const bool slides = !set.capstan.runs.empty();
   if (slides) check_runs(s, set, tolerance.speed, tolerance.impulse);
@@ -338,16 +337,18 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
                   SolveScratch& set) {
   set.solves = 0;
   set.froze = set.direct = false;
-  s.velocity = s.free_velocity;
   set.capstan.runs.clear();
-  if (s.rows.empty()) return true;
+  if (s.rows.empty()) {
+    s.velocity = s.free_velocity;
+    return true;
+  }
   order_rows(s, set.ordering);
   find_runs(world, parts, part, s, set);
   if (!settle(s, set)) {
     sweep_rows(s, set.capstan);
     set.direct = false;
   }
-  clear_negative(s);
+  if (set.suspicious) clear_negative(s);
   return !set.froze;
 }
 
@@ -357,7 +358,7 @@ bool solve_again(const World& world, const Parts& parts, const Part& part, PartS
     correct_solution(s, set);
     check(s, set);
     if (set.flips.empty()) {
-      clear_negative(s);
+      if (set.suspicious) clear_negative(s);
       return true;
     }
   }

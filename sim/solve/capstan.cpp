@@ -28,18 +28,18 @@ void add_to(std::vector<Term>& expression, int unknown, double coefficient) {
   expression.push_back({unknown, coefficient});
 }
 
-/// Tension after a sliding passage from that before it, or (upstream) the other way:
-///     arc: T_after = factor^s T_before;   pinch: T_after = T_before + s friction N - tau,
-/// s = +1 where the material slides forward, tau the middle body's share.
+/// Tension after a passage (sliding_terms) from that before it, or (upstream) the other way; s = +1 where the
+/// material slides forward. An arc has no pinch, nor a pinch an arc, so that the order does not matter.
 void pass(const SolveScratch& set, const Passage& passage, int s, bool upstream,
           std::vector<Term>& expression) {
   if (passage.factor != 1.0) {
-    const double factor = (s > 0) != upstream ? passage.factor : 1.0 / passage.factor;
+    const double factor = sliding_terms(passage, upstream ? -s : s).before;
     for (Term& term : expression) term.coefficient *= factor;
   }
   const double way = upstream ? -1.0 : 1.0;
   if (passage.normal >= 0) {
-    add_to(expression, set.unknown_of_row[index(passage.normal)], way * s * passage.friction);
+    add_to(expression, set.unknown_of_row[index(passage.normal)],
+           way * sliding_terms(passage, s).pressed);
   }
   if (passage.middle >= 0) {
     for (int k = set.impulse_begin[index(passage.middle)];

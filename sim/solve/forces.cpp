@@ -13,41 +13,50 @@ namespace pinchlab {
 
 namespace {
 
+// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
+// f/m.
+Forcing forcing_of(const Scene& scene, const BodyProperties& body, double k) {
+  Forcing f;
+  f.moves = can_move(body);
+  if (f.moves) f.pull = k * scene.gravity;
+  if (body.kind == BodyKind::rail) f.pull = body.rail_axis * body.rail_axis.dot(f.pull);
+  f.linear = 0.5 * k * body.linear_drag;
+  f.angular = 0.5 * k * body.angular_drag;
+  f.turned = f.angular != 0.0 || body.torque != 0.0;
+  if (f.turned) f.spin = k * body.torque / inertia_of(body);
+  return f;
+}
+
+/// Velocity of a body after a kick by forces alone.
+inline Eigen::Vector3d free_velocity(const Forcing& f, const Vec2& v, double omega) {
+  Vec2 free = Vec2::Zero();
+  if (f.moves) free = ((1.0 - f.linear) * v + f.pull) / (1.0 + f.linear);
+  if (f.turned) omega = ((1.0 - f.angular) * omega + f.spin) / (1.0 + f.angular);
+  return {free.x(), free.y(), omega};
+}
+
 /// What of a part's bodies lasts from step to step.
-void make_system(const World& world, std::span<const int> bodies, double kick, PartSystem& s) {
+void make_system(const Scene& scene, const World& world, std::span<const int> bodies, double kick,
+                 PartSystem& s) {
   s.mobility_changed = true;
   s.mobility_kick = kick;
   s.mobility.clear();
   s.mobile.clear();
   s.span_masses.clear();
+  s.forcing.clear();
+  s.extent_of_still = 0.0;
   for (const int b : bodies) {
-    s.mobility.push_back(mobility_of(at(world.bodies, b), kick));
-    s.mobile.push_back(is_mobile(at(world.bodies, b)));
+    const BodyProperties& body = at(world.bodies, b);
+    s.mobility.push_back(mobility_of(body, kick));
+    s.mobile.push_back(is_mobile(body));
+    Forcing& f = s.forcing.emplace_back(forcing_of(scene, body, kick));
+    f.has_motor = body.driven_angular_velocity || !at(scene.bodies, b).motor.empty();
+    if (f.moves) continue;
+    s.extent_of_still = std::max(s.extent_of_still, at(world.position, b).cwiseAbs().maxCoeff());
   }
   s.mobility.emplace_back();  // nothing moves the world
   s.mobile.push_back(false);
   s.free_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
-}
-
-/// Velocity of a body after a kick of k seconds by forces alone.
-///
-/// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
-/// f/m.
-Eigen::Vector3d free_velocity(const Scene& scene, const BodyProperties& body, const Vec2& v,
-                              double omega, double k) {
-  const double linear = 0.5 * k * body.linear_drag, angular = 0.5 * k * body.angular_drag;
-  Vec2 free = Vec2::Zero();
-  if (can_move(body)) {
-    Vec2 pull = k * scene.gravity;
-    if (body.kind == BodyKind::rail) pull = body.rail_axis * body.rail_axis.dot(pull);
-    free = ((1.0 - linear) * v + pull) / (1.0 + linear);
-  }
-  if (body.driven_angular_velocity) {
-    omega = *body.driven_angular_velocity;
-  } else if (angular != 0.0 || body.torque != 0.0) {
-    omega = ((1.0 - angular) * omega + k * body.torque / inertia_of(body)) / (1.0 + angular);
-  }
-  return {free.x(), free.y(), omega};
 }
 
 /// The body with what its motor's table says for the interval: the angular velocity of the motion
@@ -61,6 +70,20 @@ BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties no
     now.torque = mean_drive(body.motor, t.start - t.lag, t.start - t.lag + t.kick);
   }
   return now;
+}
+
+/// The free velocity of a body with a motor, or a table of torques.
+void drive_body(const Scene& scene, const World& world, const TimeSpan& t, int body, int place,
+                PartSystem& s) {
+  const BodyProperties& always = at(world.bodies, body);
+  const Body& given = at(scene.bodies, body);
+  const BodyProperties now = given.motor.empty() ? always : driven_now(given, t, always);
+  const double omega = at(world.angular_velocity, body);
+  Eigen::Vector3d& free = at(s.free_velocity, place);
+  free = free_velocity(forcing_of(scene, now, t.kick), at(world.velocity, body), omega);
+  if (!now.driven_angular_velocity) return;
+  free.z() = *now.driven_angular_velocity;
+  add_motor(always, place, free.z(), omega, t.kick, s);
 }
 
 /// The part's velocities as its rows see them: before a kick, with the world's after the last.
@@ -146,41 +169,41 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
 
 }  // namespace
 
+void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, const Parts& parts,
+                  const Part& part, PartSystem& s) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  s.mobility_changed = false;
+  if (s.mobility.empty() || s.mobility_kick != t.kick) make_system(scene, world, bodies, t.kick, s);
+  s.extent = s.extent_of_still;
+  s.motors.clear();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto b = index(bodies[i]);
+    const Forcing& f = s.forcing[i];
+    if (!f.moves && !f.turned && !f.has_motor) {
+      s.free_velocity[i] = {0.0, 0.0, world.angular_velocity[b]};
+      continue;
+    }
+    s.free_velocity[i] = free_velocity(f, world.velocity[b], world.angular_velocity[b]);
+    if (f.moves) s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
+    if (f.has_motor) drive_body(scene, world, t, bodies[i], static_cast<int>(i), s);
+  }
+  bool massed = false;
+  for (const int c : cables_of(parts, part)) {
+    const CableState& cable = at(world.cables, c);
+    massed = massed || is_massed(cable);
+    const auto segments = static_cast<double>(cable.segments.size());
+    s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
+  }
+  s.reach = within_reach * s.extent;
+  s.carried.clear();
+  if (massed) load_bodies(scene, world, parts, part, t, s);
+  drive(s);
+}
+
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Workspace& work) {
-  const double k = t.kick;
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
-    PartSystem& s = at(work.systems, part.system);
-    const std::span<const int> bodies = bodies_of(work.parts, part);
-    s.mobility_changed = false;
-    if (s.mobility.empty() || s.mobility_kick != k) make_system(world, bodies, k, s);
-    s.extent = 0.0;
-    s.motors.clear();
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const auto b = index(bodies[i]);
-      const Body& given = scene.bodies[b];
-      const Vec2& v = world.velocity[b];
-      const double omega = world.angular_velocity[b];
-      s.free_velocity[i] =
-          given.motor.empty()
-              ? free_velocity(scene, world.bodies[b], v, omega, k)
-              : free_velocity(scene, driven_now(given, t, world.bodies[b]), v, omega, k);
-      s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
-      if (world.bodies[b].driven_angular_velocity) {
-        add_motor(world.bodies[b], static_cast<int>(i), s.free_velocity[i].z(), omega, k, s);
-      }
-    }
-    bool massed = false;
-    for (const int c : cables_of(work.parts, part)) {
-      const CableState& cable = at(world.cables, c);
-      massed = massed || is_massed(cable);
-      const auto segments = static_cast<double>(cable.segments.size());
-      s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
-    }
-    s.reach = within_reach * s.extent;
-    s.carried.clear();
-    if (massed) load_bodies(scene, world, work.parts, part, t, s);
-    drive(s);
+    apply_forces(scene, world, t, work.parts, part, at(work.systems, part.system));
   }
 }
 

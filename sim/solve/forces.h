@@ -4,8 +4,8 @@
 namespace pinchlab {
 
 struct Part;
-struct PartSystem;
 struct Parts;
+struct PartSystem;
 struct Scene;
 struct Start;
 struct TimeSpan;
@@ -16,6 +16,10 @@ struct World;
 /// what moves the bodies, into their parts' systems.
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   Workspace& work);
+
+/// The same of one part.
+void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
+                  const Parts& parts, const Part& part, PartSystem& system);
 
 /// Takes the flow of cables with mass at the middle of the kick, the part's velocities after it being those
 /// just solved for, into the free velocities and those that follow from them: what this changes in its

@@ -116,13 +116,17 @@ void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
     const double size = std::max(j.cwiseAbs().maxCoeff(), k.cwiseAbs().maxCoeff());
     if (difference > rounding * size) continue;
     friction.repeats = first;
-    at(s.rows, friction.row).on = false;
     ++at(s.frictions, at(s.rows, first).friction).repeated;
+  }
+  for (std::size_t i = 0; i < s.frictions.size(); ++i) {
+    const Friction& friction = s.frictions[i];
+    if (friction.repeated > 0 || friction.repeats >= 0) s.repeated.push_back(static_cast<int>(i));
   }
 }
 
 void share_among_repeated(PartSystem& s) {
-  for (const Friction& friction : s.frictions) {
+  for (const int number : s.repeated) {
+    const Friction& friction = at(s.frictions, number);
     Row& row = at(s.rows, friction.row);
     if (friction.repeated > 0) row.impulse /= 1 + friction.repeated;
     if (friction.repeats < 0) continue;

@@ -25,6 +25,15 @@ struct Mobility {
   }
 };
 
+/// What forces make of a body's velocity in a kick, whatever that is.
+struct Forcing {
+  Vec2 pull = Vec2::Zero();            // m/s, that gravity adds
+  double linear = 0.0, angular = 0.0;  // half of what drag takes, as a share
+  double spin = 0.0;                   // rad/s, that a torque adds
+  bool moves = false, turned = false;  // the body's centre can; something turns it
+  bool has_motor = false;              // what turns it is driven, or follows a table
+};
+
 /// What a solve is for. Positions move on by `length` with the velocities that it finds, after
 /// forces have acted for `kick`.
 struct TimeSpan {
@@ -70,6 +79,8 @@ struct Row {
   bool clamped = false;     // active set: that force bears, so that the row may push as well
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
+  bool is_new = true;       // segment: its bodies are not yet seen
+  bool turns = false;       // segment: its levers turn with a body, moved or not
   bool returned = false;    // normal: has lost its force in this step and got it back
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
@@ -139,6 +150,7 @@ struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
   std::vector<char> mobile;                    // impulses can move or turn it
+  std::vector<Forcing> forcing;                // what the mobilities' kick adds
   std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
   std::vector<SpanMass> span_masses;           // empty until one body is too light
@@ -151,6 +163,7 @@ struct PartSystem {
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
+  double extent_of_still = 0.0;                // m, coordinates of bodies that cannot move at most
   double extent = 0.0;                         // m, coordinates and cable lengths at most
   double reach = 0.0;                          // m, TimeSpan::reach where events are located
 
@@ -161,10 +174,15 @@ struct PartSystem {
   std::vector<int> row_of_segment;  // cable after cable; -1: none
   std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
   int first_contact_row = 0;
-  RowsMade made;              // what they are for
-  bool same_rows = false;     // all rows are of what they were of in the step before
-  bool rows_stand = false;    // bodies and diagonals of all rows are those of the step before
-  std::vector<char> changed;  // of each row: they are not
+  std::vector<int> middles;     // rows of kind pinch_middle
+  std::vector<int> pressed;     // rows of transitional pinches that a contact presses
+  RowsMade made;                // what they are for
+  bool same_segments = false;   // rows of segments are of what they were of when last made
+  bool segments_stand = false;  // and so are their bodies and diagonals
+  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending
+  bool same_rows = false;       // all rows are of what they were of in the step before
+  bool rows_stand = false;      // bodies and diagonals of all rows are those of the step before
+  std::vector<char> changed;    // of each row: they are not
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.
   std::vector<int> structure, order;

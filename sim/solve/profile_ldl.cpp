@@ -5,6 +5,8 @@
 
 namespace pinchlab {
 
+// Each row waits for the one before it, whose value is therefore carried in a register.
+//
 // For each u, with sums over the k that both profiles hold and y(v) = L(u,v) d(v):
 //     y(v) = A(u,v) - sum y(k) L(v,k),   d(u) = A(u,u) - sum L(u,v) y(v).
 int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
@@ -13,6 +15,7 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   factors_.resize(entries_.size());
   std::copy_n(entries_.begin(), used_, factors_.begin());
   int dependent = 0;
+  double before = 0.0;  // reciprocal of the pivot before
   for (std::size_t u = 0; u < count; ++u) {
     const int first = first_[u], n = static_cast<int>(u);
     double* row = factors_.data() + begin_[u] - first;
@@ -24,38 +27,45 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
       row[v] = y;
     }
     double pivot = row[n] + scale[u] * (1.0 + ridge);
-    for (int v = first; v < n; ++v) {
+    const auto eliminate = [row, &pivot](int v, double reciprocal) {
       const double y = row[v];
-      row[v] = y * reciprocal_[static_cast<std::size_t>(v)];
+      row[v] = y * reciprocal;
       pivot -= row[v] * y;
-    }
+    };
+    for (int v = first; v < n - 1; ++v) eliminate(v, reciprocal_[static_cast<std::size_t>(v)]);
+    if (first < n) eliminate(n - 1, before);
     if (pivot < dependence * scale[u] && pivot > -dependence * scale[u]) {
-      reciprocal_[u] = 0.0;
+      before = 0.0;
       ++dependent;
     } else {
-      reciprocal_[u] = 1.0 / pivot;
+      before = 1.0 / pivot;
     }
+    reciprocal_[u] = before;
   }
   return dependent;
 }
 
 void ProfileLdl::solve(std::vector<double>& x) const {
   const std::size_t count = first_.size();
+  if (count == 0) return;
+  double last = 0.0;  // x[u - 1]
   for (std::size_t u = 0; u < count; ++u) {
-    const double* row = factors_.data() + begin_[u] - first_[u];
+    const int first = first_[u], n = static_cast<int>(u);
+    const double* row = factors_.data() + begin_[u] - first;
     double sum = x[u];
-    for (int k = first_[u]; k < static_cast<int>(u); ++k) {
-      sum -= row[k] * x[static_cast<std::size_t>(k)];
-    }
-    x[u] = sum;
+    for (int k = first; k < n - 1; ++k) sum -= row[k] * x[static_cast<std::size_t>(k)];
+    if (first < n) sum -= row[n - 1] * last;
+    x[u] = last = sum;
   }
   for (std::size_t u = 0; u < count; ++u) x[u] *= reciprocal_[u];
-  for (std::size_t u = count; u-- > 0;) {
-    const double* row = factors_.data() + begin_[u] - first_[u];
-    const double value = x[u];
-    for (int k = first_[u]; k < static_cast<int>(u); ++k) {
-      x[static_cast<std::size_t>(k)] -= row[k] * value;
-    }
+  last = x[count - 1];  // x[u]
+  for (std::size_t u = count - 1; u > 0; --u) {
+    const int first = first_[u], n = static_cast<int>(u);
+    const double* row = factors_.data() + begin_[u] - first;
+    for (int k = first; k < n - 1; ++k) x[static_cast<std::size_t>(k)] -= row[k] * last;
+    double next = x[u - 1];
+    if (first < n) next -= row[n - 1] * last;
+    x[u - 1] = last = next;
   }
 }
 

@@ -68,7 +68,7 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
 }
 
 /// What the row has left before it bears force, and what its speed must therefore be.
-void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
+inline void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
   row.clearance = clearance;
   row.idle = clearance > interval.reach || (interval.held_only && !row.on);
   row.on = row.on && !row.idle;
@@ -78,10 +78,16 @@ void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
   row.bias = interval.length > 0.0 && clearance >= -interval.made_up ? clearance / time : 0.0;
 }
 
+/// What is left before a segment bears tension (m). Where plain cable joints have crossed bodies, rolling
+/// has moved material that no row has held; what is left of a segment is then at least nothing.
+double clearance_left(const Segment& segment, bool plain) {
+  const double rest = plain ? std::max(segment.rest_length, 0.0) : segment.rest_length;
+  return rest - segment.length;
+}
+
 /// All of a segment's row but its bodies, as it is before a solve.
-void set_segment_values(const World& world, const Segment& segment, const TimeSpan& interval,
-                        Row& row) {
-  row.kind = RowKind::segment;
+inline void set_segment_values(const Segment& segment, bool plain, const TimeSpan& interval,
+                               Row& row) {
   row.on = !segment.slack;
   row.returned = false;
   row.slip = Slip::stick;
@@ -90,12 +96,7 @@ void set_segment_values(const World& world, const Segment& segment, const TimeSp
   row.presser = -1;
   row.curvature = 0.0;
   row.clamped = false;
-  // Where plain cable joints have crossed bodies, rolling has moved material that no row has held;
-  // what is left of a segment is then at least nothing.
-  const double rest = world.configuration.method == Method::cable
-                          ? std::max(segment.rest_length, 0.0)
-                          : segment.rest_length;
-  set_clearance(rest - segment.length, interval, row);
+  set_clearance(clearance_left(segment, plain), interval, row);
   row.compliance = 0.0;
 }
 
@@ -108,7 +109,7 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
 }
 
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
-double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
+inline double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
   if (body < 0) return 0.0;
   const int mover = mover_of(world, body);
   const Vec2& v = at(world.velocity, mover);
@@ -132,8 +133,8 @@ double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
 /// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
 /// impulse up to then is known but for a damper's: it has acted on the free velocities, and without a
 /// damper the row idles.
-void make_elastic(const World& world, const Cable& given, const Link& from, const Link& to,
-                  const Segment& segment, const TimeSpan& t, PartSystem& s, int number) {
+void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
+                  PartSystem& s, int number) {
   const double stiffness = given.axial_stiffness;
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
@@ -147,6 +148,8 @@ void make_elastic(const World& world, const Cable& given, const Link& from, cons
       sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
   const double b = 0.25 * (1.0 - damped);
   const CableState& cable = at(world.cables, row.index);
+  const Link &to = at(cable.links, row.item),
+             &from = at(cable.links, previous_link(cable, row.item));
   const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
                         speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
@@ -307,42 +310,120 @@ void add_friction(PartSystem& s, const Friction& friction) {
   s.frictions.push_back(friction);
 }
 
+/// The rows of a contact that can give way.
+void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
+                         const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
+  const Contact& contact = at(world.contacts, number);
+  const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
+  const int normal = append_row(s, a, b);
+  at(scratch.normal_row_of_contact, number) = normal;
+  s.rows.back().index = number;
+  set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
+  weigh(s, s.bodies.back(), s.rows.back());
+
+  const double mu = coefficient_of(scene, world, contact);
+  if (mu == 0.0) return;
+  const int tangent = append_row(s, a, b);
+  Row& row = s.rows.back();
+  row.kind = RowKind::tangent;
+  row.index = number;
+  row.slip = contact.slip;
+  set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
+  weigh(s, s.bodies.back(), row);
+  add_friction(s, contact_friction(tangent, normal, mu));
+}
+
+/// The rows of middle bodies as they are before a solve, by what bounds them.
+void begin_middles(PartSystem& s) {
+  for (std::size_t i = 0; i < s.frictions.size(); ++i) {
+    Friction& friction = s.frictions[i];
+    Row& row = at(s.rows, friction.row);
+    if (row.kind != RowKind::pinch_middle) continue;
+    friction.dropped = friction.frozen = false;
+    friction.slid = Slip::stick;
+    row.friction = static_cast<int>(i);
+    if (friction.normal < 0 && friction.coefficient == infinity) {
+      row.on = true;
+      row.slip = Slip::stick;
+    }
+    if (friction.repeats >= 0) row.on = false;
+  }
+}
+
 /// The row of the force that clamps the cable of a transitional pinch between two bodies neither of
 /// which it can slide over; or -1.
 int presser_of(const World& world, const SolveScratch& scratch, const Row& row) {
   const CableState& cable = at(world.cables, row.index);
   const Segment& segment = at(cable.segments, row.item);
-  if (!segment.pinched || segment.contact < 0 || row.idle || row.compliance > 0.0) return -1;
+  if (row.idle || row.compliance > 0.0) return -1;
   for (const int link : {row.item, previous_link(cable, row.item)}) {
     if (at(world.bodies, at(cable.links, link).body).cable_friction < infinity) return -1;
   }
   return at(scratch.normal_row_of_contact, segment.contact);
 }
 
-/// Empties the part's rows, but for those of segments where they are for the same links and kick as
-/// before; whether they are.
-bool begin_segment_rows(const World& world, const Parts& parts, const Part& part, double kick,
+/// Lists the rows of a part's segments: between which places, and of what kind.
+void list_segment_rows(const World& world, const Parts& parts, const Part& part, PartSystem& s) {
+  const bool three = world.configuration.pinch_rows == PinchRows::three;
+  s.rows.clear();
+  s.bodies.clear();
+  s.changed.clear();
+  s.assembled.clear();
+  s.row_of_segment.clear();
+  s.segment_begin.clear();
+  s.middles.clear();
+  for (const int c : cables_of(parts, part)) {
+    const CableState& cable = at(world.cables, c);
+    const std::size_t begin = s.row_of_segment.size();
+    s.segment_begin.push_back(static_cast<int>(begin));
+    s.row_of_segment.resize(begin + cable.segments.size(), -1);
+    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
+      const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
+      // After a middle link comes the opposite of the row before it: one signed row serves both.
+      if (from.pinch_middle && !three) continue;
+      if (from.body == to.body && (wound_end(from, to) || is_side(from, to))) continue;
+      int a = place_of(parts, s, from.body), b = place_of(parts, s, to.body);
+      if (a == b) a = b = s.ground();  // between two points of one body nothing changes
+      const int number = append_row(s, a, b);
+      s.row_of_segment[begin + index(i)] = number;
+      Row& row = s.rows.back();
+      row.index = c;
+      row.item = i;
+      row.turns = !has_fixed_lever(world, from) || !has_fixed_lever(world, to);
+      if (!to.pinch_middle || three) continue;
+      row.kind = RowKind::pinch_middle;
+      s.middles.push_back(number);
+    }
+  }
+  s.first_contact_row = static_cast<int>(s.rows.size());
+}
+
+/// Leaves of a part's rows those of segments, where they are for the same links and kick as before; else
+/// lists them.
+void begin_segment_rows(const World& world, const Parts& parts, const Part& part, double kick,
                         PartSystem& s) {
   RowsMade made{0, kick};
   for (const int c : cables_of(parts, part)) made.changes += at(world.cables, c).changes;
   const bool again = made == s.made;
   s.made = made;
-  s.same_rows = again && part.contacts_begin == part.contacts_end;
-  s.rows_stand = s.same_rows && !s.mobility_changed;
-  if (again) {
-    s.rows.resize(index(s.first_contact_row));
-    s.bodies.resize(index(s.first_contact_row));
-    s.changed.resize(index(s.first_contact_row));
-  } else {
-    s.rows.clear();
-    s.bodies.clear();
-    s.changed.clear();
-    s.assembled.clear();
-    s.row_of_segment.clear();
+  s.same_segments = again;
+  s.segments_stand = again && !s.mobility_changed;
+  s.pressed.clear();
+  if (!again) return list_segment_rows(world, parts, part, s);
+  s.rows.resize(index(s.first_contact_row));
+  s.bodies.resize(index(s.first_contact_row));
+  s.changed.resize(index(s.first_contact_row));
+}
+
+/// What a row that has moved, or is new, sees of its bodies.
+void place_segment_row(const World& world, const CableState& cable, const Segment& segment,
+                       const TimeSpan& interval, bool plain, RowBodies& bodies, Row& row) {
+  const Link &to = at(cable.links, row.item),
+             &from = at(cable.links, previous_link(cable, row.item));
+  set_segment_bodies(world, from, to, segment, segment.pinched && yields(cable), bodies);
+  if (plain && segment.pinched) {
+    turn_to_centre_line(world, from, to, segment, interval, bodies, row);
   }
-  s.frictions.clear();
-  s.segment_begin.clear();
-  return again;
 }
 
 }  // namespace
@@ -373,108 +454,68 @@ Mobility mobility_of(const BodyProperties& body, double kick) {
 
 void make_segment_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                        const TimeSpan& interval, PartSystem& s) {
-  const bool three = world.configuration.pinch_rows == PinchRows::three;
   const bool plain = world.configuration.method == Method::cable;
   const bool exact = locates_events(world.configuration);
-  const bool again = begin_segment_rows(world, parts, part, interval.kick, s);
-  std::size_t begin = 0;  // of the cable, in row_of_segment
-  for (const int c : cables_of(parts, part)) {
-    const CableState& cable = at(world.cables, c);
-    s.segment_begin.push_back(static_cast<int>(begin));
-    if (!again) s.row_of_segment.resize(begin + cable.segments.size(), -1);
-    const Cable& given = at(scene.cables, c);
-    for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
-      const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
-      // After a middle link comes the opposite of the row before it: one signed row serves both.
-      if (from.pinch_middle && !three) continue;
-      if (from.body == to.body && (wound_end(from, to) || is_side(from, to))) continue;
-      const Segment& segment = at(cable.segments, i);
-      int& number = s.row_of_segment[begin + index(i)];
-      if (!again) {
-        int a = place_of(parts, s, from.body), b = place_of(parts, s, to.body);
-        if (a == b) a = b = s.ground();  // between two points of one body nothing changes
-        number = append_row(s, a, b);
-        s.rows.back().index = c;
-        s.rows.back().item = i;
-      }
-      Row& row = at(s.rows, number);
-      RowBodies& bodies = at(s.bodies, number);
-      set_segment_values(world, segment, interval, row);
-      const bool on_centre_line = plain && segment.pinched;
-      // The lever of a circle off its body's centre turns with the body, moved or not.
-      const bool stands =
-          again && !segment.moved && has_fixed_lever(world, from) && has_fixed_lever(world, to);
-      if (!stands || on_centre_line) {
-        s.rows_stand = false;
-        const bool sunk = segment.pinched && yields(cable);
-        set_segment_bodies(world, from, to, segment, sunk, bodies);
-        if (on_centre_line) turn_to_centre_line(world, from, to, segment, interval, bodies, row);
-      }
-      const bool changed = !stands || on_centre_line || s.mobility_changed;
-      at(s.changed, number) = changed;
-      if (changed) weigh(s, bodies, row);
-      // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
-      // feed back as speed: there they only pull.
-      if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
-      if (given.axial_stiffness < infinity && !segment.pinched) {
-        make_elastic(world, given, from, to, segment, interval, s, number);
-      }
-      if (to.pinch_middle && !three) {
-        row.kind = RowKind::pinch_middle;
-        row.idle = false;
-        row.slip = to.slip;
-      }
+  begin_segment_rows(world, parts, part, interval.kick, s);
+  for (int r = 0; r < s.first_contact_row; ++r) {
+    Row& row = at(s.rows, r);
+    RowBodies& bodies = at(s.bodies, r);
+    const CableState& cable = at(world.cables, row.index);
+    const Segment& segment = at(cable.segments, row.item);
+    set_segment_values(segment, plain, interval, row);
+    // The lever of a circle off its body's centre turns with the body, moved or not.
+    const bool moved = segment.moved || row.turns || row.is_new || (plain && segment.pinched);
+    if (moved) {
+      place_segment_row(world, cable, segment, interval, plain, bodies, row);
+      s.segments_stand = row.is_new = false;
     }
-    begin += cable.segments.size();
+    if (moved || s.mobility_changed) {
+      weigh(s, bodies, row);
+      at(s.changed, r) = true;
+    }
+    // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
+    // feed back as speed: there they only pull.
+    if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
+    const Cable& given = at(scene.cables, row.index);
+    if (given.axial_stiffness < infinity && !segment.pinched) {
+      make_elastic(world, given, segment, interval, s, r);
+    }
+    if (row.kind == RowKind::pinch_middle) {
+      row.idle = false;
+      row.slip = at(cable.links, row.item).slip;
+    } else if (part.can_move && segment.pinched && segment.contact >= 0) {
+      s.pressed.push_back(r);
+    }
   }
-  s.first_contact_row = static_cast<int>(s.rows.size());
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                        const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   scratch.normal_row_of_contact.resize(world.contacts.size());
-  for (const int number : contacts_of(parts, part)) {
+  const bool again = s.segments_stand && !part.can_move;  // as the middle bodies' friction was
+  if (!again) {
+    s.frictions.clear();
+    s.repeated.clear();
+  }
+  const std::span<const int> contacts = contacts_of(parts, part);
+  for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
+  for (const int number : part.can_move ? contacts : std::span<const int>()) {
     const Contact& contact = at(world.contacts, number);
-    int& normal = at(scratch.normal_row_of_contact, number);
-    normal = -1;
-    const BodyProperties& body = at(world.bodies, contact.a);
-    const BodyProperties* other = contact.b >= 0 ? &at(world.bodies, contact.b) : nullptr;
-    if (!can_move(body) && (!other || !can_move(*other))) continue;
-    const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
-    normal = append_row(s, a, b);
-    s.rows.back().index = number;
-    set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
-    weigh(s, s.bodies.back(), s.rows.back());
-
-    const double mu = coefficient_of(scene, world, contact);
-    if (mu == 0.0) continue;
-    const int tangent = append_row(s, a, b);
-    Row& row = s.rows.back();
-    row.kind = RowKind::tangent;
-    row.index = number;
-    row.slip = contact.slip;
-    set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
-    weigh(s, s.bodies.back(), row);
-    add_friction(s, contact_friction(tangent, normal, mu));
+    const bool gives = can_move(at(world.bodies, contact.a)) ||
+                       (contact.b >= 0 && can_move(at(world.bodies, contact.b)));
+    if (gives) append_contact_rows(scene, world, parts, number, interval, s, scratch);
   }
-  bool middles = false;
-  for (int r = 0; r < s.first_contact_row; ++r) {
-    Row& row = at(s.rows, r);
-    if (row.kind != RowKind::pinch_middle) {
-      if (interval.clamps) row.presser = presser_of(world, scratch, row);
-      continue;
-    }
-    const Friction friction = middle_friction(world, s, scratch, r);
-    add_friction(s, friction);
-    if (friction.normal < 0 && friction.coefficient == infinity) {
-      row.on = true;
-      row.slip = Slip::stick;
-    }
-    middles = true;
+  s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
+  s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;
+  if (interval.clamps) {
+    for (const int r : s.pressed) at(s.rows, r).presser = presser_of(world, scratch, at(s.rows, r));
   }
-  if (middles && world.configuration.solver == Solver::direct) {
-    find_repeated_middles(world, s, scratch);
+  if (s.middles.empty()) return;
+  if (!again) {
+    for (const int r : s.middles) add_friction(s, middle_friction(world, s, scratch, r));
+    if (world.configuration.solver == Solver::direct) find_repeated_middles(world, s, scratch);
   }
+  begin_middles(s);
 }
 
 void make_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,

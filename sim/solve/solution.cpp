@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/solve/solution.h"
 
+#include <span>
+
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
@@ -12,18 +14,18 @@ namespace pinchlab {
 
 namespace {
 
-void store_row(const Row& row, double kick, World& world) {
-  if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
-    CableState& cable = at(world.cables, row.index);
-    Segment& segment = at(cable.segments, row.item);
-    if (kick > 0.0) segment.tension = row.impulse / kick;
-    if (row.kind == RowKind::segment) {
-      segment.slack = !row.on;
-    } else {
-      at(cable.links, row.item).slip = row.slip;
-    }
-    return;
+void store_segment_row(const Row& row, double kick, World& world) {
+  CableState& cable = at(world.cables, row.index);
+  Segment& segment = at(cable.segments, row.item);
+  if (kick > 0.0) segment.tension = row.impulse / kick;
+  if (row.kind == RowKind::segment) {
+    segment.slack = !row.on;
+  } else {
+    at(cable.links, row.item).slip = row.slip;
   }
+}
+
+void store_contact_row(const Row& row, double kick, World& world) {
   Contact& contact = at(world.contacts, row.index);
   if (row.kind == RowKind::normal) {
     contact.touching = row.on;
@@ -60,7 +62,9 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   }
   carry(world, carried_of(parts, part));
   share_among_repeated(s);
-  for (const Row& row : s.rows) store_row(row, kick, world);
+  const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_contact_row));
+  for (const Row& row : segments) store_segment_row(row, kick, world);
+  for (const Row& row : rows.subspan(segments.size())) store_contact_row(row, kick, world);
   for (const Run& run : capstan.runs) store_run(s, run, world);
   for (const Friction& friction : s.frictions) {
     const Row& row = at(s.rows, friction.row);

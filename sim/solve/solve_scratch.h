@@ -44,6 +44,7 @@ struct SolveScratch {
   int solves = 0;            // of this part in this step so far
   bool froze = false;        // the states did not settle by themselves
   bool direct = false;       // the last solution is that of a regular symmetric system
+  bool suspicious = false;   // a row may contradict the last solution
   bool smooth = false;       // friction that slides is left out; what sticks for good does
   double step_length = 0.0;  // s, by which round-off of positions becomes speed
   double reach = infinity;   // m, TimeSpan::reach

@@ -13,9 +13,9 @@ namespace pinchlab {
 namespace {
 
 /// A row has an unknown of its own unless it bears nothing, slips, or follows from its group's.
-bool has_unknown(const Row& row, std::size_t r, const CapstanScratch& capstan) {
+bool has_unknown(const Row& row, std::size_t r, bool slides, const CapstanScratch& capstan) {
   if (!row.on) return false;
-  if (row.kind == RowKind::segment && !capstan.runs.empty() && capstan.group_of_row[r] >= 0) {
+  if (slides && row.kind == RowKind::segment && capstan.group_of_row[r] >= 0) {
     const Group& group = at(capstan.groups, capstan.group_of_row[r]);
     return group.slack < 0 && at(capstan.members, group.begin) == static_cast<int>(r);
   }
@@ -26,12 +26,13 @@ bool has_unknown(const Row& row, std::size_t r, const CapstanScratch& capstan) {
 void number_unknowns(const PartSystem& s, SolveScratch& set) {
   set.unknown_of_row.resize(s.rows.size());
   set.row_of_unknown.resize(s.rows.size());
-  set.symmetric = set.capstan.runs.empty();
+  const bool slides = !set.capstan.runs.empty();
+  set.symmetric = !slides;
   int count = 0;
   for (const int r : s.order) {
     const Row& row = at(s.rows, r);
     if (row.on && row.slip != Slip::stick) set.symmetric = false;
-    const bool unknown = has_unknown(row, index(r), set.capstan);
+    const bool unknown = has_unknown(row, index(r), slides, set.capstan);
     at(set.unknown_of_row, r) = unknown ? count : -1;
     if (unknown) at(set.row_of_unknown, count++) = r;
   }
@@ -240,8 +241,11 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
 
 /// Brings the matrix up to date where rows have changed since it was assembled for the same ones.
 void reassemble_changed(PartSystem& s) {
+  int last_changed = -1;
   for (int u = 0; u < s.ldl.size(); ++u) {
     const int r = s.assembled[index(u)], first = s.ldl.first(u);
+    if (at(s.changed, r)) last_changed = u;
+    if (last_changed < first) continue;
     const RowBodies& row = at(s.bodies, r);
     double* entries = s.ldl.row(u) - first;
     for (int v = first; v < u; ++v) {

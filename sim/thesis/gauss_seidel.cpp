@@ -145,10 +145,10 @@ SlidingLaw sliding_law(const Sweep& s, const Run& run, int way) {
   SlidingLaw law;
   for (int k = run.passages_begin; k < run.passages_end; ++k) {
     const Passage& p = at(s.capstan.passages, k);
-    const double factor = way > 0 ? p.factor : 1.0 / p.factor;
-    law.factor = std::clamp(law.factor * factor, 1.0 / largest, largest);
-    law.offset = std::clamp(law.offset * factor, -largest, largest);
-    if (p.normal >= 0) law.offset += way * p.friction * at(s.own.rows, p.normal).impulse;
+    const SlidingTerms terms = sliding_terms(p, way);
+    law.factor = std::clamp(law.factor * terms.before, 1.0 / largest, largest);
+    law.offset = std::clamp(law.offset * terms.before, -largest, largest);
+    if (p.normal >= 0) law.offset += terms.pressed * at(s.own.rows, p.normal).impulse;
     if (p.middle >= 0) law.offset -= middle_impulse(s, p);
   }
   return law;
