@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/mass.h"
@@ -93,8 +94,9 @@ double potential_energy(const Scene& scene, const World& world) {
   }
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const double stiffness = scene.cables[c].axial_stiffness;
-    if (stiffness == infinity) continue;
     const CableState& cable = world.cables[c];
+    if (cable.bends_with >= 0) energy += bending_energy(world, cable);
+    if (stiffness == infinity) continue;
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];
       if (segment.rest_length <= 0.0) continue;

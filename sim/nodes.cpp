@@ -61,15 +61,26 @@ std::vector<Vec2> hanging_pieces(const std::vector<Vec2>& weights, double length
   return directions;
 }
 
+/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) / l^2, and a
+/// leapfrog is stable to omega h = 2.
+double shortest_that_bends(const Scene& scene, const Cable& cable) {
+  const double speed = std::sqrt(cable.bending_stiffness / cable.mass_per_metre);  // m^2/s
+  return std::sqrt(2.0 * step_length(scene) * speed);
+}
+
 /// m, of each piece, where the scene leaves it open.
 double shortest_piece(const Scene& scene, const Cable& cable, double length) {
   const double wave = step_length(scene) * std::sqrt(scene.gravity.norm() * length);
-  return std::max({4.0 * cable.half_width, length / (most_nodes_chosen + 1.0), wave});
+  return std::max({4.0 * cable.half_width, length / (most_nodes_chosen + 1.0), wave,
+                   1.1 * shortest_that_bends(scene, cable)});
 }
 
 void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
   if (!(cable.mass_per_metre < infinity) || cable.nodes < 0) {
     throw SceneError(place, "mass_per_metre_kg must be finite and nodes at least 1");
+  }
+  if (!(cable.bending_stiffness >= 0.0 && cable.bending_stiffness < infinity)) {
+    throw SceneError(place, "the bending stiffness must be finite and at least 0");
   }
 }
 
@@ -107,6 +118,14 @@ NodedCable spread(Scene& scene, std::size_t c) {
             "pieces of {} between nodes are no longer than the cable is wide; at most {} nodes fit",
             in_mm(piece), static_cast<int>(length / (2.0 * whole.half_width)) - 1));
   }
+  if (const double least = shortest_that_bends(scene, whole); piece < least) {
+    throw SceneError(
+        place + "/nodes",
+        fmt::format("pieces of {} between nodes bend to and fro faster than {} steps a frame "
+                    "follow; at most {} nodes, or more steps a frame",
+                    in_mm(piece), scene.steps_per_frame,
+                    std::max(static_cast<int>(length / least) - 1, 1)));
+  }
   std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
   if (ends_on_mobile(scene, whole.start)) masses.front() += 0.5 * whole.mass_per_metre * piece;
   if (ends_on_mobile(scene, whole.end)) masses.back() += 0.5 * whole.mass_per_metre * piece;
@@ -126,7 +145,12 @@ NodedCable spread(Scene& scene, std::size_t c) {
     Cable part = whole;
     part.mass_per_metre = 0.0;
     part.nodes = 0;
-    part.rod = part.axial_stiffness == infinity;
+    part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
+    part.bending_stiffness = 0.0;
+    if (whole.bending_stiffness > 0.0 && k + 1 < pieces) {
+      part.bends_with = made.first_piece + k;
+      part.bend = whole.bending_stiffness / piece;
+    }
     // What a straight cable has to spare, its pieces share.
     part.slack = hangs ? 0.0 : whole.slack / pieces;
     if (k > 0) {

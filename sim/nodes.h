@@ -32,7 +32,10 @@ inline bool becomes_nodes(const Cable& cable) {
 /// A cable with slack starts where its chain hangs at rest, exactly; a taut one, or one without gravity,
 /// straight. How many nodes: as many as it says, or so many that pieces are no shorter than
 /// twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension runs in a step,
-/// h sqrt(g L), beyond which nodes vibrate faster than steps can follow.
+/// h sqrt(g L), beyond which nodes vibrate faster than steps can follow; and, with a bending stiffness EI and
+/// the mass rho a metre, than sqrt(2 h sqrt(EI / rho)), beyond which their bending does.
+///
+/// With a bending stiffness pieces bear force both ways, and bend against one another (cable/bending.h).
 ///
 /// Throws SceneError where a cable has no length, or more nodes than fit.
 std::vector<NodedCable> spread_nodes(Scene& scene);

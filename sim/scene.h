@@ -125,7 +125,10 @@ struct Cable {
   /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes a chain
   /// of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;
-  int nodes = 0;                  ///< of such a chain; 0: as spread_nodes chooses
+  int nodes = 0;                   ///< of such a chain; 0: as spread_nodes chooses
+  double bending_stiffness = 0.0;  ///< N m^2, EI, of such a chain
+  int bends_with = -1;  ///< of a piece between nodes: the next one, against which it bends; or -1
+  double bend = 0.0;    ///< N m a rad, there
   double contact_friction = 0.5;  ///< Coulomb coefficient of its nodes on bodies and walls
   double linear_drag = 0.0;       ///< 1/s, of its nodes
 };

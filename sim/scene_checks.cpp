@@ -198,6 +198,11 @@ void refuse_impossible_figures(const Scene& scene) {
     refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
     refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
            "only an elastic cable creeps");
+    const int cables = static_cast<int>(scene.cables.size());
+    refuse(cable.bending_stiffness != 0.0, place,
+           "a cable that bends needs its nodes (spread_nodes)");
+    refuse(cable.bends_with >= cables || (cable.bends_with >= 0 && !(cable.bend >= 0.0)), place,
+           "it bends against a cable that is not in the scene");
     refuse(!(cable.damping >= 0.0 && cable.damping < infinity), place,
            "the damping must be at least 0");
     refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");

@@ -104,6 +104,8 @@ struct CableState {
   bool closed = false;
   bool rod = false;  // bears force both ways: a piece between nodes, or a joint
   Joint joint = Joint::none;
+  int bends_with = -1;   // a piece between nodes that goes on from its end: bending.h
+  double bend = 0.0;     // N m a rad, between the two
   bool fills = false;    // lies in layers on a body that holds an end of it
   double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
   int changes = 0;       // links inserted and removed so far

@@ -88,6 +88,7 @@ const ObjectFormat cable_format = {"cable",
                                     {"grip", number, optional, 0, 1},
                                     {"mass_per_metre_kg", number, optional, 1e-9, 1e9},
                                     {"nodes", integer, optional, 1, 1000},
+                                    {"bending_stiffness_n_m2", number, optional, 0, 1e9},
                                     {"contact_friction", number, optional, 0, 100},
                                     {"linear_drag_per_s", number, optional, 0, 1e4},
                                     {"look", object, optional, 0, 0, {}, &cable_look_format}}};

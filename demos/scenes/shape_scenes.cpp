@@ -199,6 +199,24 @@ Scene catenary(int pieces, int steps_per_frame) {
   return scene;
 }
 
+Scene flexible_pendulum(int pieces, int steps_per_frame) {
+  constexpr double density = 0.39269908;  // kg/m
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  const double half_piece = 0.5 * density / pieces;  // kg
+  scene.bodies.push_back(body("tip", BodyKind::free, 1.0, 0.0, 0.001, half_piece));
+  scene.bodies[0].node = true;
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.001));
+  Cable& whole = scene.cables[0];
+  whole.mass_per_metre = density;
+  whole.nodes = pieces - 1;
+  whole.axial_stiffness = 1570.7963;
+  whole.bending_stiffness = 0.2;
+  spread_nodes(scene);
+  scene.bodies.back().mass -= half_piece;  // which is the tip's
+  return scene;
+}
+
 Scene folded_chain(int pieces, int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

@@ -62,6 +62,10 @@ Scene heavy_tackle(int steps_per_frame);
 /// chooses). Before spread_nodes.
 Scene catenary(int pieces, int steps_per_frame);
 
+/// The flexible pendulum of Westin and Irani: 1 m long, 0.39269908 kg/m, EA = 1570.7963 N, EI = 0.2 N m^2, pinned
+/// at the origin and let go horizontally, in so many pieces. Body 0 is its tip. After spread_nodes.
+Scene flexible_pendulum(int pieces, int steps_per_frame);
+
 /// A chain of 1 m and 1 kg in so many pieces, hung up by both ends beside one another, one of which, body
 /// 0, is let go. After spread_nodes.
 Scene folded_chain(int pieces, int steps_per_frame);

@@ -279,6 +279,8 @@ CableState lay_cable(const Scene& scene, const World& world, double allowed, std
   cable.grip = given.grip;
   cable.closed = given.closed;
   cable.rod = given.rod;
+  cable.bends_with = given.bends_with;
+  cable.bend = given.bend;
   cable.joint = given.joint;
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);

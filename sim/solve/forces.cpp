@@ -4,9 +4,13 @@
 #include <algorithm>
 
 #include "base/at.h"
+#include "sim/cable/bending.h"
+#include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
+#include "sim/compound.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
+#include "sim/tangent.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -141,6 +145,24 @@ void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d
                            inverse(2, 2), inverse(0, 2), inverse(1, 2)};
 }
 
+/// What a force at an end of a cable does to the body that holds it, in a kick of k seconds.
+void pull(const World& world, const Parts& parts, const Link& end, const Vec2& force, double k,
+          PartSystem& s) {
+  if (end.body < 0 || at(parts.local, end.body) < 0) return;
+  const int place = at(parts.local, end.body);
+  const Vec2 arm = link_centre(world, end) - at(world.position, mover_of(world, end.body));
+  const Eigen::Vector3d impulse(k * force.x(), k * force.y(), k * cross(arm, force));
+  at(s.free_velocity, place) += at(s.mobility, place) * impulse;
+}
+
+void bend(const World& world, const Parts& parts, const CableState& cable, double k,
+          PartSystem& s) {
+  const BendForces forces = bend_forces(world, cable);
+  pull(world, parts, cable.links[0], forces.start, k, s);
+  pull(world, parts, cable.links[1], forces.node, k, s);
+  pull(world, parts, at(world.cables, cable.bends_with).links[1], forces.end, k, s);
+}
+
 /// Loads the part's bodies with the cables that they carry, and their motors.
 void load_bodies(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                  const TimeSpan& t, PartSystem& s) {
@@ -187,10 +209,11 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
     if (f.moves) s.extent = std::max(s.extent, world.position[b].cwiseAbs().maxCoeff());
     if (f.has_motor) drive_body(scene, world, t, bodies[i], static_cast<int>(i), s);
   }
-  bool massed = false;
+  bool massed = false, bends = false;
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
     massed = massed || is_massed(cable);
+    bends = bends || cable.bends_with >= 0;
     const auto segments = static_cast<double>(cable.segments.size());
     s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
   }
@@ -198,6 +221,10 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   s.carried.clear();
   if (massed) load_bodies(scene, world, parts, part, t, s);
   drive(s);
+  if (!bends) return;
+  for (const int c : cables_of(parts, part)) {
+    if (at(world.cables, c).bends_with >= 0) bend(world, parts, at(world.cables, c), t.kick, s);
+  }
 }
 
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Workspace& work) {
