@@ -89,6 +89,11 @@ struct Workspace {
 /// forgotten, and the parts are found anew.
 void fit(const World& world, Workspace& work);
 
+/// Whether it has served the step before: until then anything may have been moved by hand.
+inline bool is_known(const Workspace& work) {
+  return work.stamp != 0;
+}
+
 /// Notes that the workspace is for the world as it is now, and for no other state.
 void mark(World& world, Workspace& work);
 

@@ -209,7 +209,7 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
   if (cable.closed) cable.segments[0].rest_length = first - left_before + cable.length;
 }
 
-bool update_cable(const World& world, CableState& cable, bool begins) {
+bool update_cable(const World& world, CableState& cable, bool begins, bool known) {
   bool moved = false;
   const std::size_t first = first_segment(cable), count = cable.segments.size();
   const bool fills = cable.fills;
@@ -223,7 +223,7 @@ bool update_cable(const World& world, CableState& cable, bool begins) {
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    const bool stands = from->still && to->still && !fills;
+    const bool stands = known && from->still && to->still && !fills;
     if (!stands && (fills || link_centre(world, *from) != segment.tail_centre ||
                     link_centre(world, *to) != segment.head_centre)) {
       update_tangent(world, cable, i);
@@ -240,7 +240,7 @@ void update_segments(World& world, Workspace& work) {
   work.spans_moved = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (sleeps(work.parts, c)) continue;
-    const bool moved = update_cable(world, world.cables[c], true);
+    const bool moved = update_cable(world, world.cables[c], true, is_known(work));
     if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }

@@ -127,8 +127,9 @@ void begin_layers(const World& world, CableState& cable, std::size_t link, int w
 /// UpdateSegments). Material stays where it is on every body.
 void update_segments(World& world, Workspace& work);
 
-/// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last began.
-bool update_cable(const World& world, CableState& cable, bool begins);
+/// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last began. `known`:
+/// what cannot move has not been moved by hand.
+bool update_cable(const World& world, CableState& cable, bool begins, bool known);
 
 /// Tangent, direction and length of segment i alone; its angle is kept continuous.
 void update_tangent(const World& world, CableState& cable, std::size_t segment);

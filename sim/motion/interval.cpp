@@ -59,7 +59,7 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
         cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
       }
     }
-    const bool moved = update_cable(world, cable, begins);
+    const bool moved = update_cable(world, cable, begins, is_known(work));
     work.spans_moved = work.spans_moved || moved;
   }
 }
@@ -220,7 +220,7 @@ void go_back(World& world, Workspace& work) {
         cable.links[i].material = start.material[index(first) + i];
       }
     }
-    update_cable(world, cable, false);
+    update_cable(world, cable, false, is_known(work));
   }
 }
 

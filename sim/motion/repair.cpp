@@ -46,7 +46,8 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
       if (i == run.last_link) break;
     }
   }
-  for (const int c : cables_of(work.parts, part)) update_cable(world, at(world.cables, c), false);
+  for (const int c : cables_of(work.parts, part))
+    update_cable(world, at(world.cables, c), false, is_known(work));
 }
 
 /// Whether a segment is a pinch that is pressed, or nearly so: no material gets through.
