@@ -132,6 +132,63 @@ TEST(Nodes, LieOnFloorsAndBodies) {
   EXPECT_LT(world.position[1].y(), -0.3);
 }
 
+/// Its tip after each of the times (s), and what its energy has changed by at most.
+std::vector<Vec2> swing_flexibly(int pieces, int steps, std::vector<double> times,
+                                 double& energy_change) {
+  const Scene scene = build::flexible_pendulum(pieces, steps);
+  World world = make_world(scene, measured());
+  Workspace work;
+  std::vector<Vec2> tips;
+  double first = 0.0;
+  energy_change = 0.0;
+  for (const double time : times) {
+    while (world.time() < time - 0.5 * world.step_length) {
+      EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      if (world.step == 1) first = world.diagnostics.energy;
+      energy_change = std::max(energy_change, std::abs(world.diagnostics.energy - first));
+    }
+    tips.push_back(world.position[0]);
+  }
+  return tips;
+}
+
+// Another program's rod of so many pieces, by Runge and Kutta's method, and the authors' own finite elements
+// (Westin and Irani's code, 10 elements), which rods tend to.
+TEST(Nodes, AFlexiblePendulumSwingsAsOthersDo) {
+  double change = 0.0;
+  const Vec2 twenty = swing_flexibly(20, 64, {1.0}, change)[0];
+  EXPECT_LT((twenty - Vec2(-0.99252, 0.04257)).norm(), 1e-5);
+  const Vec2 forty = swing_flexibly(40, 64, {1.0}, change)[0];
+  EXPECT_LT((forty - Vec2(-0.99371, 0.03954)).norm(), 1e-5);
+  EXPECT_LT(change, 1e-7);
+  const std::vector<double> times{0.25, 0.5, 0.75, 1.0, 1.5};
+  const std::vector<Vec2> elements{{0.911077, -0.364540},
+                                   {-0.100075, -0.997990},
+                                   {-0.944466, -0.283652},
+                                   {-0.994295, 0.037633},
+                                   {0.260361, -0.966032}};
+  const std::vector<Vec2> tips = swing_flexibly(80, 192, times, change);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_LT((tips[i] - elements[i]).cwiseAbs().maxCoeff(), 1e-3) << times[i];
+  }
+}
+
+// Second order in the step, at one number of pieces.
+TEST(Nodes, BendingIsOfSecondOrder) {
+  double change = 0.0;
+  const Vec2 exact = swing_flexibly(12, 512, {1.0}, change)[0];
+  double last = 0.0, last_change = 0.0;
+  for (const int steps : {8, 16, 32, 64}) {
+    const double error = (swing_flexibly(12, steps, {1.0}, change)[0] - exact).norm();
+    if (last > 0.0) {
+      EXPECT_GT(last / error, 3.5) << steps;
+      EXPECT_GT(last_change / change, 3.5) << steps;
+    }
+    last = error;
+    last_change = change;
+  }
+}
+
 TEST(Nodes, RefuseWhatCannotBe) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = catenary(0, 1);
@@ -149,6 +206,11 @@ TEST(Nodes, RefuseWhatCannotBe) {
             std::string::npos);
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].mass_per_metre = infinity; }).find("finite"),
             std::string::npos);
+  const std::string stiff = refusal([](Scene& s) {
+    s.cables[0].bending_stiffness = 10.0;
+    s.cables[0].nodes = 100;
+  });
+  EXPECT_NE(stiff.find("more steps a frame"), std::string::npos) << stiff;
   Scene scene = catenary(0, 1);
   EXPECT_THROW(make_world(scene, Method::pinch), SceneError);  // its nodes were forgotten
 }
