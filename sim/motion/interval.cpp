@@ -54,7 +54,8 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
     if (part.slides) {
       const auto first = index(at(work.first_link, c));
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
+        cable.links[i].material =
+            start.links[first + i].material - length * cable.links[i].slip_speed;
       }
     }
     const bool moved = update_cable(world, cable, begins);
@@ -209,8 +210,21 @@ void go_back(World& world, Workspace& work) {
   std::size_t k = 0;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
-    for (Link& link : cable.links) link.material = start.material[k++];
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      const LinkStart& was = start.links[k++];
+      Link& link = cable.links[i];
+      link.material = was.material;
+      link.slip = was.slip;
+      link.slip_speed = was.slip_speed;
+      cable.segments[i].slack = was.slack;
+    }
     if (!sleeps(work.parts, c)) update_cable(world, cable, false);
+  }
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const ContactStart& was = start.contacts[i];
+    Contact& contact = world.contacts[i];
+    contact.touching = was.touching;
+    contact.slip = was.slip;
   }
 }
 
@@ -291,12 +305,17 @@ void begin_interval(const World& world, Workspace& work, double time) {
   start.velocity = world.velocity;
   start.angle = world.angle;
   start.angular_velocity = world.angular_velocity;
-  start.material.clear();
+  start.links.clear();
   work.first_link.clear();
   for (const CableState& cable : world.cables) {
-    work.first_link.push_back(static_cast<int>(start.material.size()));
-    for (const Link& link : cable.links) start.material.push_back(link.material);
+    work.first_link.push_back(static_cast<int>(start.links.size()));
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      const Link& link = cable.links[i];
+      start.links.push_back({link.material, link.slip_speed, link.slip, cable.segments[i].slack});
+    }
   }
+  start.contacts.clear();
+  for (const Contact& c : world.contacts) start.contacts.push_back({c.touching, c.slip});
   work.released.clear();
   work.spans_moved = false;
   work.events.clear();
