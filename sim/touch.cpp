@@ -75,9 +75,34 @@ Vec2 place_of_point(const World& world, int body, int point) {
                        : centre;
 }
 
-Vec2 touching_point(const World& world, const Contact& contact) {
-  return place_of_point(world, contact.touch == Touch::point_of_a ? contact.a : contact.b,
-                        contact.point);
+Vec2 nearest_place(const World& world, const Contact& contact, int body) {
+  const bool of_a = contact.touch == Touch::point_of_a;
+  const int owner = of_a ? contact.a : contact.b;
+  const Vec2 point = place_of_point(world, owner, contact.point);
+  if (body == owner) return point;
+  const double way = contact.gap + rim_radius(at(world.bodies, contact.a)) +
+                     rim_radius(at(world.bodies, contact.b));
+  return point + (of_a ? way : -way) * contact.normal;
+}
+
+void measure(const Scene& scene, const World& world, Contact& contact) {
+  if (contact.touch != Touch::circles) {
+    const Meeting meeting = meeting_of(scene, world, contact);
+    contact.gap = meeting.gap;
+    contact.normal = meeting.normal;
+    return;
+  }
+  const Vec2& a = at(world.position, contact.a);
+  const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
+                                : nearest_point(at(scene.walls, contact.wall), a);
+  const double radii = at(world.bodies, contact.a).radius +
+                       (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
+  // What has gone through the other is on its far side.
+  const Vec2 d = b - a;
+  const double length = d.norm();
+  const double distance = d.dot(contact.normal) < 0.0 ? -length : length;
+  contact.gap = distance - radii;
+  if (distance != 0.0) contact.normal = d / distance;
 }
 
 Meeting meeting_of(const Scene& scene, const World& world, const Contact& contact) {

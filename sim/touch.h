@@ -29,8 +29,12 @@ Meeting meeting_of(const Scene& scene, const World& world, const Contact& contac
 /// Where a corner of a polygon is, or the centre of a disc (whatever `point`).
 Vec2 place_of_point(const World& world, int body, int point);
 
-/// The corner, or the disc's centre, with which a contact of two bodies that is not of circles touches.
-Vec2 touching_point(const World& world, const Contact& contact);
+/// Of a contact of two bodies that is not of circles, what of `body` is nearest to the other: the corner or
+/// the disc's centre with which it touches, or the place within its rounding that the other's touches.
+Vec2 nearest_place(const World& world, const Contact& contact, int body);
+
+/// Brings a contact's gap and normal up to the bodies' present positions.
+void measure(const Scene& scene, const World& world, Contact& contact);
 
 /// Appends the contacts of a pair one of which is a polygon, of gaps up to `most` (m), in the order
 /// of world.contacts.

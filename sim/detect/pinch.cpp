@@ -80,7 +80,7 @@ Contact* nearest_of_pair(World& world, Contact* one) {
 bool over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
                         std::size_t i, int other) {
   const bool circles = contact.touch == Touch::circles;
-  const Vec2 place = circles ? at(world.position, other) : touching_point(world, contact);
+  const Vec2 place = circles ? at(world.position, other) : nearest_place(world, contact, other);
   const int before = previous_link(cable, static_cast<int>(i));
   const int after = next_link(cable, static_cast<int>(i));
   for (const auto& [s, far_end] : {std::pair(static_cast<int>(i), before), {after, after}}) {

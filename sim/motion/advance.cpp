@@ -93,9 +93,24 @@ void strike_all(const Scene& scene, World& world, Workspace& work, double time, 
   }
 }
 
-/// Puts right in the positions what an interval has left, and then the velocities to fit them.
-void settle_end(const Scene& scene, World& world, Workspace& work, double time, bool violated,
-                bool happened, bool rebounds) {
+/// Contacts have been found for what bodies may do in a step at the speeds that they had, twice as much as
+/// that. Whether an impact has made one faster still.
+bool hastens(const Scene& scene, const World& world, const std::vector<Vec2>& velocity,
+             const std::vector<double>& angular_velocity) {
+  const double slow = scene.gravity.norm() * world.step_length;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const double rim = world.bodies[b].radius;
+    const double before = velocity[b].norm() + rim * std::abs(angular_velocity[b]);
+    const double after = world.velocity[b].norm() + rim * std::abs(world.angular_velocity[b]);
+    if (after > 2.0 * before + slow) return true;
+  }
+  return false;
+}
+
+/// Puts right in the positions what an interval has left, and then the velocities to fit them; whether
+/// contacts have been found anew for these.
+bool settle_end(const Scene& scene, World& world, Workspace& work, double time, bool violated,
+                bool happened, bool rebounds, StageTimes* times) {
   if (violated || happened) apply_no_forces(scene, world, time, work);
   bool repaired = false;
   for (Part& part : work.parts.list) {
@@ -103,8 +118,14 @@ void settle_end(const Scene& scene, World& world, Workspace& work, double time, 
     repaired = repair(scene, world, work, part) || repaired;
   }
   if (repaired && world.lag > 0.0) catch_up(scene, world, time, work);
-  if (!happened && !repaired) return;
+  if (!happened && !repaired) return false;
+  Start& found = work.found;
+  found.velocity = world.velocity;
+  found.angular_velocity = world.angular_velocity;
   strike_all(scene, world, work, time, rebounds);
+  if (!hastens(scene, world, found.velocity, found.angular_velocity)) return false;
+  detect_after_moving(scene, world, work, false, times);
+  return true;
 }
 
 /// Elastic cables have come on to rims and off them in an interval.
@@ -190,7 +211,9 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     changes = changes_of_cables(world);
     const bool violated =
         !met || work.violated || changes != before || is_squeezed(world, work.parts);
-    settle_end(scene, world, work, now, violated, happened, events <= most_rebounds);
+    if (settle_end(scene, world, work, now, violated, happened, events <= most_rebounds, times)) {
+      changes = changes_of_cables(world);
+    }
     watch.lap(Stage::solve);
   }
   if (events > most_rebounds) ++d.clusters;
