@@ -1,6 +1,6 @@
 # Draws stability-long.svg and stability-long.pdf: gnuplot stability-long.gp
 set encoding utf8
-set terminal svg size 724,340 noenhanced font 'Helvetica,14' background '#ffffff'
+set terminal svg size 1054,340 noenhanced font 'Helvetica,14' background '#ffffff'
 set output 'stability-long.svg'
 set datafile separator comma
 set datafile commentschars '#'
@@ -34,11 +34,11 @@ set xrange [769.2307692307692:1300000]
 set format x '%g'
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
-set label 10 'ours (pinch)' at screen 0.1022, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
-set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2 offset 0.8,0
-set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
-set lmargin at screen 0.0884
-set rmargin at screen 0.5207
+set label 10 'ours (pinch)' at screen 0.0702, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
+set label 11 'thesis' at screen 0.1954, screen 0.9588 left noenhanced point ls 2 offset 0.8,0
+set label 12 'plain cable joints' at screen 0.2751, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
+set lmargin at screen 0.0607
+set rmargin at screen 0.3561
 set bmargin at screen 0.1706
 set tmargin at screen 0.8412
 set title 'unwinding pendulum' noenhanced offset 0,-0.6
@@ -47,14 +47,24 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
-set lmargin at screen 0.5511
-set rmargin at screen 0.9834
+set lmargin at screen 0.3770
+set rmargin at screen 0.6724
+set bmargin at screen 0.1706
+set tmargin at screen 0.8412
+set title 'unwinding from a drum, heavy rope' noenhanced offset 0,-0.6
+set xlabel 'steps' noenhanced
+unset ylabel
+set format y ''
+plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+set lmargin at screen 0.6932
+set rmargin at screen 0.9886
 set bmargin at screen 0.1706
 set tmargin at screen 0.8412
 set title 'roller in a bight' noenhanced offset 0,-0.6
 set xlabel 'steps' noenhanced
-unset ylabel
-set format y ''
 plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'roller in a bight' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'roller in a bight' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
@@ -62,7 +72,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
 unset multiplot
 
 reset
-set terminal pdfcairo size 7.542,3.542 noenhanced font 'Helvetica,11'
+set terminal pdfcairo size 10.979,3.542 noenhanced font 'Helvetica,11'
 set output 'stability-long.pdf'
 set datafile separator comma
 set datafile commentschars '#'
@@ -96,11 +106,11 @@ set xrange [769.2307692307692:1300000]
 set format x '%g'
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
-set label 10 'ours (pinch)' at screen 0.1022, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
-set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2 offset 0.8,0
-set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
-set lmargin at screen 0.0884
-set rmargin at screen 0.5207
+set label 10 'ours (pinch)' at screen 0.0702, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
+set label 11 'thesis' at screen 0.1954, screen 0.9588 left noenhanced point ls 2 offset 0.8,0
+set label 12 'plain cable joints' at screen 0.2751, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
+set lmargin at screen 0.0607
+set rmargin at screen 0.3561
 set bmargin at screen 0.1706
 set tmargin at screen 0.8412
 set title 'unwinding pendulum' noenhanced offset 0,-0.6
@@ -109,14 +119,24 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unwinding pendulum' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
-set lmargin at screen 0.5511
-set rmargin at screen 0.9834
+set lmargin at screen 0.3770
+set rmargin at screen 0.6724
+set bmargin at screen 0.1706
+set tmargin at screen 0.8412
+set title 'unwinding from a drum, heavy rope' noenhanced offset 0,-0.6
+set xlabel 'steps' noenhanced
+unset ylabel
+set format y ''
+plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
+  'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unwinding from a drum, heavy rope' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+set lmargin at screen 0.6932
+set rmargin at screen 0.9886
 set bmargin at screen 0.1706
 set tmargin at screen 0.8412
 set title 'roller in a bight' noenhanced offset 0,-0.6
 set xlabel 'steps' noenhanced
-unset ylabel
-set format y ''
 plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'roller in a bight' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-long.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'roller in a bight' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \

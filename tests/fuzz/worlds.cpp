@@ -199,11 +199,15 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
-/// Cables with mass over bodies, which then let nothing slip. No bytes: none.
+/// Cables with mass over bodies, which then let nothing slip; and those that hang bend. No bytes: none.
 void add_heavy_cables(json& scene, Choices& choices) {
   bool any = false;
   for (json& cable : scene["cables"]) {
-    if (choices.below(3) != 1 || cable["wraps"].empty()) continue;
+    const bool chosen = choices.below(3) == 1;
+    if (chosen && cable.contains("mass_per_metre_kg")) {
+      cable["bending_stiffness_n_m2"] = choices.magnitude(-9.0, 2.0);
+    }
+    if (!chosen || cable["wraps"].empty()) continue;
     cable["mass_per_metre_kg"] = choices.magnitude(-3.0, 3.0);
     cable.erase("creep");
     for (const char* end : {"start", "end"}) {

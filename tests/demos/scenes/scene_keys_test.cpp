@@ -191,6 +191,14 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
   EXPECT_EQ(
       error(R"({"grip": 0})"),
       "s.json: /cables/0/grip: has no effect on a cable with mass_per_metre_kg; leave it out");
+  EXPECT_EQ(error(R"({"mass_per_metre_kg": null, "nodes": null, "bending_stiffness_n_m2": 1})"),
+            "s.json: /cables/0/bending_stiffness_n_m2: has no effect on a cable without "
+            "mass_per_metre_kg; leave it out");
+  EXPECT_EQ(error(R"({"bending_stiffness_n_m2": 0.01})"), "no error");
+  EXPECT_NE(error(R"({"bending_stiffness_n_m2": 1000})").find("more steps a frame"),
+            std::string::npos);
+  EXPECT_EQ(error(R"({"bending_stiffness_n_m2": -1})"),
+            "s.json: /cables/0/bending_stiffness_n_m2: must be 0 to 1e+09, not -1");
   EXPECT_EQ(error(R"({"mass_per_metre_kg": 0})"),
             "s.json: /cables/0/mass_per_metre_kg: must be 1e-09 to 1e+09, not 0");
   json many = hanging_scene();
