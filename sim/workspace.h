@@ -40,28 +40,13 @@ struct Happening {
   bool seen = false;   // in the last trial
 };
 
-/// How a link was, and the segment that arrives at it.
-struct LinkStart {
-  double material, slip_speed;  // m, m/s
-  Slip slip;
-  bool slack;
-};
-
-/// How a contact was.
-struct ContactStart {
-  bool touching;
-  Slip slip;
-};
-
-/// Where things were when an interval began, and what bore force then: all that a trial starts from, but
-/// for tensions: light bodies are steadied by those of the last trial, the best guess that there is.
+/// Where things were when an interval began.
 struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<LinkStart> links;  // of cables that are awake, one after another
-  std::vector<ContactStart> contacts;
-  std::int64_t fallbacks = 0;  // Diagnostics::fallbacks
+  std::vector<double> material;  // of the links of cables that can slide, cable after cable
+  std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
 /// Storage of find_contacts and configure_pinches.
@@ -90,7 +75,7 @@ struct Workspace {
 
   Start start;                  // of the last interval
   Start found;                  // velocities for which contacts were found, before the last impact
-  std::vector<int> first_link;  // of each cable, in `start`; -1: it sleeps
+  std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide
   bool settled = true;          // every solve of the last trial; by move_part
   double missed = 0.0;  // by lengths and gaps, over the part's extent, where not met; by move_part
   bool violated = false;  // what an interval began with, more than it makes up for; by move_part

@@ -56,8 +56,7 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
     if (part.slides) {
       const auto first = index(at(work.first_link, c));
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material =
-            start.links[first + i].material - length * cable.links[i].slip_speed;
+        cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
       }
     }
     const bool moved = update_cable(world, cable, begins, is_known(work));
@@ -218,21 +217,10 @@ void go_back(World& world, Workspace& work) {
     CableState& cable = world.cables[c];
     if (const int first = work.first_link[c]; first >= 0) {
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        const LinkStart& was = start.links[index(first) + i];
-        Link& link = cable.links[i];
-        link.material = was.material;
-        link.slip = was.slip;
-        link.slip_speed = was.slip_speed;
-        cable.segments[i].slack = was.slack;
+        cable.links[i].material = start.material[index(first) + i];
       }
     }
     update_cable(world, cable, false, is_known(work));
-  }
-  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
-    const ContactStart& was = start.contacts[i];
-    Contact& contact = world.contacts[i];
-    contact.touching = was.touching;
-    contact.slip = was.slip;
   }
 }
 
@@ -313,21 +301,15 @@ void begin_interval(const World& world, Workspace& work, double time) {
   start.velocity = world.velocity;
   start.angle = world.angle;
   start.angular_velocity = world.angular_velocity;
-  start.links.clear();
+  start.material.clear();
   work.first_link.assign(world.cables.size(), -1);
   for (const Part& part : work.parts.list) {
-    if (part.asleep) continue;
+    if (part.asleep || !can_slide(part)) continue;
     for (const int c : cables_of(work.parts, part)) {
-      const CableState& cable = at(world.cables, c);
-      at(work.first_link, c) = static_cast<int>(start.links.size());
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        const Link& link = cable.links[i];
-        start.links.push_back({link.material, link.slip_speed, link.slip, cable.segments[i].slack});
-      }
+      at(work.first_link, c) = static_cast<int>(start.material.size());
+      for (const Link& link : at(world.cables, c).links) start.material.push_back(link.material);
     }
   }
-  start.contacts.clear();
-  for (const Contact& c : world.contacts) start.contacts.push_back({c.touching, c.slip});
   work.released.clear();
   work.spans_moved = false;
   work.events.clear();

@@ -31,9 +31,8 @@ double violation(const Scene& scene, const World& world, const PartSystem& s) {
   return most;
 }
 
-/// Moves a part's bodies by `share` of the displacements that were just solved for. Spans and contacts
-/// are as they are then.
-void displace(const Scene& scene, World& world, Workspace& work, const Part& part, double share) {
+/// Moves a part's bodies by `share` of the displacements that were just solved for.
+void displace(World& world, Workspace& work, const Part& part, double share) {
   const PartSystem& s = at(work.systems, part.system);
   const std::span<const int> bodies = bodies_of(work.parts, part);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -50,7 +49,6 @@ void displace(const Scene& scene, World& world, Workspace& work, const Part& par
   }
   for (const int c : cables_of(work.parts, part))
     update_cable(world, at(world.cables, c), false, is_known(work));
-  for (const int c : contacts_of(work.parts, part)) measure(scene, world, at(world.contacts, c));
 }
 
 /// Whether a segment is a pinch that is pressed, or nearly so: no material gets through.
@@ -113,8 +111,9 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   bool any = false;
   for (int k = 0; k < most_repairs; ++k) {
     if (k > 0 && violation(scene, world, s) >= before) {
-      displace(scene, world, work, part, -share);
-      return k > 1;
+      displace(world, work, part, -share);
+      any = k > 1;
+      break;
     }
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
@@ -132,9 +131,11 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
                    way = s.velocity[i].head<2>().norm();
       if (way * share > longest * radius) share = longest * radius / way;
     }
-    displace(scene, world, work, part, share);
+    displace(world, work, part, share);
   }
-  return any;
+  if (!any) return false;
+  for (const int c : contacts_of(work.parts, part)) measure(scene, world, at(world.contacts, c));
+  return true;
 }
 
 }  // namespace pinchlab
