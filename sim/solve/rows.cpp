@@ -6,9 +6,9 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/creep.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
+#include "sim/solve/elastic.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/solve_scratch.h"
 #include "sim/tangent.h"
@@ -106,75 +106,6 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
   row.idle = false;
   const double time = interval.repair;
   row.bias = interval.length > 0.0 ? row.clearance / time : 0.0;
-}
-
-/// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
-inline double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
-  if (body < 0) return 0.0;
-  const int mover = mover_of(world, body);
-  const Vec2& v = at(world.velocity, mover);
-  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
-}
-
-// With C_n at the positions' time, v- and v+ the velocities before and after the kick, which lasts
-// from `lag` before that time to h/2 after it, the impulse is
-//     p = EA / l (k C_n + a h^2 dC/dt(v+) - 4 b lag^2 dC/dt(v-)),   k = lag + h/2.
-// a = b = 1/4 is the trapezoidal rule over the kick: of second order, stable for any stiffness, and
-// undamped (at equal steps the mean of C over three of them, weighted 1, 2, 1). a = 1, b = 0 is
-// implicit Euler, which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about
-// three steps a period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer
-// it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
-
-//
-// C changes by J v and by what rims carry less than they turn (creep.h).
-//
-// A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the lag.
-
-/// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
-/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without a
-/// damper the row idles.
-void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
-                  PartSystem& s, int number) {
-  const double stiffness = given.axial_stiffness;
-  const bool both_ways = given.rod;
-  Row& row = at(s.rows, number);
-  const RowBodies& bodies = at(s.bodies, number);
-  const double h = t.length > 0.0 ? t.length : world.step_length;
-  const double flexibility = std::max(segment.rest_length, 0.0) / stiffness;  // m/N
-  const bool sweeps =
-      world.configuration.solver == Solver::iterative;  // the thesis' implicit Euler
-  const double square = h * h * row.diagonal;           // (omega h)^2 times flexibility
-  const double damped =
-      sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
-  const double b = 0.25 * (1.0 - damped);
-  const CableState& cable = at(world.cables, row.index);
-  const Link &to = at(cable.links, row.item),
-             &from = at(cable.links, previous_link(cable, row.item));
-  const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
-  const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                        speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
-  double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
-  if (t.length == 0.0) {
-    if (damped > 0.0) return;
-    const double impulse = both_ways ? -known / flexibility : std::max(0.0, -known / flexibility);
-    at(s.free_velocity, bodies.a) += impulse * bodies.ra;
-    at(s.free_velocity, bodies.b) += impulse * bodies.rb;
-    const double damper = given.damping * t.kick;  // kg
-    row.idle = damper == 0.0;
-    row.on = row.clamped = !row.idle;
-    row.bias = 0.0;
-    row.compliance = row.idle ? 0.0 : 1.0 / damper;
-    return;
-  }
-  const double damper = 0.5 * flexibility * given.damping * t.kick;  // s^2
-  known -= damper * before;
-  const double scale = b * h * h + damped * h * t.kick + damper;
-  row.idle = false;
-  row.clamped = both_ways;
-  row.on = both_ways || !segment.slack;
-  row.compliance = flexibility / scale;
-  row.curvature = -creep;  // and what else there is of it is found at the interval's end
-  row.bias = known / scale - creep;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
@@ -427,6 +358,13 @@ void place_segment_row(const World& world, const CableState& cable, const Segmen
 }
 
 }  // namespace
+
+double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
+  if (body < 0) return 0.0;
+  const int mover = mover_of(world, body);
+  const Vec2& v = at(world.velocity, mover);
+  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
+}
 
 double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution

@@ -16,6 +16,9 @@ struct World;
 /// a rebound gets it.
 double restitution_of(const Scene& scene, const World& world, const Contact& contact);
 
+/// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
+double speed_of(const World& world, int body, const Eigen::Vector3d& j);
+
 /// Of a body by itself, for a velocity kick of `kick` seconds.
 Mobility mobility_of(const BodyProperties& body, double kick);
 

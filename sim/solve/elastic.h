@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Rows of elastic segments, and of dampers.
+//
+// With C_n at the positions' time, v- and v+ the velocities before and after the kick, which lasts
+// from `lag` before that time to h/2 after it, the impulse is
+//     p = EA / l (k C_n + a h^2 dC/dt(v+) - 4 b lag^2 dC/dt(v-)),   k = lag + h/2.
+// a = b = 1/4 is the trapezoidal rule over the kick: of second order, stable for any stiffness, and
+// undamped (at equal steps the mean of C over three of them, weighted 1, 2, 1). a = 1, b = 0 is
+// implicit Euler, which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about
+// three steps a period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer
+// it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
+//
+// C changes by J v and by what rims carry less than they turn (creep.h).
+//
+// A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the lag.
+
+#include "sim/cable/cable.h"
+#include "sim/solve/part_system.h"
+
+namespace pinchlab {
+
+/// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
+/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without a
+/// damper the row idles.
+void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
+                  PartSystem& s, int number);
+
+}  // namespace pinchlab
