@@ -66,6 +66,27 @@ double separation_by_sides(const World& world, int body, int other) {
   return most;
 }
 
+/// Of two discs, or a disc and a wall.
+struct Apart {
+  Vec2 way;               // m, from the centre of a to that of b, or to the wall
+  double distance = 0.0;  // m, its length; below 0: a has gone through to the far side
+  double gap = 0.0;       // m
+};
+
+Apart circles_apart(const Scene& scene, const World& world, const Contact& contact) {
+  const Vec2& a = at(world.position, contact.a);
+  const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
+                                : nearest_point(at(scene.walls, contact.wall), a);
+  const double radii = at(world.bodies, contact.a).radius +
+                       (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
+  Apart apart;
+  apart.way = b - a;
+  const double length = apart.way.norm();
+  apart.distance = apart.way.dot(contact.normal) < 0.0 ? -length : length;
+  apart.gap = apart.distance - radii;
+  return apart;
+}
+
 }  // namespace
 
 Vec2 place_of_point(const World& world, int body, int point) {
@@ -92,17 +113,14 @@ void measure(const Scene& scene, const World& world, Contact& contact) {
     contact.normal = meeting.normal;
     return;
   }
-  const Vec2& a = at(world.position, contact.a);
-  const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
-                                : nearest_point(at(scene.walls, contact.wall), a);
-  const double radii = at(world.bodies, contact.a).radius +
-                       (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
-  // What has gone through the other is on its far side.
-  const Vec2 d = b - a;
-  const double length = d.norm();
-  const double distance = d.dot(contact.normal) < 0.0 ? -length : length;
-  contact.gap = distance - radii;
-  if (distance != 0.0) contact.normal = d / distance;
+  const Apart apart = circles_apart(scene, world, contact);
+  contact.gap = apart.gap;
+  if (apart.distance != 0.0) contact.normal = apart.way / apart.distance;
+}
+
+double gap_of(const Scene& scene, const World& world, const Contact& contact) {
+  if (contact.touch != Touch::circles) return meeting_of(scene, world, contact).gap;
+  return circles_apart(scene, world, contact).gap;
 }
 
 Meeting meeting_of(const Scene& scene, const World& world, const Contact& contact) {

@@ -36,6 +36,9 @@ Vec2 nearest_place(const World& world, const Contact& contact, int body);
 /// Brings a contact's gap and normal up to the bodies' present positions.
 void measure(const Scene& scene, const World& world, Contact& contact);
 
+/// That gap alone (m).
+double gap_of(const Scene& scene, const World& world, const Contact& contact);
+
 /// Appends the contacts of a pair one of which is a polygon, of gaps up to `most` (m), in the order
 /// of world.contacts.
 void append_touches(const Scene& scene, const World& world, int a, int b, int wall, double most,
