@@ -98,6 +98,31 @@ Body node_of(const Cable& cable, int number, const Vec2& position, double mass) 
   return node;
 }
 
+/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps can follow.
+int count_pieces(const Scene& scene, const Cable& cable, double length, const std::string& place) {
+  const int pieces =
+      cable.nodes > 0
+          ? cable.nodes + 1
+          : std::max(2, static_cast<int>(length / shortest_piece(scene, cable, length)));
+  const double piece = length / pieces;
+  if (piece <= 2.0 * cable.half_width) {
+    throw SceneError(
+        place + "/nodes",
+        fmt::format(
+            "pieces of {} between nodes are no longer than the cable is wide; at most {} nodes fit",
+            in_mm(piece), static_cast<int>(length / (2.0 * cable.half_width)) - 1));
+  }
+  if (const double least = shortest_that_bends(scene, cable); piece < least) {
+    throw SceneError(
+        place + "/nodes",
+        fmt::format("pieces of {} between nodes bend to and fro faster than {} steps a frame "
+                    "follow; at most {} nodes, or more steps a frame",
+                    in_mm(piece), scene.steps_per_frame,
+                    std::max(static_cast<int>(length / least) - 1, 1)));
+  }
+  return pieces;
+}
+
 NodedCable spread(Scene& scene, std::size_t c) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
@@ -106,26 +131,8 @@ NodedCable spread(Scene& scene, std::size_t c) {
   const double straight = d.norm(), length = straight + whole.slack;
   if (!(length > 0.0))
     throw SceneError(place, "the cable has no length; give it slack or move its ends apart");
-  const int pieces =
-      whole.nodes > 0
-          ? whole.nodes + 1
-          : std::max(2, static_cast<int>(length / shortest_piece(scene, whole, length)));
+  const int pieces = count_pieces(scene, whole, length, place);
   const double piece = length / pieces;
-  if (piece <= 2.0 * whole.half_width) {
-    throw SceneError(
-        place + "/nodes",
-        fmt::format(
-            "pieces of {} between nodes are no longer than the cable is wide; at most {} nodes fit",
-            in_mm(piece), static_cast<int>(length / (2.0 * whole.half_width)) - 1));
-  }
-  if (const double least = shortest_that_bends(scene, whole); piece < least) {
-    throw SceneError(
-        place + "/nodes",
-        fmt::format("pieces of {} between nodes bend to and fro faster than {} steps a frame "
-                    "follow; at most {} nodes, or more steps a frame",
-                    in_mm(piece), scene.steps_per_frame,
-                    std::max(static_cast<int>(length / least) - 1, 1)));
-  }
   std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
   if (ends_on_mobile(scene, whole.start)) masses.front() += 0.5 * whole.mass_per_metre * piece;
   if (ends_on_mobile(scene, whole.end)) masses.back() += 0.5 * whole.mass_per_metre * piece;

@@ -85,6 +85,78 @@ void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::s
   }
 }
 
+void refuse(bool wrong, const std::string& place, const char* message) {
+  if (wrong) throw SceneError(place, message);
+}
+
+bool positive(double x) {
+  return x > 0.0 && x < infinity;
+}
+
+void refuse_impossible_body(const Scene& scene, int b) {
+  const Body& body = at(scene.bodies, b);
+  const std::string place = pointer("bodies", index(b));
+  refuse(!positive(body.radius), place, "the radius must be a number above 0");
+  if (is_polygon(body)) refuse_impossible_outline(body, place);
+  const bool carried = body.carrier != -1;
+  refuse(!positive(body.mass) && body.kind != BodyKind::fixed && !carried, place,
+         "the mass must be a number above 0");
+  refuse(carried && (body.carrier < 0 || body.carrier >= b || body.mass != 0.0 ||
+                     at(scene.bodies, body.carrier).outlined ||
+                     at(scene.bodies, body.carrier).carrier != -1),
+         place, "a shape without mass needs a body before it that is no shape (add_shapes)");
+  refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
+  refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
+         "position and velocity must be finite");
+  refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
+  for (std::size_t i = 0; i < body.motor.size(); ++i) {
+    const MotorPoint& point = body.motor[i];
+    const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
+    refuse(!std::isfinite(point.value) || !(point.time < infinity) ||
+               !(i == 0 ? point.time >= 0.0 : point.time > before),
+           place, "a motor's table must have finite values at ascending times from 0 on");
+  }
+  refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
+         "the rail's axis must have a direction");
+}
+
+void refuse_impossible_cable(const Scene& scene, std::size_t c) {
+  const Cable& cable = scene.cables[c];
+  const std::string place = pointer("cables", c);
+  refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
+  refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+  refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
+         "only an elastic cable creeps");
+  const int bodies = static_cast<int>(scene.bodies.size());
+  const int cables = static_cast<int>(scene.cables.size());
+  refuse(cable.bending_stiffness != 0.0, place,
+         "a cable that bends needs its nodes (spread_nodes)");
+  refuse(cable.bends_with >= cables || (cable.bends_with >= 0 && !(cable.bend >= 0.0)), place,
+         "it bends against a cable that is not in the scene");
+  refuse(!(cable.damping >= 0.0 && cable.damping < infinity), place,
+         "the damping must be at least 0");
+  refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
+  refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
+  refuse_impossible_mass(scene, cable, place);
+  refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
+  for (const Attachment* end : {&cable.start, &cable.end}) {
+    const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
+    refuse(!cable.closed && !there, place, "an end is on a body that is not in the scene");
+  }
+  for (const Wrap& wrap : cable.wraps) {
+    refuse(wrap.body < 0 || wrap.body >= bodies, place,
+           "it runs round a body that is not in the scene");
+    const Body& body = at(scene.bodies, wrap.body);
+    if (!body.outlined) {
+      throw SceneError(place, fmt::format("body '{0}' has shapes; say which the cable runs round, "
+                                          "'{0}:1' for the first",
+                                          body.name));
+    }
+    refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
+           "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
+  }
+}
+
 }  // namespace
 
 void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& broad) {
@@ -157,76 +229,13 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
 }
 
 void refuse_impossible_figures(const Scene& scene) {
-  const auto refuse = [](bool wrong, const std::string& place, const char* message) {
-    if (wrong) throw SceneError(place, message);
-  };
-  const auto positive = [](double x) { return x > 0.0 && x < infinity; };
-  const int bodies = static_cast<int>(scene.bodies.size());
   refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
          "frames per second and steps per frame must be at least 1");
   refuse(!(scene.error >= 0.0), "/error_m", "the error must be a number of at least 0");
-  for (int b = 0; b < bodies; ++b) {
-    const Body& body = at(scene.bodies, b);
-    const std::string place = pointer("bodies", index(b));
-    refuse(!positive(body.radius), place, "the radius must be a number above 0");
-    if (is_polygon(body)) refuse_impossible_outline(body, place);
-    const bool carried = body.carrier != -1;
-    refuse(!positive(body.mass) && body.kind != BodyKind::fixed && !carried, place,
-           "the mass must be a number above 0");
-    refuse(carried && (body.carrier < 0 || body.carrier >= b || body.mass != 0.0 ||
-                       at(scene.bodies, body.carrier).outlined ||
-                       at(scene.bodies, body.carrier).carrier != -1),
-           place, "a shape without mass needs a body before it that is no shape (add_shapes)");
-    refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
-    refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
-           "position and velocity must be finite");
-    refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
-    for (std::size_t i = 0; i < body.motor.size(); ++i) {
-      const MotorPoint& point = body.motor[i];
-      const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
-      refuse(!std::isfinite(point.value) || !(point.time < infinity) ||
-                 !(i == 0 ? point.time >= 0.0 : point.time > before),
-             place, "a motor's table must have finite values at ascending times from 0 on");
-    }
-    refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
-           "the rail's axis must have a direction");
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    refuse_impossible_body(scene, static_cast<int>(b));
   }
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    const Cable& cable = scene.cables[c];
-    const std::string place = pointer("cables", c);
-    refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
-    refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
-    refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
-           "only an elastic cable creeps");
-    const int cables = static_cast<int>(scene.cables.size());
-    refuse(cable.bending_stiffness != 0.0, place,
-           "a cable that bends needs its nodes (spread_nodes)");
-    refuse(cable.bends_with >= cables || (cable.bends_with >= 0 && !(cable.bend >= 0.0)), place,
-           "it bends against a cable that is not in the scene");
-    refuse(!(cable.damping >= 0.0 && cable.damping < infinity), place,
-           "the damping must be at least 0");
-    refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
-    refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
-    refuse_impossible_mass(scene, cable, place);
-    refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
-    for (const Attachment* end : {&cable.start, &cable.end}) {
-      const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
-      refuse(!cable.closed && !there, place, "an end is on a body that is not in the scene");
-    }
-    for (const Wrap& wrap : cable.wraps) {
-      refuse(wrap.body < 0 || wrap.body >= bodies, place,
-             "it runs round a body that is not in the scene");
-      const Body& body = at(scene.bodies, wrap.body);
-      if (!body.outlined) {
-        throw SceneError(place,
-                         fmt::format("body '{0}' has shapes; say which the cable runs round, "
-                                     "'{0}:1' for the first",
-                                     body.name));
-      }
-      refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
-             "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
-    }
-  }
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) refuse_impossible_cable(scene, c);
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     const double length = (scene.walls[w].b - scene.walls[w].a).norm();
     refuse(!positive(length), pointer("walls", w), "the wall must have a length");

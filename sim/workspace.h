@@ -74,7 +74,7 @@ struct Workspace {
   SweepScratch sweeps;  // of the iterative solver
 
   Start start;                  // of the last interval
-  Start found;                  // velocities for which contacts were found, before the last impact
+  Instant found;                // for which contacts were found, before the last impact
   std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide
   bool settled = true;          // every solve of the last trial; by move_part
   double missed = 0.0;  // by lengths and gaps, over the part's extent, where not met; by move_part

@@ -281,10 +281,60 @@ Creep creep(int steps_per_frame) {
   return result;
 }
 
-std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Polygon>& polygons,
-                      const std::vector<Hanging>& hanging, const std::vector<Fall>& falls,
-                      const std::vector<Pendulum>& pendulums, const std::vector<Creep>& creeps,
-                      const ChainCost& cost) {
+struct Shapes {
+  std::vector<Ladder> ladders;
+  std::vector<Polygon> polygons;
+  std::vector<Hanging> hanging;
+  std::vector<Fall> falls;
+  std::vector<Pendulum> pendulums;
+  std::vector<Creep> creeps;
+  ChainCost cost;
+};
+
+Csv csv_of(const Shapes& shapes) {
+  Csv csv({"case", "size", "measured", "value"});
+  for (const Ladder& ladder : shapes.ladders) {
+    for (std::size_t i = 0; i < ladder.error_m.size(); ++i) {
+      const std::int64_t n = ladder.steps_per_frame[i];
+      csv.row({ladder.name, n, std::string("error_m"), ladder.error_m[i]});
+      csv.row({ladder.name, n, std::string("cost_s"), ladder.cost_s[i]});
+    }
+  }
+  for (const Polygon& p : shapes.polygons) {
+    csv.row({std::string("polygon against disc"), std::int64_t{p.corners}, std::string("error_m"),
+             p.error_m});
+  }
+  for (const Hanging& h : shapes.hanging) {
+    csv.row({std::string("catenary"), std::int64_t{h.pieces}, std::string("sag_m"), h.sag_m});
+    csv.row({std::string("catenary"), std::int64_t{h.pieces}, std::string("end_tension_rho_g"),
+             h.end_tension});
+  }
+  for (const Fall& f : shapes.falls) {
+    csv.row(
+        {std::string("folded chain"), std::int64_t{f.pieces}, std::string("fall_time"), f.time});
+    csv.row({std::string("folded chain"), std::int64_t{f.pieces}, std::string("energy_made_j"),
+             f.energy_made});
+  }
+  for (const Pendulum& p : shapes.pendulums) {
+    csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_x_m"),
+             p.tip.x()});
+    csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_y_m"),
+             p.tip.y()});
+  }
+  for (const Creep& c : shapes.creeps) {
+    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("speed_lost"),
+             c.loss});
+    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("error"),
+             std::abs(c.loss - c.known)});
+  }
+  csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("step_s"), shapes.cost.step_s});
+  csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("bare_pass_s"),
+           shapes.cost.bare_s});
+  return csv;
+}
+
+std::string page_text(const Shapes& shapes) {
+  const auto& [ladders, polygons, hanging, falls, pendulums, creeps, cost] = shapes;
   std::vector<std::vector<std::string>> polygon_rows, hanging_rows, fall_rows, creep_rows,
       pendulum_rows;
   for (const Pendulum& p : pendulums) {
@@ -356,71 +406,34 @@ std::string page_text(const std::vector<Ladder>& ladders, const std::vector<Poly
       time_text(cost.step_s), cost.step_s / cost.bare_s, time_text(cost.bare_s));
 }
 
+Shapes measure_shapes(const Options& options, Progress& progress) {
+  Shapes shapes;
+  shapes.ladders = climb_all(options.quick, progress);
+  shapes.polygons = compare_polygons();
+  progress.done(1.0);
+  for (const int pieces : {20, 50, 100, 0}) shapes.hanging.push_back(hang(pieces));
+  progress.done(1.0);
+  for (const int pieces : {20, 50, 100}) shapes.falls.push_back(fall(pieces, 64));
+  progress.done(1.0);
+  for (const auto& [pieces, n] : {std::pair(20, 16), std::pair(40, 64), std::pair(80, 192)}) {
+    shapes.pendulums.push_back(swing_flexibly(pieces, n));
+  }
+  progress.done(1.0);
+  for (const int n : {1, 4, 16}) shapes.creeps.push_back(creep(n));
+  progress.done(1.0);
+  shapes.cost = cost_of_chain(effort_of(options));
+  progress.done(1.0);
+  return shapes;
+}
+
 }  // namespace
 
 void run_shapes(const Options& options) {
   Output output(options.out);
   Progress progress("shapes", 10.0);
-  const std::vector<Ladder> ladders = climb_all(options.quick, progress);
-  const std::vector<Polygon> polygons = compare_polygons();
-  progress.done(1.0);
-  std::vector<Hanging> hanging;
-  for (const int pieces : {20, 50, 100, 0}) hanging.push_back(hang(pieces));
-  progress.done(1.0);
-  std::vector<Fall> falls;
-  for (const int pieces : {20, 50, 100}) falls.push_back(fall(pieces, 64));
-  progress.done(1.0);
-  std::vector<Pendulum> pendulums;
-  for (const auto& [pieces, n] : {std::pair(20, 16), std::pair(40, 64), std::pair(80, 192)}) {
-    pendulums.push_back(swing_flexibly(pieces, n));
-  }
-  progress.done(1.0);
-  std::vector<Creep> creeps;
-  for (const int n : {1, 4, 16}) creeps.push_back(creep(n));
-  progress.done(1.0);
-  const ChainCost cost = cost_of_chain(effort_of(options));
-  progress.done(1.0);
-
-  Csv csv({"case", "size", "measured", "value"});
-  for (const Ladder& ladder : ladders) {
-    for (std::size_t i = 0; i < ladder.error_m.size(); ++i) {
-      const std::int64_t n = ladder.steps_per_frame[i];
-      csv.row({ladder.name, n, std::string("error_m"), ladder.error_m[i]});
-      csv.row({ladder.name, n, std::string("cost_s"), ladder.cost_s[i]});
-    }
-  }
-  for (const Polygon& p : polygons) {
-    csv.row({std::string("polygon against disc"), std::int64_t{p.corners}, std::string("error_m"),
-             p.error_m});
-  }
-  for (const Hanging& h : hanging) {
-    csv.row({std::string("catenary"), std::int64_t{h.pieces}, std::string("sag_m"), h.sag_m});
-    csv.row({std::string("catenary"), std::int64_t{h.pieces}, std::string("end_tension_rho_g"),
-             h.end_tension});
-  }
-  for (const Fall& f : falls) {
-    csv.row(
-        {std::string("folded chain"), std::int64_t{f.pieces}, std::string("fall_time"), f.time});
-    csv.row({std::string("folded chain"), std::int64_t{f.pieces}, std::string("energy_made_j"),
-             f.energy_made});
-  }
-  for (const Pendulum& p : pendulums) {
-    csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_x_m"),
-             p.tip.x()});
-    csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_y_m"),
-             p.tip.y()});
-  }
-  for (const Creep& c : creeps) {
-    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("speed_lost"),
-             c.loss});
-    csv.row({std::string("belt drive"), std::int64_t{c.steps_per_frame}, std::string("error"),
-             std::abs(c.loss - c.known)});
-  }
-  csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("step_s"), cost.step_s});
-  csv.row({std::string("100 nodes"), std::int64_t{100}, std::string("bare_pass_s"), cost.bare_s});
-  output.csv("shapes", csv, options.command);
-  output.page("shapes", page_text(ladders, polygons, hanging, falls, pendulums, creeps, cost),
-              options.command);
+  const Shapes shapes = measure_shapes(options, progress);
+  output.csv("shapes", csv_of(shapes), options.command);
+  output.page("shapes", page_text(shapes), options.command);
   fmt::print("{}: corners, layers and cables with mass against known solutions\n",
              (options.out / "shapes.md").string());
 }

@@ -119,11 +119,11 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, double time, 
   }
   if (repaired && world.lag > 0.0) catch_up(scene, world, time, work);
   if (!happened && !repaired) return false;
-  Start& found = work.found;
+  Instant& found = work.found;
   found.velocity = world.velocity;
-  found.angular_velocity = world.angular_velocity;
+  found.turning = world.angular_velocity;
   strike_all(scene, world, work, time, rebounds);
-  if (!hastens(scene, world, found.velocity, found.angular_velocity)) return false;
+  if (!hastens(scene, world, found.velocity, found.turning)) return false;
   detect_after_moving(scene, world, work, false, times);
   return true;
 }
