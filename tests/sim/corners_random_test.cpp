@@ -115,20 +115,11 @@ TEST(RandomCorners, AClearedWorkspaceChangesNoBit) {
   int ran = 0;
   for (int seed = 0; seed < 40; ++seed) {
     const Scene scene = falling_polygons(seed);
-    World world;
     try {
-      world = make_world(scene, Method::pinch);
+      EXPECT_TRUE(is_all_state(scene, Method::pinch, 240)) << seed;
     } catch (const SceneError&) {
       continue;
     }
-    World other = world;
-    Workspace work;
-    for (int i = 0; i < 240; ++i) {
-      Workspace fresh;
-      ASSERT_EQ(step(scene, world, work), StepStatus::ok);
-      ASSERT_EQ(step(scene, other, fresh), StepStatus::ok);
-    }
-    EXPECT_TRUE(same_state(world, other)) << seed;
     ++ran;
   }
   EXPECT_GT(ran, 10);

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/world.h"
+#include "sim/make_world.h"
+#include "sim/step.h"
 
 namespace pinchlab::testing {
 
@@ -70,6 +71,19 @@ inline bool same_state(const World& a, const World& b) {
          a.diagnostics.intervals == b.diagnostics.intervals &&
          a.diagnostics.local_error == b.diagnostics.local_error &&
          a.diagnostics.clusters == b.diagnostics.clusters;
+}
+
+/// Whether so many steps come to the same bits with a new workspace before each of them.
+inline bool is_all_state(const Scene& scene, const Configuration& configuration, int steps) {
+  World kept = make_world(scene, configuration), cleared = kept;
+  Workspace work;
+  for (int i = 0; i < steps; ++i) {
+    Workspace fresh;
+    if (step(scene, kept, work) != StepStatus::ok || step(scene, cleared, fresh) != StepStatus::ok)
+      return false;
+    if (!same_state(kept, cleared)) return false;
+  }
+  return true;
 }
 
 }  // namespace pinchlab::testing
