@@ -96,6 +96,7 @@ double potential_energy(const Scene& scene, const World& world) {
     const double stiffness = scene.cables[c].axial_stiffness;
     const CableState& cable = world.cables[c];
     if (cable.bends_with >= 0) energy += bending_energy(world, cable);
+    if (is_massed(cable)) energy += potential_energy(world, cable, scene.gravity);
     if (stiffness == infinity) continue;
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];
@@ -106,39 +107,30 @@ double potential_energy(const Scene& scene, const World& world) {
     }
     if (!cable.rims.empty()) energy += energy_carried(world, cable, stiffness);
   }
-  for (const CableState& cable : world.cables) {
-    if (!is_massed(cable)) continue;
-    CableMasses masses;
-    add_masses(world, cable, masses);
-    energy += potential_energy(masses, world, scene.gravity);
-  }
   return energy;
 }
 
 double kinetic_energy(const World& world, const Instant& before, double after) {
   double energy = 0.0;
-  const auto velocity_of = [&](int body) -> Eigen::Vector3d {
-    const auto b = index(body);
-    if (b == world.bodies.size()) return Eigen::Vector3d::Zero();
-    const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
-    const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
-    return {v.x(), v.y(), omega};
-  };
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const BodyProperties& body = world.bodies[b];
+    const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
+    const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
+    if (!before.carried.empty()) {
+      const Eigen::Vector3d all(v.x(), v.y(), omega);
+      energy += 0.5 * all.dot(before.carried[b] * all);
+    }
     if (body.kind == BodyKind::fixed) continue;
-    const Eigen::Vector3d v = velocity_of(static_cast<int>(b));
-    energy += 0.5 * inertia_of(body) * v.z() * v.z();
-    if (can_move(body)) energy += 0.5 * body.mass * v.head<2>().squaredNorm();
+    energy += 0.5 * inertia_of(body) * omega * omega;
+    if (can_move(body)) energy += 0.5 * body.mass * v.squaredNorm();
   }
-  if (!before.masses.empty()) energy += kinetic_energy(before.masses, velocity_of);
   return energy;
 }
 
 void note_instant(const World& world, Instant& instant) {
   instant.velocity = world.velocity;
   instant.turning = world.angular_velocity;
-  find_masses(world, instant.masses);
+  find_carried(world, instant.carried);
 }
 
 void measure_cables(const Scene& scene, World& world) {

@@ -8,9 +8,9 @@ namespace pinchlab {
 
 /// How bodies, and cables with mass, move at one time.
 struct Instant {
-  std::vector<Vec2> velocity;   // m/s
-  std::vector<double> turning;  // rad/s
-  CableMasses masses;           // as they lie then
+  std::vector<Vec2> velocity;            // m/s
+  std::vector<double> turning;           // rad/s
+  std::vector<Eigen::Matrix3d> carried;  // by find_carried
 };
 
 void note_instant(const World& world, Instant& instant);

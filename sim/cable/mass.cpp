@@ -72,6 +72,11 @@ MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
   return arc;
 }
 
+/// kg, of either end.
+double end_mass(const MassedSpan& span) {
+  return 0.5 * span.density * span.material;
+}
+
 /// rad/s of a span's direction.
 double turning_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b) {
   if (span.a == span.b) return v_a.z();
@@ -89,13 +94,23 @@ void add(Eigen::Matrix3d& to, double mass, const Vec2& first, double second) {
   to(2, 2) += second;
 }
 
+void add(std::span<Eigen::Matrix3d> to, const MassedSpan& span) {
+  const double mass = end_mass(span);
+  add(at(to, span.a), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
+  add(at(to, span.b), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
+}
+
+void add(std::span<Eigen::Matrix3d> to, const MassedArc& arc) {
+  add(at(to, arc.body), arc.mass, arc.first, arc.second);
+}
+
 void add_flow_forces(const MassedSpan& span, std::span<const Vector3d> v, std::span<Vector3d> to) {
   const Vector3d &v_a = at(v, span.a), &v_b = at(v, span.b);
   Vector3d &f_a = at(to, span.a), &f_b = at(to, span.b);
   const Vec2 u_a = at_place(v_a, span.z_a), u_b = at_place(v_b, span.z_b);
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
-  const double mass = 0.5 * rho * span.material;
+  const double mass = end_mass(span);
   const double growth =
       0.5 * rho * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));      // kg/s
   const double e_a = 0.5 * rho * u_a.squaredNorm(), e_b = 0.5 * rho * u_b.squaredNorm();  // J/m
@@ -141,15 +156,6 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass
   omega += change.z();
 }
 
-/// What all cables of the world add to each body, with the world after the last.
-std::vector<CarriedMass> all_carried(const World& world) {
-  CableMasses masses;
-  find_masses(world, masses);
-  std::vector<CarriedMass> carried(world.bodies.size() + 1);
-  add_carried(masses, Vec2::Zero(), carried);
-  return carried;
-}
-
 Vec2 velocity_at(const World& world, int body, const Vec2& z) {
   if (index(body) == world.bodies.size()) return Vec2::Zero();
   return at(world.velocity, body) + at(world.angular_velocity, body) * z;
@@ -164,25 +170,21 @@ void add_masses(const World& world, const CableState& cable, CableMasses& to) {
   }
 }
 
-void find_masses(const World& world, CableMasses& masses) {
-  masses.clear();
-  for (const CableState& cable : world.cables) {
-    if (is_massed(cable)) add_masses(world, cable, masses);
-  }
+void add_carried(const CableMasses& masses, std::span<Eigen::Matrix3d> to) {
+  for (const MassedSpan& span : masses.spans) add(to, span);
+  for (const MassedArc& arc : masses.arcs) add(to, arc);
 }
 
-void add_carried(const CableMasses& masses, const Vec2& gravity, std::span<CarriedMass> to) {
-  const auto carry_on = [&](int body, double mass, const Vec2& first, double second) {
-    CarriedMass& carried = at(to, body);
-    add(carried.mass, mass, first, second);
-    carried.weight += Vector3d(mass * gravity.x(), mass * gravity.y(), first.dot(gravity));
-  };
-  for (const MassedSpan& span : masses.spans) {
-    const double mass = 0.5 * span.density * span.material;
-    carry_on(span.a, mass, mass * span.z_a, mass * span.z_a.squaredNorm());
-    carry_on(span.b, mass, mass * span.z_b, mass * span.z_b.squaredNorm());
+void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried) {
+  carried.clear();
+  for (const CableState& cable : world.cables) {
+    if (!is_massed(cable)) continue;
+    carried.resize(world.bodies.size() + 1, Eigen::Matrix3d::Zero());
+    for (std::size_t i = 0; i < cable.links.size(); ++i) {
+      if (i >= first_segment(cable)) add(carried, span_of(world, cable, i));
+      if (cable.links[i].orientation != 0) add(carried, arc_of(world, cable, i));
+    }
   }
-  for (const MassedArc& arc : masses.arcs) carry_on(arc.body, arc.mass, arc.first, arc.second);
 }
 
 void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> velocities,
@@ -196,35 +198,18 @@ void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> veloc
   }
 }
 
-double kinetic_energy(const CableMasses& masses, const std::function<Vector3d(int)>& velocity_of) {
-  double twice = 0.0;
-  for (const MassedSpan& span : masses.spans) {
-    const double mass = 0.5 * span.density * span.material;
-    twice += mass * (at_place(velocity_of(span.a), span.z_a).squaredNorm() +
-                     at_place(velocity_of(span.b), span.z_b).squaredNorm());
-  }
-  for (const MassedArc& arc : masses.arcs) {
-    const Vector3d v = velocity_of(arc.body);
-    twice += arc.mass * v.head<2>().squaredNorm() + 2.0 * v.z() * v.head<2>().dot(arc.first) +
-             arc.second * v.z() * v.z();
-  }
-  return 0.5 * twice;
-}
-
-double potential_energy(const CableMasses& masses, const World& world, const Vec2& gravity) {
-  const auto centre = [&](int body) {
-    return index(body) < world.bodies.size() ? at(world.position, body) : Vec2(Vec2::Zero());
-  };
+double potential_energy(const World& world, const CableState& cable, const Vec2& gravity) {
   double energy = 0.0;
-  const auto add_energy = [&](int body, double mass, const Vec2& first) {
-    energy -= mass * gravity.dot(centre(body)) - gravity.dot(left(first));
-  };
-  for (const MassedSpan& span : masses.spans) {
-    const double mass = 0.5 * span.density * span.material;
-    add_energy(span.a, mass, mass * span.z_a);
-    add_energy(span.b, mass, mass * span.z_b);
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    const Segment& span = cable.segments[i];
+    if (i >= first_segment(cable)) {
+      const double mass = 0.5 * cable.density * std::max(span.rest_length, 0.0);
+      energy -= mass * gravity.dot(span.tail + span.head);
+    }
+    if (cable.links[i].orientation == 0) continue;
+    const MassedArc arc = arc_of(world, cable, i);  // z = left(x)
+    energy -= gravity.dot(arc.mass * at(world.position, arc.body) - left(arc.first));
   }
-  for (const MassedArc& arc : masses.arcs) add_energy(arc.body, arc.mass, arc.first);
   return energy;
 }
 
@@ -267,8 +252,9 @@ void meet_body(World& world, CableState& cable, std::size_t segment, int body, i
   if (!(both > 0.0)) return;
   // Each neighbour has given up its share of the part that it is no longer at.
   const Vec2 u = (second.material * u_a + first.material * u_b) / both;
-  const std::vector<CarriedMass> carried = all_carried(world);
-  take_up(world, mover, at(carried, mover).mass, 0.5 * cable.density * both, first.z_b, u);
+  std::vector<Eigen::Matrix3d> carried;
+  find_carried(world, carried);
+  take_up(world, mover, at(carried, mover), 0.5 * cable.density * both, first.z_b, u);
 }
 
 void leave_body(World& world, CableState& cable, int link) {
@@ -276,17 +262,15 @@ void leave_body(World& world, CableState& cable, int link) {
     remove_link(world, cable, link);
     return;
   }
-  const int before = previous_link(cable, link), after = next_link(cable, link);
   const MassedSpan first = span_of(world, cable, index(link));
-  const MassedSpan second = span_of(world, cable, index(after));
+  const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
   const Vec2 u = velocity_at(world, first.b, first.z_b);
-  const bool is_pinch = at(cable.links, before).body == at(cable.links, after).body;
   remove_link(world, cable, link);
-  if (is_pinch) return;  // of no length: there is nothing to hand over
-  const std::vector<CarriedMass> carried = all_carried(world);
+  std::vector<Eigen::Matrix3d> carried;
+  find_carried(world, carried);
   const auto give = [&](int to, const Vec2& z, double material) {
     if (index(to) == world.bodies.size() || !is_mobile(at(world.bodies, to))) return;
-    take_up(world, to, at(carried, to).mass, 0.5 * cable.density * material, z, u);
+    take_up(world, to, at(carried, to), 0.5 * cable.density * material, z, u);
   };
   give(first.a, first.z_a, second.material);
   give(second.b, second.z_b, first.material);

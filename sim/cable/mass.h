@@ -11,7 +11,6 @@
 // turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in velocities.
 
 #include <Eigen/Core>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -45,18 +44,6 @@ struct MassedArc {
 struct CableMasses {
   std::vector<MassedSpan> spans;
   std::vector<MassedArc> arcs;
-
-  bool empty() const { return spans.empty(); }
-  void clear() {
-    spans.clear();
-    arcs.clear();
-  }
-};
-
-/// What cables add to a body at rest.
-struct CarriedMass {
-  Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();    // kg, kg m, kg m^2: for (x, y, angle)
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  // N, N, N m
 };
 
 /// Whether the cable has mass that bodies carry.
@@ -67,20 +54,19 @@ inline bool is_massed(const CableState& cable) {
 /// Adds a cable's masses, its geometry being up to date.
 void add_masses(const World& world, const CableState& cable, CableMasses& to);
 
-/// Those of all cables of the world.
-void find_masses(const World& world, CableMasses& masses);
+/// Adds them to the masses of bodies, for (x, y, angle): kg, kg m, kg m^2. Bodies are one after another as in the
+/// spans, and the world after the last.
+void add_carried(const CableMasses& masses, std::span<Eigen::Matrix3d> to);
 
-/// Adds what they are to bodies, one after another as in the spans, and the world after the last.
-void add_carried(const CableMasses& masses, const Vec2& gravity, std::span<CarriedMass> to);
+/// The same of all cables of the world; empty where none has mass.
+void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried);
 
 /// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`.
 void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
                       std::span<Eigen::Vector3d> to);
 
-/// J.
-double kinetic_energy(const CableMasses& masses,
-                      const std::function<Eigen::Vector3d(int)>& velocity_of);
-double potential_energy(const CableMasses& masses, const World& world, const Vec2& gravity);
+/// Of a cable's weight (J).
+double potential_energy(const World& world, const CableState& cable, const Vec2& gravity);
 
 /// Inverse of a matrix for (x, y, angle) on what the body can do: move, move along its rail, turn.
 Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& matrix);

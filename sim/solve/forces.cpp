@@ -102,9 +102,9 @@ void list_velocities(const World& world, std::span<const int> bodies,
 }
 
 /// Measures what the part's bodies carry of cables with mass.
-void measure_masses(const Scene& scene, const World& world, const Parts& parts, const Part& part,
-                    PartSystem& s) {
-  s.masses.clear();
+void measure_masses(const World& world, const Parts& parts, const Part& part, PartSystem& s) {
+  s.masses.spans.clear();
+  s.masses.arcs.clear();
   for (const int c : cables_of(parts, part)) {
     if (is_massed(at(world.cables, c))) add_masses(world, at(world.cables, c), s.masses);
   }
@@ -118,8 +118,8 @@ void measure_masses(const Scene& scene, const World& world, const Parts& parts, 
     place(span.b);
   }
   for (MassedArc& arc : s.masses.arcs) place(arc.body);
-  s.carried.assign(s.mobility.size(), {});
-  add_carried(s.masses, scene.gravity, s.carried);
+  s.carried.assign(s.mobility.size(), Eigen::Matrix3d::Zero());
+  add_carried(s.masses, s.carried);
 }
 
 /// Mobility and free velocity of a body that carries mass M beside its own,
@@ -127,15 +127,14 @@ void measure_masses(const Scene& scene, const World& world, const Parts& parts, 
 /// where v' is given in what the body cannot do by itself.
 void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
           int place, PartSystem& s) {
-  const CarriedMass& carried = at(s.carried, place);
-  const double inertia = inertia_of(body);
-  const Eigen::Vector3d own(body.mass, body.mass, inertia);
+  const Eigen::Vector3d own(body.mass, body.mass, inertia_of(body));
   const Eigen::Vector3d drag(body.linear_drag, body.linear_drag, body.angular_drag);
-  Eigen::Vector3d force = carried.weight + at(s.flow, place);
+  const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
+  Eigen::Matrix3d all = at(s.carried, place);
+  Eigen::Vector3d force = all * pull + at(s.flow, place);
+  all.diagonal() += own;
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
   const Eigen::Matrix3d half = (0.5 * k * own.cwiseProduct(drag)).asDiagonal();
-  Eigen::Matrix3d all = carried.mass;
-  all.diagonal() += own;
   const Eigen::Matrix3d inverse = inverse_for(body, all + half);
   Eigen::Vector3d& free = at(s.free_velocity, place);
   Eigen::Vector3d given = Eigen::Vector3d::Zero();
@@ -167,22 +166,25 @@ void bend(const World& world, const Parts& parts, const CableState& cable, doubl
 void load_bodies(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                  const TimeSpan& t, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
-  measure_masses(scene, world, parts, part, s);
+  measure_masses(world, parts, part, s);
   list_velocities(world, bodies, s.velocity);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, s.velocity, s.flow);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (s.carried[i].mass(0, 0) == 0.0) continue;
     const Body& given = at(scene.bodies, bodies[i]);
     const BodyProperties& body = at(world.bodies, bodies[i]);
+    if (s.carried[i](0, 0) == 0.0) {
+      s.mobility[i] = mobility_of(body, t.kick);  // it may have carried some before
+      continue;
+    }
     const int place = static_cast<int>(i);
     load(given.motor.empty() ? body : driven_now(given, t, body), scene.gravity, s.velocity[i],
          t.kick, place, s);
   }
   for (Motor& motor : s.motors) {
-    const CarriedMass& carried = at(s.carried, motor.place);
-    motor.inertia += carried.mass(2, 2);
-    const double torque = carried.weight.z() + at(s.flow, motor.place).z();
+    const Eigen::Matrix3d& carried = at(s.carried, motor.place);
+    motor.inertia += carried(2, 2);
+    const double torque = carried.row(2).head<2>().dot(scene.gravity) + at(s.flow, motor.place).z();
     motor.before += t.kick * torque / motor.inertia;
     find_first_state(motor);
   }

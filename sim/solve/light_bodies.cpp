@@ -79,7 +79,7 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
 void restore(const World& world, std::span<const int> bodies, double kick, PartSystem& system) {
   for (std::size_t i = 0; i < bodies.size() && !system.span_masses.empty(); ++i) {
     SpanMass& span = system.span_masses[i];
-    const bool loaded = !system.carried.empty() && system.carried[i].mass(0, 0) > 0.0;
+    const bool loaded = !system.carried.empty() && system.carried[i](0, 0) > 0.0;
     if (span.steadied && !loaded) {  // of loaded ones they are new with each kick
       system.mobility[i] = mobility_of(at(world.bodies, bodies[i]), kick);
       system.mobility_changed = true;

@@ -156,7 +156,7 @@ struct PartSystem {
   std::vector<SpanMass> span_masses;           // empty until one body is too light
   std::vector<Motor> motors;                   // of its driven bodies
   CableMasses masses;                          // of its cables; bodies are places in the part
-  std::vector<CarriedMass> carried;            // by its bodies; empty: cables without mass
+  std::vector<Eigen::Matrix3d> carried;        // by its bodies; empty: cables without mass
   std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
   std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
   std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
