@@ -11,6 +11,7 @@
 #include "analysis/experiments/experiment.h"
 #include "sim/cable/cable.h"
 #include "sim/make_world.h"
+#include "sim/outline.h"
 
 namespace pinchlab::experiments {
 
@@ -62,6 +63,10 @@ class ChainWorld {
     for (const Body& body : problem.scene.bodies) add_body(body);
     const World start = make_world(problem.scene, Method::pinch);
     for (std::size_t c = 0; c < problem.scene.cables.size(); ++c) {
+      if (problem.scene.cables[c].rod) {
+        add_rod(problem.scene.cables[c]);
+        continue;
+      }
       add_chain(problem.scene.cables[c], start.cables[c], start);
     }
   }
@@ -83,12 +88,15 @@ class ChainWorld {
   }
 
  private:
-  /// What carries an end of a cable does not meet its links.
+  /// What carries an end of a cable does not meet its links, unless the cable runs round it.
   bool is_load(const Body& body) const {
     const auto index = static_cast<int>(&body - problem_.scene.bodies.data());
-    return std::any_of(
-        problem_.scene.cables.begin(), problem_.scene.cables.end(),
-        [&](const Cable& c) { return c.start.body == index || c.end.body == index; });
+    const auto is_wrap = [index](const Wrap& wrap) { return wrap.body == index; };
+    return std::any_of(problem_.scene.cables.begin(), problem_.scene.cables.end(),
+                       [&](const Cable& c) {
+                         return (c.start.body == index || c.end.body == index) &&
+                                std::none_of(c.wraps.begin(), c.wraps.end(), is_wrap);
+                       });
   }
 
   void add_body(const Body& body) {
@@ -98,11 +106,24 @@ class ChainWorld {
     def.position = vec(body.position, scale);
     def.linearVelocity = vec(body.velocity, scale);
     def.angularVelocity = static_cast<float>(body.angular_velocity);
+    def.fixedRotation = body.node;
     b2Body* made = world_.CreateBody(&def);
+    if (body.node) {
+      add_mass(body, *made);
+      bodies_.push_back(made);
+      return;
+    }
     b2CircleShape disc;
     disc.m_radius = static_cast<float>(body.radius * scale);
+    b2PolygonShape polygon;
     b2FixtureDef fixture;
     fixture.shape = &disc;
+    if (is_polygon(body)) {
+      std::vector<b2Vec2> corners;
+      for (const Vec2& corner : body.corners) corners.push_back(vec(corner, scale));
+      polygon.Set(corners.data(), static_cast<int>(corners.size()));
+      fixture.shape = &polygon;
+    }
     fixture.density = 1.0f;
     // Box2D takes the root of the product of both coefficients; that of links is 1. "No slip" is a
     // coefficient that no force here overcomes.
@@ -112,15 +133,18 @@ class ChainWorld {
     fixture.filter.categoryBits = load ? of_loads : of_bodies;
     fixture.filter.maskBits = load ? of_bodies : of_bodies | of_links | of_loads;
     made->CreateFixture(&fixture);
-    if (def.type == b2_dynamicBody) {
-      b2MassData mass;
-      mass.mass = static_cast<float>(body.mass);
-      mass.I = static_cast<float>(inertia_of(body) * scale * scale);
-      mass.center.SetZero();
-      made->SetMassData(&mass);
-    }
+    if (def.type == b2_dynamicBody) add_mass(body, *made);
     hold(body, *made);
     bodies_.push_back(made);
+  }
+
+  void add_mass(const Body& body, b2Body& made) {
+    b2MassData mass;
+    mass.mass = static_cast<float>(body.mass);
+    mass.I =
+        body.node ? 0.0f : static_cast<float>(inertia_of(body) * settings_.scale * settings_.scale);
+    mass.center.SetZero();
+    made.SetMassData(&mass);
   }
 
   /// Axles and rails.
@@ -146,6 +170,18 @@ class ChainWorld {
     world_.CreateJoint(&joint);
   }
 
+  /// Between two nodes.
+  void add_rod(const Cable& rod) {
+    const auto end = [&](const Attachment& a) {
+      return a.body < 0 ? a.point
+                        : problem_.scene.bodies[static_cast<std::size_t>(a.body)].position;
+    };
+    b2DistanceJointDef joint;  // stiff, at the length that it begins with
+    joint.Initialize(carrier(rod.start), carrier(rod.end), vec(end(rod.start), settings_.scale),
+                     vec(end(rod.end), settings_.scale));
+    world_.CreateJoint(&joint);
+  }
+
   void add_chain(const Cable& cable, const CableState& state, const World& start) {
     const std::vector<Vec2> points = chain_points(state, start, settings_.link_m);
     double length = 0.0, lightest = std::numeric_limits<double>::infinity();
@@ -157,8 +193,11 @@ class ChainWorld {
     b2Body* before = carrier(cable.start);
     for (std::size_t i = 1; i < points.size(); ++i) {
       const double part = (points[i] - points[i - 1]).norm();
-      b2Body* link = add_link(points[i - 1], points[i], cable.half_width,
-                              settings_.mass_share * lightest * part / length);
+      const double mass = cable.mass_per_metre > 0.0
+                              ? cable.mass_per_metre * part
+                              : settings_.mass_share * lightest * part / length;
+      b2Body* link = add_link(points[i - 1], points[i], cable.half_width, mass);
+      if (cable.mass_per_metre > 0.0) link->SetGravityScale(1.0f);
       join(before, link, points[i - 1]);
       before = link;
     }
@@ -215,6 +254,9 @@ std::string box2d_cannot(const Problem& problem) {
     if (cable.closed) return "closed cables are not built";
   }
   for (const Body& body : problem.scene.bodies) {
+    if (body.corners.size() > b2_maxPolygonVertices || body.corner_radius > 0.0) {
+      return "polygons are built sharp, of 8 corners at most";
+    }
     if (body.driven_angular_velocity || body.torque != 0.0 || body.linear_drag > 0.0 ||
         body.angular_drag > 0.0) {
       return "drives, torques and drag are not built";

@@ -2,14 +2,9 @@
 #include "analysis/experiments/peers/mujoco_tendon.h"
 
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
-
 #include <cmath>
-#include <cstring>
-#include <memory>
-#include <stdexcept>
 
-#include "analysis/experiments/experiment.h"
+#include "analysis/experiments/peers/mujoco_run.h"
 #include "sim/cable/cable.h"
 #include "sim/make_world.h"
 
@@ -123,26 +118,6 @@ Path path_of(const World& world, const CableState& cable) {
   return path;
 }
 
-using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
-using Data = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
-
-Model load(const std::string& xml) {
-  // mjVFS holds room for 2000 file names: far too much for the stack.
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  constexpr const char* name = "scene.xml";
-  if (mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(xml.size()) + 1) != 0) {
-    throw std::runtime_error("MuJoCo: no room for the model's text");
-  }
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], xml.c_str(), xml.size() + 1);
-  mju_user_warning = [](const char*) {};  // not into a log file: data->warning tells
-  char error[1000] = "";
-  Model model(mj_loadXML(name, files.get(), error, sizeof error), mj_deleteModel);
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error(std::string("MuJoCo: ") + error);
-  return model;
-}
-
 std::vector<Place> places(const Problem& problem, const mjData& data,
                           const std::vector<int>& first_slide) {
   std::vector<Place> places;
@@ -209,8 +184,8 @@ std::string mujoco_model(const Problem& problem, const MujocoSettings& settings)
 }
 
 Recording run_mujoco(const Problem& problem, const MujocoSettings& settings) {
-  const Model model = load(mujoco_model(problem, settings));
-  const Data data(mj_makeData(model.get()), mj_deleteData);
+  const MujocoModel model = load_mujoco(mujoco_model(problem, settings));
+  const MujocoData data(mj_makeData(model.get()), mj_deleteData);
   std::vector<int> first_slide(problem.scene.bodies.size(), -1);
   int next = 0;
   for (std::size_t b = 0; b < problem.scene.bodies.size(); ++b) {
@@ -221,28 +196,8 @@ Recording run_mujoco(const Problem& problem, const MujocoSettings& settings) {
     first_slide[b] = next;
     next += 2;
   }
-  if (settings.leapfrog) {  // back by half a kick
-    mj_forward(model.get(), data.get());
-    for (int i = 0; i < model->nv; ++i) {
-      data->qvel[i] -= 0.5 * model->opt.timestep * data->qacc[i];
-    }
-  }
-  Recording recording;
-  recording.motion.push_back(places(problem, *data, first_slide));
-  for (int frame = 0; frame < problem.frames; ++frame) {
-    const double start = cpu_seconds();
-    for (int i = 0; i < settings.steps_per_frame; ++i) mj_step(model.get(), data.get());
-    recording.cpu_s += cpu_seconds() - start;
-    recording.motion.push_back(places(problem, *data, first_slide));
-    for (const Place& place : recording.motion.back()) {
-      if (!place.centre.allFinite()) recording.finite = false;
-    }
-    for (const mjWarningStat& warning : data->warning) {
-      if (warning.number > 0) recording.finite = false;  // MuJoCo resets what has blown up
-    }
-    if (!recording.finite) return recording;
-  }
-  return recording;
+  const auto read = [&] { return places(problem, *data, first_slide); };
+  return record_mujoco(problem, *model, *data, settings, read);
 }
 
 }  // namespace pinchlab::experiments

@@ -60,6 +60,43 @@ TEST(Peers, Box2dSaysWhatIsNotBuilt) {
   EXPECT_NE(peer.cannot(problem).find("drives"), std::string::npos);
 }
 
+Problem finely_solved(const std::string& name) {
+  for (Problem& problem : finely_solved_problems(1024)) {
+    if (problem.name == name) return problem;
+  }
+  return {};
+}
+
+Problem known(const std::string& name) {
+  for (Problem& problem : known_problems()) {
+    if (problem.name == name) return problem;
+  }
+  return {};
+}
+
+TEST(Peers, Box2dNodesHangAndFallOnceStepsAreManyEnough) {
+  const Peer peer = peer_called("Box2D");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_LT(best_error(peer, known("hanging-cable"), 64), 1e-5);
+  const Problem fold = finely_solved("folded-chain");
+  EXPECT_GT(best_error(peer, fold, 4), 0.1);
+  EXPECT_LT(best_error(peer, fold, 256), 0.02);
+}
+
+TEST(Peers, Box2dLinksRunRoundCorners) {
+  const Peer peer = peer_called("Box2D");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_LT(best_error(peer, known("square-unwinding"), 64), 0.02);
+}
+
+// Another program, other coordinates, a method of fourth order: it comes to where our own solution does.
+TEST(Peers, MujocoLinksAgreeThatAFoldedChainFallsLikeThis) {
+  const Peer peer = peer_called("MuJoCo");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_LT(best_error(peer, finely_solved("folded-chain"), 64), 2e-6);
+  EXPECT_LT(best_error(peer, known("hanging-cable"), 4), 1e-7);
+}
+
 TEST(Peers, MujocoTendonIsSecondOrderWhenStartedHalfAStepBack) {
   const Peer peer = peer_called("MuJoCo");
   if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
@@ -94,6 +131,8 @@ TEST(Peers, MujocoSaysWhatATendonCannotDo) {
   EXPECT_EQ(peer.cannot(fixed), "");
   EXPECT_NE(peer.cannot(roller_on_drum()).find("pinched"), std::string::npos);
   EXPECT_NE(peer.cannot(resting_stack()).find("pinched"), std::string::npos);
+  EXPECT_NE(peer.cannot(known("square-unwinding")).find("corners"), std::string::npos);
+  EXPECT_NE(peer.cannot(known("rope-atwood")).find("no mass"), std::string::npos);
 }
 
 }  // namespace
