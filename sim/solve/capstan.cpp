@@ -286,6 +286,11 @@ void express_impulses(SolveScratch& set) {
 // w = sigma_head - sigma_tail and a middle body that sticks needs w = -sigma of its run. Summing
 // the rows from one sticking place to the next (with the middle rows at both ends) cancels every
 // sigma.
+//
+// That is the system of all tensions and sliding speeds, eliminated by hand: the row of a taut segment for the
+// sliding speed at its head, the law of a run for the tension after it, each with a pivot of 1, and
+// what is left for the first tension of the group. Factored as it stands, that system has zeros on its diagonal
+// wherever neither body of a span can give, and needs pivoting.
 void add_group_equations(PartSystem& system, SolveScratch& set) {
   CapstanScratch& s = set.capstan;
   s.slack_terms.clear();
