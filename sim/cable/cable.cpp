@@ -263,9 +263,13 @@ void take_over(CableState& cable, int link, int later) {
 
 void remove_link(const World& world, CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
-  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now.
-  cable.links[static_cast<std::size_t>(before)].pinch_middle = false;
-  cable.links[static_cast<std::size_t>(after)].pinch_middle = false;
+  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now, and how
+  // the cable slipped there is over.
+  for (const int neighbour : {before, after}) {
+    Link& now = at(cable.links, neighbour);
+    if (now.pinch_middle) now.slip_speed = 0.0;
+    now.pinch_middle = false;
+  }
   const bool merge = cable.links[static_cast<std::size_t>(before)].body ==
                          cable.links[static_cast<std::size_t>(after)].body &&
                      cable.links[static_cast<std::size_t>(before)].orientation ==

@@ -78,11 +78,12 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
-    const bool violated = row.clearance < -t.made_up;
-    if (violated && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
+    const bool middle = row.kind == RowKind::pinch_middle;
+    const bool violated = row.clearance < -t.made_up || (middle && row.clearance > t.made_up);
+    if (violated && !middle && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
       work.violated = true;
     }
-    if (!row.on && (row.kind == RowKind::pinch_middle || (group >= 0 && !shares))) continue;
+    if (!row.on && (middle || (group >= 0 && !shares))) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
@@ -260,7 +261,7 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, do
     }
   }
   // The linear solution is sound at least; what it misses is repaired.
-  if (!met && (work.settled || length == whole)) again(0);
+  if (!met && (work.settled || length == whole || unsound())) again(0);
   return length;
 }
 

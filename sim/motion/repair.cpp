@@ -17,18 +17,24 @@ namespace pinchlab {
 
 namespace {
 
-constexpr int most_repairs = 8;
+constexpr int most_repairs = 8, most_halvings = 6;
 
 /// The most that a part's constraints are violated by (m).
-double violation(const Scene& scene, const World& world, const PartSystem& s) {
-  double most = 0.0;
+struct Violation {
+  double lengths = 0.0, gaps = 0.0;
+  double most() const { return std::max(lengths, gaps); }
+};
+
+Violation violation(const Scene& scene, const World& world, const PartSystem& s) {
+  Violation v;
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
     if (row.compliance > 0.0) continue;
     const double clearance = clearance_of(scene, world, row);
+    double& most = row.kind == RowKind::normal ? v.gaps : v.lengths;
     most = std::max(most, row.clamped ? std::abs(clearance) : -clearance);
   }
-  return most;
+  return v;
 }
 
 /// Moves a part's bodies by `share` of the displacements that were just solved for.
@@ -107,24 +113,21 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;
   Stopwatch untimed(nullptr);
-  double share = 0.0, before = infinity;
   bool any = false;
   for (int k = 0; k < most_repairs; ++k) {
-    if (k > 0 && violation(scene, world, s) >= before) {
-      displace(world, work, part, -share);
-      any = k > 1;
-      break;
-    }
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
-    before = violation(scene, world, s);
-    if (before <= s.reach) break;
-    any = true;
+    const Violation before = violation(scene, world, s);
+    if (before.most() <= s.reach) break;
+    const auto is_better = [&] {
+      const Violation now = violation(scene, world, s);
+      return now.most() < before.most() && now.gaps <= std::max(before.gaps, s.reach);
+    };
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
     work.solve.smooth = true;
     solve_direct(world, work.parts, part, s, work.solve);
     work.solve.smooth = false;
-    share = 1.0;
+    double share = 1.0;
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const double radius = at(world.bodies, bodies[i]).radius,
@@ -132,6 +135,15 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
       if (way * share > longest * radius) share = longest * radius / way;
     }
     displace(world, work, part, share);
+    // Where a span hardly bends round a body its direction turns much within the whole of the way.
+    for (int halvings = 0; !is_better(); ++halvings) {
+      share *= halvings < most_halvings ? 0.5 : 1.0;
+      displace(world, work, part, -share);
+      if (halvings == most_halvings) share = 0.0;
+      if (share == 0.0) break;
+    }
+    if (share == 0.0) break;
+    any = true;
   }
   if (!any) return false;
   for (const int c : contacts_of(work.parts, part)) measure(scene, world, at(world.contacts, c));

@@ -108,6 +108,14 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
   row.bias = interval.length > 0.0 ? row.clearance / time : 0.0;
 }
 
+/// A middle body's row is never slack either: what material has gone astray in its pinch, either way, is
+/// made up for in time, or stays.
+void hold_middle(const TimeSpan& interval, Row& row) {
+  row.idle = false;
+  const bool made_up = interval.length > 0.0 && std::abs(row.clearance) <= interval.made_up;
+  row.bias = made_up ? row.clearance / interval.repair : 0.0;
+}
+
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
 /// attachment points along the centre line, backwards (thesis 4.2.1, Figure 4.3). It then pushes
 /// the bodies apart, but leaves their rolling alone: the origin of the method's jitter.
@@ -419,7 +427,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       make_elastic(world, given, segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {
-      row.idle = false;
+      hold_middle(interval, row);
       row.slip = at(cable.links, row.item).slip;
     } else if (part.can_move && segment.pinched && segment.contact >= 0) {
       s.pressed.push_back(r);
