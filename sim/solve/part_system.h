@@ -69,19 +69,19 @@ struct RowBodies {
 /// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind = RowKind::segment;
-  bool on = false;          // active set: bears a force
   Slip slip = Slip::stick;  // active set: friction rows
-  bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
+  bool on = false;          // active set: bears a force
+  bool clamped = false;     // active set: `presser` bears, so that the row may push as well
   bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
+  bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
+  bool returned = false;    // normal: has lost its force in this step and got it back
+  bool is_new = true;       // segment: its bodies are not yet seen
+  bool turns = false;       // segment: its levers turn with a body, moved or not
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1
-  bool clamped = false;     // active set: that force bears, so that the row may push as well
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
-  bool is_new = true;       // segment: its bodies are not yet seen
-  bool turns = false;       // segment: its levers turn with a body, moved or not
-  bool returned = false;    // normal: has lost its force in this step and got it back
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
   double compliance = 0.0;  // 1/kg
