@@ -99,20 +99,16 @@ struct alignas(64) Segment {
 };
 
 struct CableState {
-  double half_width = 0.0;  // m
-  double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
-  double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
-                            // Method::pinch_no_contact
-  double grip = 1.0;        // factor on the friction of its pinches
-  double length = 0.0;      // m of material, constant
+  // What every step reads.
+  std::vector<Link> links;
+  std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
+                                  // from the last link to the first when closed
+  int changes = 0;                // links inserted and removed so far
+  int bends_with = -1;            // a piece between nodes that goes on from its end: bending.h
   bool closed = false;
-  bool rod = false;  // bears force both ways: a piece between nodes, or a joint
+  bool rod = false;    // bears force both ways: a piece between nodes, or a joint
+  bool fills = false;  // lies in layers on a body that holds an end of it
   Joint joint = Joint::none;
-  int bends_with = -1;   // a piece between nodes that goes on from its end: bending.h
-  double bend = 0.0;     // N m a rad, between the two
-  bool fills = false;    // lies in layers on a body that holds an end of it
-  double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
-  int changes = 0;       // links inserted and removed so far
   // By update_wraps_and_rest_lengths, which has all at hand:
   bool unwound = false;   // a link that it rolls on has lost its wrap
   bool overfull = false;  // a pinched segment has material
@@ -120,10 +116,15 @@ struct CableState {
   bool stands =
       false;  // nothing of its course has moved since the interval before, and nothing can: so
               // its tangents and wraps are as they were; by update_cable
-  std::vector<Link> links;
-  std::vector<Rim> rims;  // as many, of an elastic cable that creeps; else none. By lay_down
-  std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
-                                  // from the last link to the first when closed
+  double length = 0.0;      // m of material, constant
+  double turning = 0.0;     // rad, total turning of a closed loop, a multiple of 2 pi
+  double half_width = 0.0;  // m
+  double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
+  std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
+  double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
+                            // Method::pinch_no_contact
+  double grip = 1.0;        // factor on the friction of its pinches
+  double bend = 0.0;        // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).

@@ -207,10 +207,12 @@ void update_rolled_cable(const World& world, CableState& cable) {
   const std::size_t count = cable.links.size();
   double left_before = 0.0;  // m, material coordinate where the cable leaves the link before
   double first = 0.0;        // where it meets the first
+  double arrives = cable.segments[0].alpha;
+  const double last = arrives + cable.turning;
   for (std::size_t i = 0; i < count; ++i) {
     Link& link = cable.links[i];
     Segment& segment = cable.segments[i];
-    const double arrives = segment.alpha, leaves = alpha_head(cable, i);
+    const double leaves = i + 1 < count ? cable.segments[i + 1].alpha : last;  // alpha_head
     if (!stands) update_wrap(cable, link, arrives, leaves);
     const double radius = link.signed_radius(), angle = body_angle(world, link);
     const double met = link.material + radius * (arrives - angle);
@@ -221,6 +223,7 @@ void update_rolled_cable(const World& world, CableState& cable) {
       inspect(cable, segment, rounding, sum);
     }
     left_before = link.material + radius * (leaves - angle);
+    arrives = leaves;
   }
   if (cable.closed) {
     cable.segments[0].rest_length = first - left_before + cable.length;
