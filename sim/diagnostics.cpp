@@ -59,11 +59,8 @@ bool check_positions(const Scene& scene, World& world) {
   }
   const bool bodies = sum == 0.0;
   std::size_t c = 0;
-  for (; c < world.cables.size() && sum == 0.0; ++c) {
-    for (const Segment& s : world.cables[c].segments) {
-      sum += 0.0 * (s.length + s.rest_length + s.tension);
-    }
-  }
+  while (c < world.cables.size() && world.cables[c].finite) ++c;
+  const bool finite = bodies && c == world.cables.size();
   for (std::size_t i = 0; i < world.cables.size(); ++i) {
     const std::vector<Link>& links = world.cables[i].links;
     if (links.size() <= most_corners_met) continue;  // of discs and corners
@@ -74,13 +71,13 @@ bool check_positions(const Scene& scene, World& world) {
                                 world.step, world.time(), scene.cables[i].name, most_corners_met);
     return false;
   }
-  if (sum == 0.0) return true;
+  if (finite) return true;
   std::string what = "a position";
   for (std::size_t b = 0; !bodies && b < world.bodies.size(); ++b) {
     if (world.position[b].allFinite() && std::isfinite(world.angle[b])) continue;
     what = fmt::format("position of body '{}'", scene.bodies[b].name);
   }
-  if (bodies) what = fmt::format("a span of cable '{}'", scene.cables[c - 1].name);
+  if (bodies) what = fmt::format("a span of cable '{}'", scene.cables[c].name);
   world.failure = fmt::format("step {} (t = {} s): {} is not finite; method {}", world.step,
                               world.time(), what, to_string(world.configuration.method));
   return false;

@@ -253,8 +253,8 @@ bool rests(const Parts& parts, const Part& part, const World& world) {
 
 void find_parts(const World& world, Workspace& work) {
   Parts& parts = work.parts;
-  if (structure_changed(world, work.contacts.contacts_kept, parts))
-    divide(world, work.parts_before, parts, work.systems);
+  parts.divided = structure_changed(world, work.contacts.contacts_kept, parts);
+  if (parts.divided) divide(world, work.parts_before, parts, work.systems);
   parts.any_moves = false;
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {

@@ -53,6 +53,7 @@ struct Parts {
   std::vector<int> movers;     // bodies whose centre can
   std::vector<int> structure;  // what the parts were found for: pairs in contact
   int changes = -1;            // and CableState::changes of all cables
+  bool divided = true;         // anew, for the contacts that there are: they may have other places
   std::vector<int> root;       // of each body's tree while parts are found
   std::vector<char> taken;     // systems that go on with their parts, while parts are found
 };

@@ -56,6 +56,8 @@ struct ContactScratch {
   std::vector<int> fill;              // cursor of contacts_of_body while it is made
   bool contacts_kept = false;         // all contacts are those of the step before; by find_contacts
   bool pinches_kept = false;          // and all pinches; by configure_pinches
+  std::vector<char> stirred;          // parts of which a contact is not; by configure_pinches
+  std::vector<char> stands;           // cables whose links and pinches are those of the step before
   int configured_changes = -1;        // changes of all cables when pinches were configured
 };
 

@@ -38,22 +38,24 @@ struct Layers {
 /// alpha is the direction of the segment before or after, and angle is the body's. Without slip
 /// `material` is constant, so the cable's total length is conserved by construction. Of an elastic cable
 /// that a rim carries over stretched it is material + what its rim carries up to p (alpha - angle).
-struct Link {
-  int body = -1;        // index, or -1: attached to the world
-  int orientation = 0;  // +1 counter-clockwise, -1 clockwise, 0 attachment
-  int corner = -1;      // of a polygon, that the circle is about; or -1
-  double radius = 0.0;  // m, of the body or its corner, + cable half width; 0 at an attachment
-  Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
-  double material = 0.0;       // m along the cable; changed by slip only
-  double wrap = 0.0;           // rad, angle of cable stored on the body, may exceed 2 pi
+struct alignas(64) Link {
+  // What every step reads, in one line of the cache.
+  int body = -1;              // index, or -1: attached to the world
+  int orientation = 0;        // +1 counter-clockwise, -1 clockwise, 0 attachment
+  int corner = -1;            // of a polygon, that the circle is about; or -1
   bool still = false;         // the circle never moves: about a centre that cannot, or in the world
   bool pinch_middle = false;  // middle link of a non-transitional pinch: no wrap, the links
                               // before and after lie on the pinched body
   Slip slip = Slip::stick;    // by the active set
-  double slip_speed = 0.0;    // m/s of material over the body's surface, forward positive
-  int contact = -1;           // pinch_middle: the contact that presses it, by confirm_pinches
-  Layers layers;              // of a drum that fills; `radius` is then that of the outermost turn,
-                              // by update_tangent
+  double radius = 0.0;      // m, of the body or its corner, + cable half width; 0 at an attachment
+  double material = 0.0;    // m along the cable; changed by slip only
+  double wrap = 0.0;        // rad, angle of cable stored on the body, may exceed 2 pi
+  double slip_speed = 0.0;  // m/s of material over the body's surface, forward positive
+  Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
+  // What few steps read.
+  int contact = -1;  // pinch_middle: the contact that presses it, by confirm_pinches
+  Layers layers;     // of a drum that fills; `radius` is then that of the outermost turn,
+                     // by update_tangent
 
   double signed_radius() const { return orientation * radius; }
 };
@@ -74,7 +76,8 @@ struct Rim {
 };
 
 /// The free span that arrives at the link of the same index from the link before it.
-struct Segment {
+struct alignas(64) Segment {
+  // What every step reads, in one line of the cache.
   double alpha = 0.0;               // rad, angle of `direction`, continuous in time
   double length = 0.0;              // m, distance along the tangent; 0 when pinched
   double rest_length = 0.0;         // m of material; may be negative by round-off when pinched
@@ -88,33 +91,40 @@ struct Segment {
   int contact = -1;                 // pressing a transitional pinch, by confirm_pinches; or -1
   double slope = 0.0;               // m of material in a m of it when the interval began, by
                                     // lay_down; 0: not known
+  // What is read where something has moved.
+  Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();  // m, of the circles that the
+                                                                // tangent is for
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
-  Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();      // m, of the circles that the
-                                                                    // tangent is for
 };
 
 struct CableState {
+  // What every step reads.
+  std::vector<Link> links;
+  std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
+                                  // from the last link to the first when closed
+  int changes = 0;                // links inserted and removed so far
+  int bends_with = -1;            // a piece between nodes that goes on from its end: bending.h
+  bool closed = false;
+  bool rod = false;    // bears force both ways: a piece between nodes, or a joint
+  bool fills = false;  // lies in layers on a body that holds an end of it
+  Joint joint = Joint::none;
+  // By update_wraps_and_rest_lengths, which has all at hand:
+  bool unwound = false;   // a link that it rolls on has lost its wrap
+  bool overfull = false;  // a pinched segment has material
+  bool finite = true;     // lengths, rest lengths and tensions are
+  bool stands =
+      false;  // nothing of its course has moved since the interval before, and nothing can: so
+              // its tangents and wraps are as they were; by update_cable
+  double length = 0.0;      // m of material, constant
+  double turning = 0.0;     // rad, total turning of a closed loop, a multiple of 2 pi
   double half_width = 0.0;  // m
   double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
+  std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
   double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
                             // Method::pinch_no_contact
   double grip = 1.0;        // factor on the friction of its pinches
-  double length = 0.0;      // m of material, constant
-  bool closed = false;
-  bool rod = false;  // bears force both ways: a piece between nodes, or a joint
-  Joint joint = Joint::none;
-  int bends_with = -1;   // a piece between nodes that goes on from its end: bending.h
-  double bend = 0.0;     // N m a rad, between the two
-  bool fills = false;    // lies in layers on a body that holds an end of it
-  double turning = 0.0;  // rad, total turning of a closed loop, a multiple of 2 pi
-  int changes = 0;       // links inserted and removed so far
-  bool unwound =
-      false;  // a link that it rolls on has lost its wrap, by update_wraps_and_rest_lengths
-  std::vector<Link> links;
-  std::vector<Rim> rims;  // as many, of an elastic cable that creeps; else none. By lay_down
-  std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
-                                  // from the last link to the first when closed
+  double bend = 0.0;        // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).

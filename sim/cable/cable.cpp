@@ -73,6 +73,7 @@ void begin_layers(const World& world, CableState& cable, std::size_t i, int way)
   link.layers = {way, inner, cable.half_width / std::numbers::pi,
                  link.orientation * (alpha - body_angle(world, link))};
   cable.fills = true;
+  cable.stands = false;
 }
 
 int way_of_layers(const CableState& cable, std::size_t i) {
@@ -150,6 +151,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
     t.length = 0.0;
     t.pinched = true;
   }
+  cable.stands = false;
   segment.moved = true;
   segment.tail_centre = a;
   segment.head_centre = b;
@@ -169,9 +171,18 @@ void update_wrap(CableState& cable, Link& link, double arrives, double leaves) {
   if (!(link.wrap >= 0.0 || link.pinch_middle)) cable.unwound = true;
 }
 
+/// Notes what the whole step asks of a segment whose rest length is up to date, while it is at hand.
+/// Zero times what is finite is zero, and sums of that are.
+void inspect(CableState& cable, const Segment& segment, double rounding, double& sum) {
+  if (segment.pinched && !(segment.rest_length <= rounding)) cable.overfull = true;
+  sum += 0.0 * (segment.length + segment.rest_length + segment.tension);
+}
+
 /// Of a cable that lies in layers, or creeps.
 void update_laid_cable(const World& world, CableState& cable) {
-  cable.unwound = false;
+  const double rounding = material_rounding(cable);
+  double sum = 0.0;
+  cable.unwound = cable.overfull = false;
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     update_wrap(cable, cable.links[i], cable.segments[i].alpha, alpha_head(cable, i));
   }
@@ -181,38 +192,62 @@ void update_laid_cable(const World& world, CableState& cable) {
     cable.segments[i].rest_length = tail_material(cable, i, body_angle(world, to)) -
                                     head_material(cable, tail, body_angle(world, from)) +
                                     (i == 0 ? cable.length : 0.0);
+    inspect(cable, cable.segments[i], rounding, sum);
   }
+  cable.finite = sum == 0.0;
 }
 
-}  // namespace
-
-void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
-  if (cable.fills || !cable.rims.empty()) return update_laid_cable(world, cable);
-  cable.unwound = false;
+/// Of any other. Where its course stands, wraps are as they were: bodies turn under them.
+template <bool stands>
+void update_rolled_cable(const World& world, CableState& cable) {
+  const double rounding = material_rounding(cable);
+  double sum = 0.0;
+  cable.overfull = false;
+  if (!stands) cable.unwound = false;
   const std::size_t count = cable.links.size();
   double left_before = 0.0;  // m, material coordinate where the cable leaves the link before
   double first = 0.0;        // where it meets the first
+  double arrives = cable.segments[0].alpha;
+  const double last = arrives + cable.turning;
   for (std::size_t i = 0; i < count; ++i) {
     Link& link = cable.links[i];
     Segment& segment = cable.segments[i];
-    const double arrives = segment.alpha, leaves = alpha_head(cable, i);
-    update_wrap(cable, link, arrives, leaves);
+    const double leaves = i + 1 < count ? cable.segments[i + 1].alpha : last;  // alpha_head
+    if (!stands) update_wrap(cable, link, arrives, leaves);
     const double radius = link.signed_radius(), angle = body_angle(world, link);
     const double met = link.material + radius * (arrives - angle);
     if (i == 0) {
       first = met;
     } else {
       segment.rest_length = met - left_before;
+      inspect(cable, segment, rounding, sum);
     }
     left_before = link.material + radius * (leaves - angle);
+    arrives = leaves;
   }
-  if (cable.closed) cable.segments[0].rest_length = first - left_before + cable.length;
+  if (cable.closed) {
+    cable.segments[0].rest_length = first - left_before + cable.length;
+    inspect(cable, cable.segments[0], rounding, sum);
+  }
+  cable.finite = sum == 0.0;
+}
+
+}  // namespace
+
+void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
+  if (cable.fills || !cable.rims.empty()) return update_laid_cable(world, cable);
+  update_rolled_cable<false>(world, cable);
 }
 
 bool update_cable(const World& world, CableState& cable, bool begins, bool known) {
+  if (known && cable.stands) {
+    update_rolled_cable<true>(world, cable);
+    return false;
+  }
   bool moved = false;
   const std::size_t first = first_segment(cable), count = cable.segments.size();
   const bool fills = cable.fills;
+  bool all_still = !fills && cable.rims.empty();
   const Link* from = &cable.links[tail_link(cable, first)];
   for (std::size_t i = first; i < count; ++i) {
     Segment& segment = cable.segments[i];
@@ -223,6 +258,7 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
+    all_still = all_still && from->still && to->still;
     const bool stands = known && from->still && to->still && !fills;
     if (!stands && (fills || link_centre(world, *from) != segment.tail_centre ||
                     link_centre(world, *to) != segment.head_centre)) {
@@ -232,6 +268,7 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
     from = to;
   }
   update_wraps_and_rest_lengths(world, cable);
+  cable.stands = all_still && !moved;
   return moved;
 }
 

@@ -62,6 +62,11 @@ inline double thickness(const CableState& cable) {
   return 2.0 * cable.half_width + layers;
 }
 
+/// Material (m) that a closed pinch may hold: round-off of the cable's length.
+inline double material_rounding(const CableState& cable) {
+  return 1e-15 * cable.length;
+}
+
 /// Whether bodies that pinch the cable sink into it.
 inline bool yields(const CableState& cable) {
   return cable.least_gap < 2.0 * cable.half_width;

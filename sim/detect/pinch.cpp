@@ -185,9 +185,9 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
 
 /// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
 /// closes by the second-order gap of a rolling step.
-void remove_open_pinches(World& world, const Parts& parts) {
+void remove_open_pinches(World& world, const Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(parts, c)) continue;
+    if (work.contacts.stands[c] || sleeps(work.parts, c)) continue;
     CableState& cable = world.cables[c];
     for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
       const Link& link = at(cable.links, i);
@@ -200,6 +200,31 @@ void remove_open_pinches(World& world, const Parts& parts) {
         leave_body(world, cable, i);
       }
     }
+  }
+}
+
+/// Whether neither body of a contact has moved.
+bool is_kept(const Parts& parts, const Contact& contact) {
+  return is_still(parts, contact.a) && (contact.b < 0 || is_still(parts, contact.b));
+}
+
+/// Lists the cables that stand, in parts all of whose contacts do: their pinches are what they were when
+/// they were configured last. What has moved elsewhere does not matter to them.
+void find_standing_cables(const World& world, const Parts& parts, ContactScratch& scratch) {
+  scratch.stands.assign(world.cables.size(), false);
+  if (parts.list.empty() || scratch.configured_changes != changes_of_cables(world)) return;
+  scratch.stirred.assign(parts.list.size(), false);
+  for (const Contact& contact : world.contacts) {
+    if (is_kept(parts, contact)) continue;
+    for (const int body : {contact.a, contact.b}) {
+      if (body < 0) continue;
+      const int part = at(parts.of_body, body);
+      if (part < 0 && contact.b >= 0) return;  // static: cables of any part may run over it
+      if (part >= 0) at(scratch.stirred, part) = true;
+    }
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    scratch.stands[c] = world.cables[c].stands && !at(scratch.stirred, parts.of_cable[c]);
   }
 }
 
@@ -244,18 +269,28 @@ bool comes_before(const Contact& p, const Contact& q) {
   return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
 }
 
-/// Between bodies that are where they were, what was a contact is one; how many there are.
-std::size_t keep(const std::vector<Contact>& old, int a, int b, int wall,
-                 std::vector<Contact>& to) {
-  Contact wanted;
-  wanted.a = a;
-  wanted.b = b;
-  wanted.wall = wall;
-  const std::size_t before = to.size();
-  auto it = std::lower_bound(old.begin(), old.end(), wanted, comes_before);
-  for (; it != old.end() && it->a == a && it->b == b && it->wall == wall; ++it) to.push_back(*it);
-  return to.size() - before;
-}
+/// Old contacts of pairs, or of bodies and walls, that are asked for in their order.
+class Kept {
+ public:
+  explicit Kept(const std::vector<Contact>& old) : next_(old.begin()), end_(old.end()) {}
+
+  /// Between bodies that are where they were, what was a contact is one; how many there are.
+  std::size_t keep(int a, int b, int wall, std::vector<Contact>& to) {
+    const auto comes_before = [a, b, wall](const Contact& c) {
+      if (c.a != a) return c.a < a;
+      return c.b != b ? c.b < b : c.wall < wall;
+    };
+    while (next_ != end_ && comes_before(*next_)) ++next_;
+    const std::size_t before = to.size();
+    for (; next_ != end_ && next_->a == a && next_->b == b && next_->wall == wall; ++next_) {
+      to.push_back(*next_);
+    }
+    return to.size() - before;
+  }
+
+ private:
+  std::vector<Contact>::const_iterator next_, end_;
+};
 
 /// A polygon may come nearer by turning as well.
 double speed_of(const World& world, int body) {
@@ -284,12 +319,18 @@ void add_contacts(const Scene& scene, World& world, int a, int b, int wall, cons
   world.contacts.push_back(contact);
 }
 
+bool is_same(const Contact& p, const Contact& q) {
+  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point;
+}
+
 /// What the last solve left of the contacts that there were.
 void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts) {
   auto previous = old.begin();
   for (Contact& contact : contacts) {
-    while (previous != old.end() && comes_before(*previous, contact)) ++previous;
-    if (previous != old.end() && !comes_before(contact, *previous)) {
+    if (previous != old.end() && !is_same(*previous, contact)) {
+      while (previous != old.end() && comes_before(*previous, contact)) ++previous;
+    }
+    if (previous != old.end() && is_same(*previous, contact)) {
       contact.touching = previous->touching;
       contact.slip = previous->slip;
       contact.normal_force = previous->normal_force;
@@ -315,9 +356,10 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   world.contacts.clear();
   std::size_t kept = 0;
   const double width = full_width(world);
+  Kept old_pairs(old), old_of_walls(old);
   for (const BodyPair& pair : broad.body_pairs) {
     if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
-      kept += keep(old, pair.a, pair.b, -1, world.contacts);
+      kept += old_pairs.keep(pair.a, pair.b, -1, world.contacts);
       continue;
     }
     const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
@@ -330,7 +372,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   for (const WallPair& pair : broad.wall_pairs) {
     if (!can_move(at(world.bodies, pair.body))) continue;
     if (is_still(work.parts, pair.body)) {
-      kept += keep(old, pair.body, -1, pair.wall, world.contacts);
+      kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
       continue;
     }
     const Vec2& x = at(world.position, pair.body);
@@ -353,12 +395,17 @@ void configure_pinches(World& world, Workspace& work) {
   scratch.pinches_kept = scratch.contacts_kept && !work.spans_moved &&
                          scratch.configured_changes == changes_of_cables(world);
   if (scratch.pinches_kept) return;
-  remove_open_pinches(world, work.parts);
+  find_standing_cables(world, work.parts, scratch);
+  const auto& stands = scratch.stands;
+  if (std::find(stands.begin(), stands.end(), false) == stands.end()) return;
+  remove_open_pinches(world, work);
 
   list_contacts_of_bodies(world, scratch);
   const Lists<int>& lists = scratch.contacts_of_body;
   std::vector<NewPinch> found;  // allocates only when a pinch is made
-  for (CableState& cable : world.cables) {
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (scratch.stands[c]) continue;
+    CableState& cable = world.cables[c];
     found.clear();
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
       const Link& link = cable.links[i];
@@ -367,8 +414,7 @@ void configure_pinches(World& world, Workspace& work) {
       const bool moved = cable.segments[i].moved || at(cable.segments, after).moved;
       for (int k = at(lists.begin, link.body); k < at(lists.begin, link.body + 1); ++k) {
         Contact& contact = at(world.contacts, at(lists.items, k));
-        const bool still = is_still(work.parts, contact.a) && is_still(work.parts, contact.b);
-        if (still && !moved) continue;
+        if (!moved && is_kept(work.parts, contact)) continue;
         const bool is_a = contact.a == link.body;
         const int other = is_a ? contact.b : contact.a;
         const Vec2 u = is_a ? contact.normal : Vec2(-contact.normal);
@@ -390,20 +436,13 @@ void configure_pinches(World& world, Workspace& work) {
   scratch.configured_changes = changes_of_cables(world);
 }
 
-void assign_contacts(World& world, const Workspace& work) {
-  if (world.configuration.method == Method::cable) return;
-  if (world.contacts.empty() && work.contacts.old_contacts.empty()) return;
-  if (work.contacts.pinches_kept) return;
-  const Parts& parts = work.parts;
-  for (const Part& part : parts.list) {
-    if (part.kept) continue;
-    for (const int i : contacts_of(parts, part)) {
-      at(world.contacts, i).pinch_points = 0;
-    }
-  }
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (at(parts.list, parts.of_cable[c]).kept) continue;
-    CableState& cable = world.cables[c];
+namespace {
+
+/// The same of one part.
+void assign_contacts(World& world, const Parts& parts, const Part& part) {
+  for (const int i : contacts_of(parts, part)) at(world.contacts, i).pinch_points = 0;
+  for (const int c : cables_of(parts, part)) {
+    CableState& cable = at(world.cables, c);
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       Link& to = cable.links[s];
       const auto tail = index(previous_link(cable, static_cast<int>(s)));
@@ -425,6 +464,26 @@ void assign_contacts(World& world, const Workspace& work) {
         segment.contact = index;
       }
     }
+  }
+}
+
+/// Whether the part's contacts and pinches are those of the step before, in the same places.
+bool pinches_stand(const Workspace& work, const Part& part) {
+  if (work.parts.divided) return false;
+  const std::span<const int> cables = cables_of(work.parts, part);
+  return std::all_of(cables.begin(), cables.end(),
+                     [&work](int c) { return at(work.contacts.stands, c) != 0; });
+}
+
+}  // namespace
+
+void assign_contacts(World& world, const Workspace& work) {
+  if (world.configuration.method == Method::cable) return;
+  if (world.contacts.empty() && work.contacts.old_contacts.empty()) return;
+  if (work.contacts.pinches_kept) return;
+  const Parts& parts = work.parts;
+  for (const Part& part : parts.list) {
+    if (!part.kept && !pinches_stand(work, part)) assign_contacts(world, parts, part);
   }
 }
 

@@ -89,7 +89,8 @@ void empty_pinch(const World& world, CableState& cable, int pinch) {
 }
 
 void empty_pinches_of(const World& world, CableState& cable) {
-  const double rounding = 1e-15 * cable.length;
+  if (!cable.overfull) return;
+  const double rounding = material_rounding(cable);
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
     const Segment& pinch = cable.segments[i];
     if (pinch.pinched && !(pinch.rest_length <= rounding)) {

@@ -34,8 +34,9 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   if (t.length == 0.0) {
     if (damped > 0.0) return;
     const double impulse = both_ways ? -known / flexibility : std::max(0.0, -known / flexibility);
-    at(s.free_velocity, bodies.a) += impulse * bodies.ra;
-    at(s.free_velocity, bodies.b) += impulse * bodies.rb;
+    const RowResponse& response = at(s.responses, number);
+    at(s.free_velocity, bodies.a) += impulse * response.ra;
+    at(s.free_velocity, bodies.b) += impulse * response.rb;
     const double damper = given.damping * t.kick;  // kg
     row.idle = damper == 0.0;
     row.on = row.clamped = !row.idle;

@@ -62,26 +62,32 @@ enum class RowKind : std::int8_t {
 struct RowBodies {
   int a = 0, b = 0;
   Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = ja;  // m/s of row a m/s, or rad/s, of body
-  Eigen::Vector3d ra = ja, rb = ja;  // mobility * J^T: m/s, or rad/s, of body a N s of impulse
+};
+
+/// What an impulse on a row does to its bodies. It has their places as well, so that whoever applies
+/// impulses reads nothing else, and whoever measures speeds none of this.
+struct RowResponse {
+  int a = 0, b = 0;
+  Eigen::Vector3d ra = Eigen::Vector3d::Zero(), rb = ra;  // mobility * J^T: m/s, or rad/s, a N s
 };
 
 /// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
 /// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind = RowKind::segment;
-  bool on = false;          // active set: bears a force
   Slip slip = Slip::stick;  // active set: friction rows
-  bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
+  bool on = false;          // active set: bears a force
+  bool clamped = false;     // active set: `presser` bears, so that the row may push as well
   bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
+  bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
+  bool returned = false;    // normal: has lost its force in this step and got it back
+  bool is_new = true;       // segment: its bodies are not yet seen
+  bool turns = false;       // segment: its levers turn with a body, moved or not
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1
-  bool clamped = false;     // active set: that force bears, so that the row may push as well
   int index = -1;           // contact; or cable
   int item = -1;            // segment, or middle link
-  bool is_new = true;       // segment: its bodies are not yet seen
-  bool turns = false;       // segment: its levers turn with a body, moved or not
-  bool returned = false;    // normal: has lost its force in this step and got it back
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
   double compliance = 0.0;  // 1/kg
@@ -155,12 +161,7 @@ struct PartSystem {
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
   std::vector<SpanMass> span_masses;           // empty until one body is too light
   std::vector<Motor> motors;                   // of its driven bodies
-  CableMasses masses;                          // of its cables; bodies are places in the part
   std::vector<Eigen::Matrix3d> carried;        // by its bodies; empty: cables without mass
-  std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
-  std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
-  std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
-  std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   bool mobility_changed = true;                // since the step before
   double extent_of_still = 0.0;                // m, coordinates of bodies that cannot move at most
@@ -169,10 +170,9 @@ struct PartSystem {
 
   // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
   std::vector<RowBodies> bodies;
+  std::vector<RowResponse> responses;
   std::vector<Row> rows;
   std::vector<Friction> frictions;
-  std::vector<int> row_of_segment;  // cable after cable; -1: none
-  std::vector<int> segment_begin;   // of the part's cables, in row_of_segment
   int first_contact_row = 0;
   std::vector<int> middles;     // rows of kind pinch_middle
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
@@ -193,6 +193,15 @@ struct PartSystem {
   std::vector<int> assembled;  // rows that the matrix is for, one an unknown; empty: no matrix
   bool factored = false;       // the factors are the matrix's, and no row repeats others
   std::vector<double> scale;   // diagonals
+
+  // Beside what every step reads.
+  CableMasses masses;                          // of its cables; bodies are places in the part
+  std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
+  std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
+  std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
+  std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
+  std::vector<int> row_of_segment;             // cable after cable; -1: none
+  std::vector<int> segment_begin;              // of the part's cables, in row_of_segment
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
 };
@@ -232,7 +241,7 @@ inline double row_speed(const PartSystem& s, std::size_t r) {
 /// Changes the velocities of the row's bodies by an impulse on it (N s).
 inline void push(PartSystem& s, std::size_t r, double impulse) {
   if (impulse == 0.0) return;
-  const RowBodies& row = s.bodies[r];
+  const RowResponse& row = s.responses[r];
   const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
   s.velocity[a] += impulse * row.ra;
   s.velocity[b] += impulse * row.rb;

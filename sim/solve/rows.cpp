@@ -20,10 +20,12 @@ namespace pinchlab {
 namespace {
 
 /// What a unit impulse on the row does to its bodies, and to its own speed.
-void weigh(const PartSystem& s, RowBodies& bodies, Row& row) {
-  bodies.ra = at(s.mobility, bodies.a) * bodies.ja;
-  bodies.rb = at(s.mobility, bodies.b) * bodies.jb;
-  row.diagonal = bodies.ja.dot(bodies.ra) + bodies.jb.dot(bodies.rb);
+void weigh(PartSystem& s, int r) {
+  const RowBodies& bodies = at(s.bodies, r);
+  RowResponse& response = at(s.responses, r);
+  response.ra = at(s.mobility, bodies.a) * bodies.ja;
+  response.rb = at(s.mobility, bodies.b) * bodies.jb;
+  at(s.rows, r).diagonal = bodies.ja.dot(response.ra) + bodies.jb.dot(response.rb);
 }
 
 /// A body's place in its part; static bodies and the world (-1) share the one after the last.
@@ -238,8 +240,9 @@ double coefficient_of(const Scene& scene, const World& world, const Contact& con
 int append_row(PartSystem& s, int a, int b) {
   s.rows.emplace_back();
   RowBodies& bodies = s.bodies.emplace_back();
-  bodies.a = a;
-  bodies.b = b;
+  RowResponse& response = s.responses.emplace_back();
+  bodies.a = response.a = a;
+  bodies.b = response.b = b;
   s.changed.push_back(true);
   return static_cast<int>(s.rows.size()) - 1;
 }
@@ -258,7 +261,7 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   at(scratch.normal_row_of_contact, number) = normal;
   s.rows.back().index = number;
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
-  weigh(s, s.bodies.back(), s.rows.back());
+  weigh(s, normal);
 
   const double mu = coefficient_of(scene, world, contact);
   if (mu == 0.0) return;
@@ -268,7 +271,7 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   row.index = number;
   row.slip = contact.slip;
   set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
-  weigh(s, s.bodies.back(), row);
+  weigh(s, tangent);
   add_friction(s, contact_friction(tangent, normal, mu));
 }
 
@@ -306,6 +309,7 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   s.rows.clear();
   s.bodies.clear();
+  s.responses.clear();
   s.changed.clear();
   s.assembled.clear();
   s.row_of_segment.clear();
@@ -351,6 +355,7 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
   s.bodies.resize(index(s.first_contact_row));
+  s.responses.resize(index(s.first_contact_row));
   s.changed.resize(index(s.first_contact_row));
 }
 
@@ -416,7 +421,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       s.segments_stand = row.is_new = false;
     }
     if (moved || s.mobility_changed) {
-      weigh(s, bodies, row);
+      weigh(s, r);
       at(s.changed, r) = true;
     }
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would

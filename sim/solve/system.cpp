@@ -230,9 +230,10 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
         entries[e / 2] += dot(response, e % 2 == 0 ? other.ja : other.jb);
       }
     };
-    add(last_a, row.ra);
-    add(last_b, row.rb);
-    if (a >= 0 && a == b) entries[u] = 2.0 * dot(row.ra, row.jb);
+    const RowResponse& response = at(s.responses, set.row_of_unknown[index(u)]);
+    add(last_a, response.ra);
+    add(last_b, response.rb);
+    if (a >= 0 && a == b) entries[u] = 2.0 * dot(response.ra, row.jb);
     if (a >= 0) append_end(ends, last_end, 2 * u, a);
     if (b >= 0) append_end(ends, last_end, 2 * u + 1, b);
   }
@@ -247,18 +248,19 @@ void reassemble_changed(PartSystem& s) {
     if (at(s.changed, r)) last_changed = u;
     if (last_changed < first) continue;
     const RowBodies& row = at(s.bodies, r);
+    const RowResponse& response = at(s.responses, r);
     double* entries = s.ldl.row(u) - first;
     for (int v = first; v < u; ++v) {
       const int other = s.assembled[index(v)];
       if (!at(s.changed, r) && !at(s.changed, other)) continue;
       const RowBodies& others = at(s.bodies, other);
       double sum = 0.0;
-      if (at(s.mobile, row.a)) sum = felt(others, row.a, row.ra, sum);
-      if (at(s.mobile, row.b)) sum = felt(others, row.b, row.rb, sum);
+      if (at(s.mobile, row.a)) sum = felt(others, row.a, response.ra, sum);
+      if (at(s.mobile, row.b)) sum = felt(others, row.b, response.rb, sum);
       entries[v] = sum;
     }
     if (at(s.changed, r)) {
-      entries[u] = row.a == row.b && at(s.mobile, row.a) ? 2.0 * dot(row.ra, row.jb) : 0.0;
+      entries[u] = row.a == row.b && at(s.mobile, row.a) ? 2.0 * dot(response.ra, row.jb) : 0.0;
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "demos/scenes/library.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
@@ -21,6 +22,29 @@ TEST(State, AClearedWorkspaceChangesNoBit) {
   for (int seed = 0; seed < scenes; ++seed) {
     const Scene scene = random_scene(seed);
     EXPECT_TRUE(is_all_state(scene, configuration_of(seed), steps)) << seed;
+  }
+}
+
+// Pinches of pulleys that only turn are kept while one disc falls on to a wall of its own, and found anew
+// once another falls on to them.
+TEST(State, PinchesAreKeptWhereNothingMoves) {
+  Scene scene = stress_scene(3, pinched_spacing);
+  Body disc;
+  disc.radius = 0.3;
+  disc.name = "far";
+  disc.position = {-100.0, 0.5};
+  scene.bodies.push_back(disc);
+  disc.name = "near";
+  disc.position = scene.bodies.front().position + Vec2(0.1, 3.0);
+  scene.bodies.push_back(disc);
+  Wall slab;
+  slab.a = {-101.0, 0.0};
+  slab.b = {-99.0, 0.0};
+  scene.walls.push_back(slab);
+  for (const bool sleep : {false, true}) {
+    Configuration configuration = Method::pinch;
+    configuration.sleep = sleep;
+    EXPECT_TRUE(is_all_state(scene, configuration, 400)) << sleep;
   }
 }
 
