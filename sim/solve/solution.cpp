@@ -14,12 +14,13 @@ namespace pinchlab {
 
 namespace {
 
-void store_segment_row(const Row& row, double kick, World& world) {
+/// What idles within `reach` (m) of bearing force, as an elastic segment does at an instant, stays what it was.
+void store_segment_row(const Row& row, double kick, double reach, World& world) {
   CableState& cable = at(world.cables, row.index);
   Segment& segment = at(cable.segments, row.item);
   if (kick > 0.0) segment.tension = row.impulse / kick;
   if (row.kind == RowKind::segment) {
-    segment.slack = !row.on;
+    if (!row.idle || row.clearance > reach) segment.slack = !row.on;
   } else {
     at(cable.links, row.item).slip = row.slip;
   }
@@ -63,7 +64,7 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   carry(world, carried_of(parts, part));
   share_among_repeated(s);
   const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_contact_row));
-  for (const Row& row : segments) store_segment_row(row, kick, world);
+  for (const Row& row : segments) store_segment_row(row, kick, s.reach, world);
   for (const Row& row : rows.subspan(segments.size())) store_contact_row(row, kick, world);
   for (const Run& run : capstan.runs) store_run(s, run, world);
   for (const Friction& friction : s.frictions) {
