@@ -16,6 +16,12 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
+/// Angle (rad) of the direction e, counter-clockwise from the y axis: of the mirror image in x = 0 it is
+/// the negative to the last bit, as one from the x axis would not be.
+inline double heading(const Vec2& e) {
+  return std::atan2(-e.x(), e.y());
+}
+
 /// `angle` plus the whole turns that bring it nearest to `reference`, rad.
 inline double unwrapped(double angle, double reference) {
   constexpr double turn = 2.0 * std::numbers::pi;

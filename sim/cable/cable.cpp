@@ -110,7 +110,7 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
   const double angle = body_angle(world, drum);
   for (int round = 0; round < most_rounds; ++round) {
     const Vec2 e = common_tangent(a, from.signed_radius(), b, to.signed_radius()).direction;
-    const double alpha = unwrapped(std::atan2(e.y(), e.x()), span.alpha);
+    const double alpha = unwrapped(heading(e), span.alpha);
     const double before = drum.radius;
     drum.radius = drum.layers.radius(std::max(0.0, turned_until(drum, alpha, angle)));
     if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;
@@ -156,7 +156,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   segment.direction = t.direction;
   segment.length = t.length;
   segment.pinched = t.pinched;
-  segment.alpha = unwrapped(std::atan2(t.direction.y(), t.direction.x()), segment.alpha);
+  segment.alpha = unwrapped(heading(t.direction), segment.alpha);
   segment.tail = tangent_point(a, from.signed_radius(), t.direction);
   segment.head = tangent_point(b, to.signed_radius(), t.direction);
 }
