@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/experiments/population_scenes.h"
+#include "sim/mirror.h"
 
 namespace pinchlab::experiments {
 namespace {
