@@ -355,7 +355,10 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
                  int orientation) {
   // A link put into the segment that closes a loop comes last, so that indices stay where they are.
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
-  const Segment old = cable.segments[segment];
+  Segment& old = cable.segments[segment];
+  if (cable.links.size() == 2 && !cable.closed) {  // no body has counted its turns so far
+    old.alpha = first_heading(old.direction, orientation);
+  }
   const std::size_t from = tail_link(cable, segment);
 
   const Link link =

@@ -181,14 +181,13 @@ void lay_tangents(const Scene& scene, const World& world, Course& course) {
   }
 }
 
-/// Straight down is half a turn from the y axis either way, and in a mirror the other: as the first body
-/// is wound round.
+/// From which those of the other spans follow.
 void choose_first_heading(CableState& cable) {
-  Segment& segment = cable.segments[first_segment(cable)];
-  if (segment.direction.x() != 0.0) return;
   const auto rolls = std::find_if(cable.links.begin(), cable.links.end(),
                                   [](const Link& link) { return link.orientation != 0; });
-  if (rolls != cable.links.end()) segment.alpha = std::copysign(segment.alpha, rolls->orientation);
+  if (rolls == cable.links.end()) return;
+  Segment& segment = cable.segments[first_segment(cable)];
+  segment.alpha = first_heading(segment.direction, rolls->orientation);
 }
 
 /// Wrap angles from the turning of the tangents, in [0, 2 pi) plus the turns asked for.

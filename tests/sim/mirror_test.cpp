@@ -17,6 +17,13 @@ Vec2 mirror(const Vec2& v) {
   return {-v.x(), v.y()};
 }
 
+/// The angle of a cable that goes round nothing counts turns for nobody.
+void forget_idle_angles(World& world) {
+  for (CableState& cable : world.cables) {
+    if (cable.links.size() == 2 && !cable.closed) cable.segments[1].alpha = 0.0;
+  }
+}
+
 void mirror(CableState& cable) {
   cable.turning = -cable.turning;
   for (Link& link : cable.links) {
@@ -39,14 +46,16 @@ void mirror(Contact& contact) {
   contact.tangent_force = -contact.tangent_force;
 }
 
-World mirrored(World world) {
+bool is_image(World world, World other) {
   for (Vec2& x : world.position) x = mirror(x);
   for (Vec2& v : world.velocity) v = mirror(v);
   for (double& angle : world.angle) angle = -angle;
   for (double& omega : world.angular_velocity) omega = -omega;
   for (CableState& cable : world.cables) mirror(cable);
   for (Contact& contact : world.contacts) mirror(contact);
-  return world;
+  forget_idle_angles(world);
+  forget_idle_angles(other);
+  return same_state(world, other);
 }
 
 /// The first of so many steps after which scene and image are no images of each other (0: before any), or
@@ -55,10 +64,10 @@ int first_parted(const Scene& scene, const Configuration& configuration, int ste
   const Scene image = mirrored(scene);
   World world = make_world(scene, configuration), other = make_world(image, configuration);
   Workspace work, other_work;
-  if (!same_state(mirrored(world), other)) return 0;
+  if (!is_image(world, other)) return 0;
   for (int i = 1; i <= steps; ++i) {
     const StepStatus status = step(scene, world, work);
-    if (step(image, other, other_work) != status || !same_state(mirrored(world), other)) return i;
+    if (step(image, other, other_work) != status || !is_image(world, other)) return i;
     if (status != StepStatus::ok) break;
   }
   return -1;
@@ -103,8 +112,10 @@ TEST(MirrorMethods, ImageMovesAsTheImageByEveryMethod) {
 }
 
 TEST(MirrorDemonstrations, ImageMovesAsTheImage) {
-  for (const char* name : {"01-roll-over", "02-stack", "03-drop", "04-two-blocking", "05-notch",
-                           "06-windlass", "07-driven-roller", "08-driven-roller-weights"}) {
+  for (const char* name :
+       {"01-roll-over", "02-stack", "03-drop", "04-two-blocking", "05-notch", "06-windlass",
+        "07-driven-roller", "08-driven-roller-weights", "more/10-drum", "more/11-chain",
+        "more/12-linkage", "more/13-car", "more/14-heavy-rope"}) {
     const Scene scene =
         read_scene_file(PINCHLAB_SOURCE_DIR "/demos/" + std::string(name) + ".json").scene;
     EXPECT_EQ(first_parted(scene, Method::pinch, scene.frame_count * scene.steps_per_frame), -1)
