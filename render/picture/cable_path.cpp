@@ -15,11 +15,6 @@ namespace {
 
 constexpr double full_turn = 2.0 * std::numbers::pi;
 
-/// Of a segment's alpha, which is measured from the y axis, the angle from the x axis (rad).
-double from_x_axis(double alpha) {
-  return alpha + 0.5 * std::numbers::pi;
-}
-
 Vec2 unit_vector(double angle) {
   return {std::cos(angle), std::sin(angle)};
 }
