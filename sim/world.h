@@ -78,12 +78,12 @@ struct Rim {
 /// The free span that arrives at the link of the same index from the link before it.
 struct alignas(64) Segment {
   // What every step reads, in one line of the cache.
-  double alpha = 0.0;               // rad, angle of `direction`, continuous in time
+  double alpha = 0.0;               // rad, heading(direction), continuous in time
   double length = 0.0;              // m, distance along the tangent; 0 when pinched
   double rest_length = 0.0;         // m of material; may be negative by round-off when pinched
   double tension = 0.0;             // N, of the last step; in a non-transitional pinch the change
                                     // of tension that the middle body takes up
-  Vec2 direction = Vec2(1.0, 0.0);  // unit, from tail to head
+  Vec2 direction = Vec2(0.0, 1.0);  // unit, from tail to head
   bool moved = true;                // in the last step, or made in it; by update_tangent
   bool slack = false;               // by the active set
   bool pinched = false;             // between two touching bodies: zero length, never hit-tested

@@ -12,6 +12,7 @@
 
 #include "analysis/experiments/population_scenes.h"
 #include "sim/cable/cable.h"
+#include "sim/mirror.h"
 #include "sim/step.h"
 #include "sim/tangent.h"
 

@@ -137,23 +137,4 @@ Scene dropped_discs(std::uint64_t seed) {
   throw std::runtime_error(fmt::format("no scene for seed {}", seed));
 }
 
-Scene mirrored(Scene scene) {
-  for (Body& b : scene.bodies) {
-    b.position.x() = -b.position.x();
-    b.velocity.x() = -b.velocity.x();
-    b.angular_velocity = -b.angular_velocity;
-    if (b.driven_angular_velocity) *b.driven_angular_velocity = -*b.driven_angular_velocity;
-    b.torque = -b.torque;
-  }
-  for (Cable& c : scene.cables) {
-    for (Attachment* a : {&c.start, &c.end}) a->point.x() = -a->point.x();
-    for (Wrap& wrap : c.wraps) wrap.orientation = -wrap.orientation;
-  }
-  for (Wall& wall : scene.walls) {
-    wall.a.x() = -wall.a.x();
-    wall.b.x() = -wall.b.x();
-  }
-  return scene;
-}
-
 }  // namespace pinchlab::experiments

@@ -13,7 +13,4 @@ namespace pinchlab::experiments {
 /// or not, restitution from 0 to 1, drag and drive in some. The same for the same seed everywhere.
 Scene dropped_discs(std::uint64_t seed);
 
-/// The scene's mirror image in x = 0.
-Scene mirrored(Scene scene);
-
 }  // namespace pinchlab::experiments

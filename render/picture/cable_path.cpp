@@ -107,7 +107,7 @@ class PathBuilder {
     length += next < by ? to_tail - to_head : to_head - to_tail;
     passed_[by] = true;
     spans_[pinch].drawn = false;
-    SpanEnd end = span_end(next, cable_.segments[pinch].alpha);
+    SpanEnd end = span_end(next, from_x_axis(cable_.segments[pinch].alpha));
     end.most_unwrap = 0.0;  // it is pressed on there
     return end;
   }
@@ -118,7 +118,8 @@ class PathBuilder {
     Span& span = spans_[i];
     const Segment& segment = cable_.segments[i];
     double length = segment.length + span.slack;
-    SpanEnd tail = span_end(span.tail, segment.alpha), head = span_end(span.head, segment.alpha);
+    const double alpha = from_x_axis(segment.alpha);
+    SpanEnd tail = span_end(span.tail, alpha), head = span_end(span.head, alpha);
     const HangingSpan straight = hang(tail, head, length, up_);
     const std::size_t by_tail = span.tail, by_head = span.head;
     const bool pass_tail = straight.tail_bare && i > 0 && by_tail > 0 && joins_wraps(by_tail);
@@ -191,7 +192,7 @@ class PathBuilder {
     passed_.assign(count, false);
     for (std::size_t i = 0; i < count; ++i) {
       const double angle = body_angle(world_, cable_.links[i]);
-      bounds_[i] = {cable_.segments[i].alpha, alpha_head(cable_, i),
+      bounds_[i] = {from_x_axis(cable_.segments[i].alpha), from_x_axis(alpha_head(cable_, i)),
                     tail_material(cable_, i, angle), head_material(cable_, i, angle)};
     }
     const std::size_t first = first_segment(cable_);

@@ -2,12 +2,18 @@
 #pragma once
 // A cable's centre line as points with material coordinates.
 
+#include <numbers>
 #include <vector>
 
 #include "render/picture/picture.h"
 #include "sim/world.h"
 
 namespace pinchlab {
+
+/// The angle (rad) from the x axis of a direction that the simulator measures from the y axis.
+constexpr double from_x_axis(double alpha) {
+  return alpha + 0.5 * std::numbers::pi;
+}
 
 /// Distance of a cable's marks, m of material: eight half widths; about sixteen, and a whole number
 /// of them, in a closed cable.

@@ -214,7 +214,7 @@ class Composer {
     const auto [fill, edge] = paint_of(body);
     const Layers& layers = link.layers;
     const double rim = rim_band(body), inside = scene_.bodies[body].radius - 0.75 * rim;
-    const double start = world_.angle[body] + link.orientation * layers.begins;
+    const double start = from_x_axis(world_.angle[body] + link.orientation * layers.begins);
     const auto place = [&](double turned, double radius) {
       return tangent_point(world_.position[body], link.orientation * radius,
                            unit_vector(start + layers.way * link.orientation * turned));

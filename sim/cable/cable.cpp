@@ -111,7 +111,7 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
   const double angle = body_angle(world, drum);
   for (int round = 0; round < most_rounds; ++round) {
     const Vec2 e = common_tangent(a, from.signed_radius(), b, to.signed_radius()).direction;
-    const double alpha = unwrapped(std::atan2(e.y(), e.x()), span.alpha);
+    const double alpha = unwrapped(heading(e), span.alpha);
     const double before = drum.radius;
     drum.radius = drum.layers.radius(std::max(0.0, turned_until(drum, alpha, angle)));
     if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;
@@ -158,7 +158,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   segment.direction = t.direction;
   segment.length = t.length;
   segment.pinched = t.pinched;
-  segment.alpha = unwrapped(std::atan2(t.direction.y(), t.direction.x()), segment.alpha);
+  segment.alpha = unwrapped(heading(t.direction), segment.alpha);
   segment.tail = tangent_point(a, from.signed_radius(), t.direction);
   segment.head = tangent_point(b, to.signed_radius(), t.direction);
 }
@@ -396,7 +396,10 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
                  int orientation) {
   // A link put into the segment that closes a loop comes last, so that indices stay where they are.
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
-  const Segment old = cable.segments[segment];
+  Segment& old = cable.segments[segment];
+  if (cable.links.size() == 2 && !cable.closed) {  // no body has counted its turns so far
+    old.alpha = first_heading(old.direction, orientation);
+  }
   const std::size_t from = tail_link(cable, segment);
 
   const Link link =

@@ -181,10 +181,20 @@ void lay_tangents(const Scene& scene, const World& world, Course& course) {
   }
 }
 
+/// From which those of the other spans follow.
+void choose_first_heading(CableState& cable) {
+  const auto rolls = std::find_if(cable.links.begin(), cable.links.end(),
+                                  [](const Link& link) { return link.orientation != 0; });
+  if (rolls == cable.links.end()) return;
+  Segment& segment = cable.segments[first_segment(cable)];
+  segment.alpha = first_heading(segment.direction, rolls->orientation);
+}
+
 /// Wrap angles from the turning of the tangents, in [0, 2 pi) plus the turns asked for.
 void lay_wraps(const Scene& scene, Course& course) {
   constexpr double suspicious = 330.0 / 360.0 * turn;
   CableState& cable = course.cable;
+  choose_first_heading(cable);
   const std::size_t count = cable.links.size();
   double of_stop = 0.0;  // rad, of all links of a wrap so far
   for (std::size_t i = 0; i < count; ++i) {
@@ -210,7 +220,7 @@ void lay_wraps(const Scene& scene, Course& course) {
     if (cable.closed && leaving == 0) {
       cable.turning = turn * std::round((next - cable.segments[0].alpha) / turn);
     } else {
-      cable.segments[leaving].alpha = next;
+      cable.segments[leaving].alpha = unwrapped(cable.segments[leaving].alpha, next);
     }
   }
 }

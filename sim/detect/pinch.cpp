@@ -254,10 +254,9 @@ void list_contacts_of_bodies(const World& world, ContactScratch& scratch) {
 double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
   const Link& link = cable.links[i];
   const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
-  double arc = link.orientation * (std::atan2(e.y(), e.x()) - cable.segments[i].alpha);
-  constexpr double turn = 2.0 * std::numbers::pi;
-  arc -= turn * std::floor((arc + arc_tolerance) / turn);
-  return arc;
+  const double arrives = cable.segments[i].alpha;
+  const double arc = link.orientation * (unwrapped(heading(e), arrives) - arrives);
+  return arc < -arc_tolerance ? arc + 2.0 * std::numbers::pi : arc;
 }
 
 namespace {

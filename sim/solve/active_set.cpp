@@ -94,7 +94,8 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
   if (!row.on || friction.frozen || friction.bound == infinity) return;
   const double bound = friction.bound * at(s.rows, friction.normal).impulse;
   if (row.slip == Slip::stick) {
-    if (std::abs(row.impulse) <= bound + tolerance.impulse) return;
+    // Where the contact would pull, friction that bears nothing has no direction to slide in.
+    if (std::abs(row.impulse) <= bound + tolerance.impulse || row.impulse == 0.0) return;
     const Slip slip = direction_of_sliding(friction, row, bound, set.solves);
     set.flips.push_back({number, false, true, slip});
   } else if (sliding * static_cast<int>(row.slip) < -tolerance.speed && bound > tolerance.impulse) {

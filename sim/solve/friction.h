@@ -74,7 +74,8 @@ inline double most_friction(double bound, double force) {
 
 /// The state of a friction row that bears impulse p of at most `most`: friction opposes sliding.
 inline Slip slip_of(double p, double most) {
-  return std::abs(p) < most ? Slip::stick : p > 0.0 ? Slip::backward : Slip::forward;
+  if (std::abs(p) < most || p == 0.0) return Slip::stick;
+  return p > 0.0 ? Slip::backward : Slip::forward;
 }
 
 /// Where several turns of cable without slip lie under one pinch, their middle rows say the same.

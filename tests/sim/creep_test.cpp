@@ -12,7 +12,7 @@
 #include "sim/cable/cable.h"
 #include "sim/diagnostics.h"
 #include "sim/make_world.h"
-#include "tests/sim/random.h"
+#include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
 
@@ -95,32 +95,6 @@ TEST(Creep, IsOfSecondOrder) {
     const double before = (ends[i - 1] - ends[i - 2]).norm(), now = (ends[i] - ends[i - 1]).norm();
     EXPECT_GT(std::log2(before / now), 1.8) << i;
   }
-}
-
-/// Elastic cables over pulleys that they do not slip on, with loads, and discs that fall on them.
-Scene random_elastic(unsigned seed) {
-  Random random(seed);
-  Scene scene;
-  const int pulleys = 1 + 2 * random.below(2);
-  std::vector<Wrap> wraps;
-  for (int i = 0; i < pulleys; ++i) {
-    scene.bodies.push_back(body(fmt::format("pulley {}", i), BodyKind::fixed_axle, 1.2 * i,
-                                random.uniform(-0.1, 0.1), random.uniform(0.2, 0.4),
-                                std::pow(10.0, random.uniform(-0.5, 0.5))));
-    wraps.push_back({i, i % 2 == 0 ? -1 : 1, 0});
-  }
-  for (const double x : {-0.5, 1.2 * (pulleys - 1) + 0.5}) {
-    scene.bodies.push_back(body(x < 0 ? "left" : "right", BodyKind::free, x, -2.0, 0.1,
-                                std::pow(10.0, random.uniform(-0.3, 0.7))));
-  }
-  scene.cables.push_back(cable(on(pulleys), wraps, on(pulleys + 1), 0.03));
-  scene.cables[0].axial_stiffness = std::pow(10.0, random.uniform(2.5, 4.0));
-  scene.cables[0].creep = true;
-  if (random.below(2) == 0) {
-    scene.bodies.push_back(body("falling", BodyKind::free, 0.6, 1.5, 0.15, 0.5));
-    scene.bodies.back().angular_velocity = random.uniform(-3.0, 3.0);
-  }
-  return scene;
 }
 
 // Energy may rise by leapfrog's own swing alone (the stiffest rope with the lightest pulley: omega h = 0.6 at 4

@@ -118,34 +118,6 @@ TEST(Invariants, ConservesMomentumWithoutForces) {
   EXPECT_NEAR(angular_after, angular, 1e-11);
 }
 
-/// Mirrors a scene in x = 0.
-Scene mirrored(Scene scene) {
-  for (Body& b : scene.bodies) {
-    b.position.x() = -b.position.x();
-    b.velocity.x() = -b.velocity.x();
-    b.angular_velocity = -b.angular_velocity;
-  }
-  for (Cable& c : scene.cables) {
-    for (Attachment* a : {&c.start, &c.end}) a->point.x() = -a->point.x();
-    for (Wrap& wrap : c.wraps) wrap.orientation = -wrap.orientation;
-  }
-  return scene;
-}
-
-TEST(Invariants, MirrorImageMovesAsTheMirrorImage) {
-  const Scene scene = busy_scene(0.3), image = mirrored(scene);
-  World world = make_world(scene, measured()), other = make_world(image, measured());
-  for (int i = 0; i < 120; ++i) {
-    run(scene, world, 1);
-    run(image, other, 1);
-  }
-  for (std::size_t b = 0; b < world.position.size(); ++b) {
-    EXPECT_NEAR(world.position[b].x(), -other.position[b].x(), 1e-9);
-    EXPECT_NEAR(world.position[b].y(), other.position[b].y(), 1e-9);
-    EXPECT_NEAR(world.angle[b], -other.angle[b], 1e-9);
-  }
-}
-
 TEST(Invariants, SameBitsEveryRun) {
   const Scene scene = busy_scene(0.3);
   World first = make_world(scene, measured()), second = make_world(scene, measured());

@@ -12,6 +12,7 @@
 #include "base/at.h"
 #include "sim/diagnostics.h"
 #include "sim/scene_error.h"
+#include "tests/sim/random_scene.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -287,43 +288,6 @@ TEST(Joints, AJammedMotorStalls) {
   run(scene, world, 400);
   EXPECT_LT(world.position[1].x(), 1.31 + 1e-6);
   EXPECT_GT(world.position[1].x(), 0.99);
-}
-
-/// A linkage: discs of all weights hinged, barred and sprung to one another and to the world, at random.
-Scene linkage(unsigned seed) {
-  std::uint64_t state = 0x9e3779b97f4a7c15ULL * (seed + 1);
-  const auto random = [&state] {  // 0 to 1, xorshift64*
-    state ^= state >> 12;
-    state ^= state << 25;
-    state ^= state >> 27;
-    return static_cast<double>((state * 0x2545f4914f6cdd1dULL) >> 11) * 0x1p-53;
-  };
-  Scene scene;
-  const int count = 2 + static_cast<int>(4.0 * random());
-  for (int i = 0; i < count; ++i) {
-    const double radius = 0.1 + 0.15 * random();
-    scene.bodies.push_back(body(fmt::format("{}", i).c_str(), BodyKind::free, 0.7 * i,
-                                0.3 * random(), radius, std::pow(10.0, -1.0 + 2.0 * random())));
-    at(scene.bodies, i).velocity = {2.0 * random() - 1.0, 2.0 * random() - 1.0};
-    at(scene.bodies, i).restitution = random() < 0.5 ? 0.0 : random();
-    const int other = i - 1;
-    const Attachment here{i, {radius * (random() - 0.5), radius * (random() - 0.5)}};
-    const Attachment there =
-        other < 0 ? Attachment{-1, {-0.5, 0.5}}
-                  : Attachment{other, {0.1 * (random() - 0.5), 0.1 * (random() - 0.5)}};
-    const std::string name = fmt::format("joint {}", i);
-    const double kind = random();
-    if (kind < 0.4) {
-      add_bar(scene, name, here, there);
-    } else if (kind < 0.8) {
-      const Vec2 pin =
-          other < 0 ? Vec2(-0.2, 0.4) : Vec2(at(scene.bodies, other).position + Vec2(0.35, 0.1));
-      add_hinge(scene, name, i, other, pin);
-    } else {
-      add_spring(scene, name, here, there, 20.0 + 200.0 * random(), 0.5, 5.0 * random());
-    }
-  }
-  return scene;
 }
 
 // What swings on joints alone loses energy where springs are damped and bodies meet, and gains none: by

@@ -14,7 +14,7 @@
 #include "sim/outline.h"
 #include "sim/promises.h"
 #include "sim/scene_error.h"
-#include "tests/sim/random.h"
+#include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
 
@@ -272,36 +272,6 @@ TEST(Mass, MomentumIsKeptWhoeverJoinsTheCable) {
       error = most;
     }
   }
-}
-
-/// Pulleys in a row, over and under which one heavy rope runs with weights at its ends, and discs that fall
-/// on it.
-Scene falling_on_rope(unsigned seed) {
-  Random random(seed);
-  Scene scene;
-  const int pulleys = 1 + 2 * random.below(2);
-  const double half_width = random.uniform(0.005, 0.02);
-  for (int i = 0; i < 2; ++i) {
-    const double x = i == 0 ? -0.3 : 1.2 * (pulleys - 1) + 0.3;
-    scene.bodies.push_back(body("weight" + std::to_string(i), BodyKind::free, x,
-                                random.uniform(-2.0, -1.0), 0.08, random.uniform(0.5, 3.0)));
-  }
-  for (int i = 0; i < pulleys; ++i) {
-    scene.bodies.push_back(body("pulley" + std::to_string(i), BodyKind::fixed_axle, 1.2 * i,
-                                random.uniform(-0.1, 0.1), random.uniform(0.1, 0.25),
-                                random.uniform(0.1, 1.0)));
-  }
-  for (int i = 0; i < 1 + random.below(3); ++i) {
-    scene.bodies.push_back(body("disc" + std::to_string(i), BodyKind::free,
-                                0.8 * i + random.uniform(0.2, 0.5), random.uniform(0.8, 1.5),
-                                random.uniform(0.08, 0.2), random.uniform(0.05, 2.0)));
-    scene.bodies.back().angular_velocity = random.uniform(-5.0, 5.0);
-    scene.bodies.back().restitution = random.below(3) == 0 ? random.uniform(0.0, 0.8) : 0.0;
-  }
-  scene.cables.push_back(cable(on(0), build::over_and_under(2, pulleys), on(1), half_width));
-  scene.cables[0].mass_per_metre = std::pow(10.0, random.uniform(-2.0, 0.7));
-  if (random.below(3) == 0) scene.cables[0].axial_stiffness = random.uniform(2e3, 5e4);
-  return scene;
 }
 
 // What leapfrog swings by falls with the square of the step. Elastic cables over rims have an error of their own

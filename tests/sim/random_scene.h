@@ -2,7 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <string>
 
+#include "base/at.h"
+#include "demos/scenes/shape_scenes.h"
+#include "sim/joints.h"
 #include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
@@ -34,6 +39,99 @@ inline Scene random_scene(int seed) {
   scene.cables.push_back(cable(at(-1.5, -1.5), wraps, at(1.3 * (pulleys - 1) + 1.5, -1.5)));
   scene.cables[0].slack = uniform(0.0, 0.5);
   scene.walls.push_back({Vec2(-10.0, -2.5), Vec2(20.0, -2.5), 0.5, 0.0});
+  return scene;
+}
+
+/// Elastic cables over pulleys that they do not slip on, with loads, and discs that fall on them.
+inline Scene random_elastic(unsigned seed) {
+  Random random(seed);
+  Scene scene;
+  const int pulleys = 1 + 2 * random.below(2);
+  std::vector<Wrap> wraps;
+  for (int i = 0; i < pulleys; ++i) {
+    scene.bodies.push_back(body(fmt::format("pulley {}", i), BodyKind::fixed_axle, 1.2 * i,
+                                random.uniform(-0.1, 0.1), random.uniform(0.2, 0.4),
+                                std::pow(10.0, random.uniform(-0.5, 0.5))));
+    wraps.push_back({i, i % 2 == 0 ? -1 : 1, 0});
+  }
+  for (const double x : {-0.5, 1.2 * (pulleys - 1) + 0.5}) {
+    scene.bodies.push_back(body(x < 0 ? "left" : "right", BodyKind::free, x, -2.0, 0.1,
+                                std::pow(10.0, random.uniform(-0.3, 0.7))));
+  }
+  scene.cables.push_back(cable(on(pulleys), wraps, on(pulleys + 1), 0.03));
+  scene.cables[0].axial_stiffness = std::pow(10.0, random.uniform(2.5, 4.0));
+  scene.cables[0].creep = true;
+  if (random.below(2) == 0) {
+    scene.bodies.push_back(body("falling", BodyKind::free, 0.6, 1.5, 0.15, 0.5));
+    scene.bodies.back().angular_velocity = random.uniform(-3.0, 3.0);
+  }
+  return scene;
+}
+
+/// A linkage: discs of all weights hinged, barred and sprung to one another and to the world, at random.
+inline Scene linkage(unsigned seed) {
+  std::uint64_t state = 0x9e3779b97f4a7c15ULL * (seed + 1);
+  const auto random = [&state] {  // 0 to 1, xorshift64*
+    state ^= state >> 12;
+    state ^= state << 25;
+    state ^= state >> 27;
+    return static_cast<double>((state * 0x2545f4914f6cdd1dULL) >> 11) * 0x1p-53;
+  };
+  Scene scene;
+  const int count = 2 + static_cast<int>(4.0 * random());
+  for (int i = 0; i < count; ++i) {
+    const double radius = 0.1 + 0.15 * random();
+    scene.bodies.push_back(body(fmt::format("{}", i).c_str(), BodyKind::free, 0.7 * i,
+                                0.3 * random(), radius, std::pow(10.0, -1.0 + 2.0 * random())));
+    at(scene.bodies, i).velocity = {2.0 * random() - 1.0, 2.0 * random() - 1.0};
+    at(scene.bodies, i).restitution = random() < 0.5 ? 0.0 : random();
+    const int other = i - 1;
+    const Attachment here{i, {radius * (random() - 0.5), radius * (random() - 0.5)}};
+    const Attachment there =
+        other < 0 ? Attachment{-1, {-0.5, 0.5}}
+                  : Attachment{other, {0.1 * (random() - 0.5), 0.1 * (random() - 0.5)}};
+    const std::string name = fmt::format("joint {}", i);
+    const double kind = random();
+    if (kind < 0.4) {
+      add_bar(scene, name, here, there);
+    } else if (kind < 0.8) {
+      const Vec2 pin =
+          other < 0 ? Vec2(-0.2, 0.4) : Vec2(at(scene.bodies, other).position + Vec2(0.35, 0.1));
+      add_hinge(scene, name, i, other, pin);
+    } else {
+      add_spring(scene, name, here, there, 20.0 + 200.0 * random(), 0.5, 5.0 * random());
+    }
+  }
+  return scene;
+}
+
+/// Pulleys in a row, over and under which one heavy rope runs with weights at its ends, and discs that fall
+/// on it.
+inline Scene falling_on_rope(unsigned seed) {
+  Random random(seed);
+  Scene scene;
+  const int pulleys = 1 + 2 * random.below(2);
+  const double half_width = random.uniform(0.005, 0.02);
+  for (int i = 0; i < 2; ++i) {
+    const double x = i == 0 ? -0.3 : 1.2 * (pulleys - 1) + 0.3;
+    scene.bodies.push_back(body("weight" + std::to_string(i), BodyKind::free, x,
+                                random.uniform(-2.0, -1.0), 0.08, random.uniform(0.5, 3.0)));
+  }
+  for (int i = 0; i < pulleys; ++i) {
+    scene.bodies.push_back(body("pulley" + std::to_string(i), BodyKind::fixed_axle, 1.2 * i,
+                                random.uniform(-0.1, 0.1), random.uniform(0.1, 0.25),
+                                random.uniform(0.1, 1.0)));
+  }
+  for (int i = 0; i < 1 + random.below(3); ++i) {
+    scene.bodies.push_back(body("disc" + std::to_string(i), BodyKind::free,
+                                0.8 * i + random.uniform(0.2, 0.5), random.uniform(0.8, 1.5),
+                                random.uniform(0.08, 0.2), random.uniform(0.05, 2.0)));
+    scene.bodies.back().angular_velocity = random.uniform(-5.0, 5.0);
+    scene.bodies.back().restitution = random.below(3) == 0 ? random.uniform(0.0, 0.8) : 0.0;
+  }
+  scene.cables.push_back(cable(on(0), build::over_and_under(2, pulleys), on(1), half_width));
+  scene.cables[0].mass_per_metre = std::pow(10.0, random.uniform(-2.0, 0.7));
+  if (random.below(3) == 0) scene.cables[0].axial_stiffness = random.uniform(2e3, 5e4);
   return scene;
 }
 

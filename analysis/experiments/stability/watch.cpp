@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sim/cable/cable.h"
+#include "sim/tangent.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments::stability {
@@ -27,7 +28,7 @@ bool covers(const CableState& cable, std::size_t i, const Vec2& u) {
   constexpr double touch = 1e-6;  // rad: wraps may meet exactly where a body presses
   const Link& link = cable.links[i];
   const Vec2 along = link.orientation * Vec2(-u.y(), u.x());
-  double arc = link.orientation * (std::atan2(along.y(), along.x()) - cable.segments[i].alpha);
+  double arc = link.orientation * (heading(along) - cable.segments[i].alpha);
   arc -= turn * std::floor(arc / turn);
   return arc <= link.wrap + touch || arc >= turn - touch;
 }

@@ -10,6 +10,7 @@
 #include "analysis/experiments/population.h"
 #include "analysis/experiments/population_scenes.h"
 #include "demos/scenes/build.h"
+#include "sim/mirror.h"
 
 namespace pinchlab::experiments {
 namespace {
