@@ -261,7 +261,7 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, do
     }
   }
   // The linear solution is sound at least; what it misses is repaired.
-  if (!met && (work.settled || length == whole || unsound())) again(0);
+  if (!met && (work.settled || length == whole)) again(0);
   return length;
 }
 

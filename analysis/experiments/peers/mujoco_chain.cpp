@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "analysis/experiments/peers/mujoco_run.h"
 #include "base/at.h"
 
 namespace pinchlab::experiments {

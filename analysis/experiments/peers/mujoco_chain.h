@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "analysis/experiments/peers/mujoco_tendon.h"
+#include "analysis/experiments/peers/mujoco_run.h"
 
 namespace pinchlab::experiments {
 

@@ -9,9 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "analysis/experiments/peers/mujoco_tendon.h"
+#include "analysis/experiments/work_precision.h"
 
 namespace pinchlab::experiments {
+
+/// What MuJoCo can be set to.
+struct MujocoSettings {
+  std::string integrator = "Euler";  ///< Euler or RK4
+  bool leapfrog =
+      false;  ///< starts with velocities half a step back, which makes Euler second order
+  int steps_per_frame = 1;
+  double time_constant_steps = 2.0;  ///< of the constraint, in steps; MuJoCo allows no less than 2
+};
 
 using MujocoModel = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 using MujocoData = std::unique_ptr<mjData, decltype(&mj_deleteData)>;

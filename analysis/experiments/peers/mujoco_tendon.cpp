@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <cmath>
 
-#include "analysis/experiments/peers/mujoco_run.h"
 #include "sim/cable/cable.h"
 #include "sim/make_world.h"
 

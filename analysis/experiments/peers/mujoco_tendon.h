@@ -4,18 +4,9 @@
 
 #include <string>
 
-#include "analysis/experiments/work_precision.h"
+#include "analysis/experiments/peers/mujoco_run.h"
 
 namespace pinchlab::experiments {
-
-/// What a spatial tendon can be set to.
-struct MujocoSettings {
-  std::string integrator = "Euler";  ///< Euler or RK4
-  bool leapfrog =
-      false;  ///< starts with velocities half a step back, which makes Euler second order
-  int steps_per_frame = 1;
-  double time_constant_steps = 2.0;  ///< of the constraint, in steps; MuJoCo allows no less than 2
-};
 
 /// Why a tendon cannot take part; empty where it can.
 std::string mujoco_cannot(const Problem& problem);
