@@ -76,8 +76,8 @@ struct Rim {
 };
 
 /// The free span that arrives at the link of the same index from the link before it.
-struct alignas(64) Segment {
-  // What every step reads, in one line of the cache.
+struct Segment {
+  // What every step reads.
   double alpha = 0.0;               // rad, heading(direction), continuous in time
   double length = 0.0;              // m, distance along the tangent; 0 when pinched
   double rest_length = 0.0;         // m of material; may be negative by round-off when pinched
