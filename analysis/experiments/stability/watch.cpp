@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "sim/cable/cable.h"
-#include "sim/tangent.h"
 #include "sim/step.h"
+#include "sim/tangent.h"
 
 namespace pinchlab::experiments::stability {
 
