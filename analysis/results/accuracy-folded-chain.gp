@@ -26,9 +26,13 @@ set mytics 1
 set title 'A folded chain of 20 pieces is let go' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
-set yrange [1e-06:10]
+set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
 plot 2.5809429460794796e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
+  'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with points ls 5 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with linespoints ls 5 title 'MuJoCo, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \
@@ -64,9 +68,13 @@ set mytics 1
 set title 'A folded chain of 20 pieces is let go' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
-set yrange [1e-06:10]
+set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
 plot 2.5809429460794796e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
+  'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with points ls 5 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with linespoints ls 5 title 'MuJoCo, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \

@@ -26,9 +26,11 @@ set mytics 1
 set title 'Atwood''s machine with a heavy rope' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the way of the weights'
-set yrange [1e-10:0.1]
+set yrange [1e-10:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
+plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
+  'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact direct' ? column('error') : NaN))) with linespoints ls 7 dt 1 ps 0.7 title 'pinch_no_contact direct', \
@@ -63,9 +65,11 @@ set mytics 1
 set title 'Atwood''s machine with a heavy rope' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the way of the weights'
-set yrange [1e-10:0.1]
+set yrange [1e-10:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
+plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
+  'accuracy-fronts.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
+  'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.7 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.7 title 'pinch_no_contact iterative', \
   'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('setting') eq 'pinch_no_contact direct' ? column('error') : NaN))) with linespoints ls 7 dt 1 ps 0.7 title 'pinch_no_contact direct', \
