@@ -57,6 +57,24 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
     update_cable(world, at(world.cables, c), false, is_known(work));
 }
 
+/// Goes `share` of the way that was just solved for, or less where that makes nothing better than `before`: where
+/// a span hardly bends round a body, its direction turns much within the whole of the way. Returns whether
+/// it went at all.
+bool go(const Scene& scene, World& world, Workspace& work, const Part& part, double share,
+        const Violation& before) {
+  const PartSystem& s = at(work.systems, part.system);
+  displace(world, work, part, share);
+  for (int halvings = 0;; ++halvings) {
+    const Violation now = violation(scene, world, s);
+    if (now.most() < before.most() && now.gaps <= std::max(before.gaps, s.reach)) return true;
+    if (halvings == most_halvings) break;
+    share *= 0.5;
+    displace(world, work, part, -share);
+  }
+  displace(world, work, part, -share);
+  return false;
+}
+
 /// Whether a segment is a pinch that is pressed, or nearly so: no material gets through.
 bool is_closed(const World& world, const CableState& cable, int segment) {
   constexpr double nearly = 1e-3;  // of the half width: a body that rattles is closed
@@ -120,10 +138,6 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     const Violation before = violation(scene, world, s);
     if (before.most() <= s.reach) break;
-    const auto is_better = [&] {
-      const Violation now = violation(scene, world, s);
-      return now.most() < before.most() && now.gaps <= std::max(before.gaps, s.reach);
-    };
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
     work.solve.smooth = true;
     solve_direct(world, work.parts, part, s, work.solve);
@@ -135,15 +149,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
                    way = s.velocity[i].head<2>().norm();
       if (way * share > longest * radius) share = longest * radius / way;
     }
-    displace(world, work, part, share);
-    // Where a span hardly bends round a body its direction turns much within the whole of the way.
-    for (int halvings = 0; !is_better(); ++halvings) {
-      share *= halvings < most_halvings ? 0.5 : 1.0;
-      displace(world, work, part, -share);
-      if (halvings == most_halvings) share = 0.0;
-      if (share == 0.0) break;
-    }
-    if (share == 0.0) break;
+    if (!go(scene, world, work, part, share, before)) break;
     any = true;
   }
   if (!any) return false;
