@@ -15,14 +15,6 @@ namespace pinchlab {
 
 namespace {
 
-/// Below this wrap (rad, so the same for scenes of any size) a link is gone. Far above round-off,
-/// far below what a frame could show.
-constexpr double gone = -1e-9;
-
-std::ptrdiff_t offset(std::size_t i) {
-  return static_cast<std::ptrdiff_t>(i);
-}
-
 std::size_t tail_link(const CableState& cable, std::size_t segment) {
   return segment == 0 ? cable.links.size() - 1 : segment - 1;
 }
@@ -45,8 +37,8 @@ double material_in_layers(const Link& link, double alpha, double angle) {
   return link.material + link.layers.way * link.layers.length(turned_until(link, alpha, angle));
 }
 
-/// Material coordinate at which the cable has the direction alpha on link i; `at_head` says which end of
-/// the link is the nearer.
+}  // namespace
+
 double material_at(const CableState& cable, std::size_t i, bool at_head, double alpha,
                    double angle) {
   const Link& link = cable.links[i];
@@ -55,8 +47,6 @@ double material_at(const CableState& cable, std::size_t i, bool at_head, double 
   const bool turns = cable.rims.empty() || cable.rims[i].laid.empty();
   return link.material + (turns ? place : laid_near_end(cable.rims[i], at_head, place));
 }
-
-}  // namespace
 
 double tail_material(const CableState& cable, std::size_t i, double angle) {
   return material_at(cable, i, false, cable.segments[i].alpha, angle);
@@ -281,221 +271,6 @@ void update_segments(World& world, Workspace& work) {
     if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }
-}
-
-namespace {
-
-/// What the rim of the later of two links on a body carries becomes part of the earlier one's.
-void take_over(CableState& cable, int link, int later) {
-  if (cable.rims.empty() || at(cable.rims, link).laid.empty()) return;
-  const double shift = at(cable.links, later).material - at(cable.links, link).material;
-  std::vector<Laid>& all = at(cable.rims, link).laid;
-  for (const Laid& laid : at(cable.rims, later).laid) {
-    if (laid.place > all.back().place)
-      all.push_back({laid.place, laid.material + shift, laid.slope});
-  }
-}
-
-}  // namespace
-
-void remove_link(const World& world, CableState& cable, int link) {
-  const int before = previous_link(cable, link), after = next_link(cable, link);
-  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now, and how
-  // the cable slipped there is over.
-  for (const int neighbour : {before, after}) {
-    Link& now = at(cable.links, neighbour);
-    if (now.pinch_middle) now.slip_speed = 0.0;
-    now.pinch_middle = false;
-  }
-  const bool merge = cable.links[static_cast<std::size_t>(before)].body ==
-                         cable.links[static_cast<std::size_t>(after)].body &&
-                     cable.links[static_cast<std::size_t>(before)].orientation ==
-                         cable.links[static_cast<std::size_t>(after)].orientation &&
-                     cable.links[static_cast<std::size_t>(before)].corner ==
-                         cable.links[static_cast<std::size_t>(after)].corner &&
-                     cable.links[static_cast<std::size_t>(before)].orientation != 0 &&
-                     before != after;
-  const bool of_corner = !merge && at(cable.links, link).corner >= 0;
-  ++cable.changes;
-  // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
-  // computed anew from the link before. In a merge the earlier link on the body stays.
-  const auto erase = [&cable](int i) {
-    cable.links.erase(cable.links.begin() + i);
-    cable.segments.erase(cable.segments.begin() + i);
-    if (!cable.rims.empty()) cable.rims.erase(cable.rims.begin() + i);
-  };
-  if (merge) {
-    take_over(cable, before, after);
-    erase(std::max(link, after));
-    erase(std::min(link, after));
-  } else {
-    erase(link);
-  }
-  // Of a polygon's corner only the segment that closes up is new; a cable may have very many.
-  const std::size_t closed_up = index(link) % cable.segments.size();
-  const std::size_t first = of_corner ? closed_up : first_segment(cable);
-  const std::size_t end = of_corner ? closed_up + 1 : cable.segments.size();
-  for (std::size_t i = first; i < end; ++i) {
-    const Vec2 tail = cable.segments[i].tail, head = cable.segments[i].head;
-    update_tangent(world, cable, i);
-    if (cable.segments[i].tail != tail || cable.segments[i].head != head) {
-      cable.segments[i].previous_tail = cable.segments[i].tail;
-      cable.segments[i].previous_head = cable.segments[i].head;
-    }
-  }
-  update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
-}
-
-bool needed(const CableState& cable, std::size_t i) {
-  if (!cable.closed) return false;
-  int body = -1;
-  for (std::size_t k = 0; k < cable.links.size(); ++k) {
-    const Link& link = cable.links[k];
-    if (k == i || link.pinch_middle) continue;
-    if (body >= 0 && link.body != body) return false;
-    body = link.body;
-  }
-  return true;
-}
-
-bool remove_links(World& world, Workspace& work) {
-  bool any = false;
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    CableState& cable = world.cables[c];
-    bool changed = cable.unwound && !sleeps(work.parts, c);
-    while (changed) {
-      changed = false;
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        const Link& link = cable.links[i];
-        if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
-          work.released.push_back({static_cast<int>(c), link.body});
-          leave_body(world, cable, static_cast<int>(i));
-          changed = any = true;
-          break;
-        }
-      }
-    }
-  }
-  return any;
-}
-
-Link rolling_link(const BodyProperties& properties, int body, int corner, int orientation,
-                  double half_width) {
-  Link link;
-  link.body = body;
-  link.corner = corner;
-  link.orientation = orientation;
-  link.radius = (corner < 0 ? properties.radius : properties.corner_radius) + half_width;
-  link.still = corner < 0 && !can_move(properties);
-  if (corner >= 0) link.offset = at(properties.corners, corner);
-  return link;
-}
-
-void insert_link(const World& world, CableState& cable, std::size_t segment, int body, int corner,
-                 int orientation) {
-  // A link put into the segment that closes a loop comes last, so that indices stay where they are.
-  const std::size_t position = segment == 0 ? cable.links.size() : segment;
-  Segment& old = cable.segments[segment];
-  if (cable.links.size() == 2 && !cable.closed) {  // no body has counted its turns so far
-    old.alpha = first_heading(old.direction, orientation);
-  }
-  const std::size_t from = tail_link(cable, segment);
-
-  const Link link =
-      rolling_link(at(world.bodies, body), body, corner, orientation, cable.half_width);
-  cable.links.insert(cable.links.begin() + offset(position), link);
-  Segment arriving = old;
-  if (segment == 0) arriving.alpha = old.alpha + cable.turning;
-  cable.segments.insert(cable.segments.begin() + offset(position), arriving);
-  if (!cable.rims.empty()) cable.rims.insert(cable.rims.begin() + offset(position), Rim{});
-
-  const std::size_t leaving = segment == 0 ? 0 : position + 1;
-  update_tangent(world, cable, position);
-  update_tangent(world, cable, leaving);
-  Segment& first = cable.segments[position];
-  Segment& second = cable.segments[leaving];
-  for (Segment* part : {&first, &second}) {
-    part->previous_tail = part->tail;
-    part->previous_head = part->head;
-  }
-  // Both parts get the same strain: rest lengths in the ratio of the lengths. The material to share
-  // is what lies between the neighbours' new tangents: they have turned, by much where the body is
-  // near.
-  ++cable.changes;
-  if (const int way = way_of_layers(cable, position); way != 0) {
-    begin_layers(world, cable, position, way);
-  }
-  Link& added = cable.links[position];
-  const std::size_t to = leaving;  // a segment arrives at the link of its index
-  const double start = head_material(cable, from, body_angle(world, cable.links[from]));
-  const double end =
-      tail_material(cable, to, body_angle(world, cable.links[to])) + (to == 0 ? cable.length : 0.0);
-  added.wrap = orientation * (alpha_head(cable, position) - first.alpha);
-  const double stored = stored_length(added);
-  const double free_length = first.length + second.length;
-  const double share = free_length > 0.0 ? first.length / free_length : 0.5;
-  double arrives = start + share * (end - start - stored);
-  if (is_side(cable.links[from], added)) arrives = start + first.length;
-  if (is_side(added, cable.links[to])) arrives = end - second.length - stored;
-  added.material += arrives - tail_material(cable, position, body_angle(world, added));
-  begin_to_carry(world, cable, position);
-  update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
-}
-
-void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches) {
-  std::vector<Link> links;
-  std::vector<Segment> segments;
-  std::vector<Rim> rims;
-  links.reserve(cable.links.size() + 2 * pinches.size());
-  segments.reserve(links.capacity());
-  std::vector<std::size_t> added;  // segments
-  auto next = pinches.begin();
-  for (std::size_t i = 0; i < cable.links.size(); ++i) {
-    const Link& whole = cable.links[i];
-    links.push_back(whole);
-    segments.push_back(cable.segments[i]);
-    if (!cable.rims.empty()) rims.push_back(cable.rims[i]);
-    for (; next != pinches.end() && static_cast<std::size_t>(next->link) == i; ++next) {
-      Segment between;
-      between.alpha = cable.segments[i].alpha + whole.orientation * next->arc;
-      Link middle;
-      middle.body = next->body;
-      middle.orientation = -whole.orientation;
-      middle.radius = at(world.bodies, next->body).radius + cable.half_width;
-      middle.still = !can_move(at(world.bodies, next->body));
-      middle.pinch_middle = true;
-      const double pressed = material_at(cable, i, false, between.alpha, body_angle(world, whole));
-      middle.material =
-          pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
-      if (!cable.rims.empty()) {
-        const double place = pressed - middle.material;
-        const bool carries =
-            !cable.rims[i].laid.empty() && at(world.bodies, next->body).cable_friction == infinity;
-        rims.emplace_back();
-        if (carries) rims.back().laid = {{place, place, 1.0}};
-        rims.push_back(cable.rims[i]);
-        rims.back().slope = 0.0;
-      }
-      for (const Link& link : {middle, whole}) {
-        added.push_back(links.size());
-        links.push_back(link);
-        segments.push_back(between);
-      }
-    }
-  }
-  cable.links.swap(links);
-  cable.segments.swap(segments);
-  cable.rims.swap(rims);
-  cable.changes += static_cast<int>(pinches.size());
-  for (const std::size_t s : added) {
-    update_tangent(world, cable, s);
-    cable.segments[s].previous_tail = cable.segments[s].tail;
-    cable.segments[s].previous_head = cable.segments[s].head;
-  }
-  update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
 }
 
 }  // namespace pinchlab

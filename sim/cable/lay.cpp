@@ -11,6 +11,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/links.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/links.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
 

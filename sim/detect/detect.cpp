@@ -2,6 +2,7 @@
 #include "sim/detect/detect.h"
 
 #include "sim/cable/cable.h"
+#include "sim/cable/links.h"
 #include "sim/detect/all_pairs.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/links.h"
 #include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"

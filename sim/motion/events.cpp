@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/links.h"
 #include "sim/cable/mass.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/span_hits.h"

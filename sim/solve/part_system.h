@@ -228,14 +228,15 @@ inline void forget_flips(PartSystem& s) {
   }
 }
 
+inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
+}
+
 /// J v + bias at the present velocities (m/s).
 inline double row_speed(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];
-  const auto along = [](const Eigen::Vector3d& j, const Eigen::Vector3d& v) {
-    return j.x() * v.x() + j.y() * v.y() + j.z() * v.z();
-  };
-  return s.rows[r].bias + along(row.ja, s.velocity[static_cast<std::size_t>(row.a)]) +
-         along(row.jb, s.velocity[static_cast<std::size_t>(row.b)]);
+  return s.rows[r].bias + dot(row.ja, s.velocity[static_cast<std::size_t>(row.a)]) +
+         dot(row.jb, s.velocity[static_cast<std::size_t>(row.b)]);
 }
 
 /// Changes the velocities of the row's bodies by an impulse on it (N s).

@@ -188,10 +188,6 @@ void assemble_coupled(PartSystem& s, SolveScratch& set) {
   }
 }
 
-double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
-}
-
 /// Appends an end of unknown u to the chain of its body.
 void append_end(RowEnd* ends, int* last_end, int end, int body) {
   int& last = last_end[body];

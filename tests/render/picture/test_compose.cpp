@@ -9,6 +9,7 @@
 
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/links.h"
 #include "sim/joints.h"
 #include "sim/nodes.h"
 #include "sim/step.h"
