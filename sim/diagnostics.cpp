@@ -107,19 +107,26 @@ double potential_energy(const Scene& scene, const World& world) {
   return energy;
 }
 
+double kinetic_energy(const World& world, const Instant& before, double after, int body) {
+  const auto b = index(body);
+  const BodyProperties& p = world.bodies[b];
+  const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
+  const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
+  double energy = 0.0;
+  if (!before.carried.empty()) {
+    const Eigen::Vector3d all(v.x(), v.y(), omega);
+    energy += 0.5 * all.dot(before.carried[b] * all);
+  }
+  if (p.kind == BodyKind::fixed) return energy;
+  energy += 0.5 * inertia_of(p) * omega * omega;
+  if (can_move(p)) energy += 0.5 * p.mass * v.squaredNorm();
+  return energy;
+}
+
 double kinetic_energy(const World& world, const Instant& before, double after) {
   double energy = 0.0;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const BodyProperties& body = world.bodies[b];
-    const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
-    const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
-    if (!before.carried.empty()) {
-      const Eigen::Vector3d all(v.x(), v.y(), omega);
-      energy += 0.5 * all.dot(before.carried[b] * all);
-    }
-    if (body.kind == BodyKind::fixed) continue;
-    energy += 0.5 * inertia_of(body) * omega * omega;
-    if (can_move(body)) energy += 0.5 * body.mass * v.squaredNorm();
+  for (int b = 0; index(b) < world.bodies.size(); ++b) {
+    energy += kinetic_energy(world, before, after, b);
   }
   return energy;
 }

@@ -26,8 +26,9 @@ bool check_positions(const Scene& scene, World& world);
 double potential_energy(const Scene& scene, const World& world);
 
 /// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a kick:
-/// what is between them, by the share `after`, is right to second order.
+/// what is between them, by the share `after`, is right to second order. Of all bodies, or of one.
 double kinetic_energy(const World& world, const Instant& before, double after);
+double kinetic_energy(const World& world, const Instant& before, double after, int body);
 
 /// Stretch, gaps and cable lengths at the present positions.
 void measure_cables(const Scene& scene, World& world);

@@ -24,6 +24,7 @@ struct Part {
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool kept = false;                         // asleep, and was so in the step before
+  bool waits = false;                        // by list_parts: for others to come to its time
   bool can_slip = false;                     // a contact of it presses a cable that may slip there
   bool slides = false;                       // by solve_parts: cable may slide over bodies
 };
@@ -35,6 +36,11 @@ inline bool has_contacts(const Part& part) {
 /// Whether cable of the part can slide over bodies, over those of finite friction or in pinches.
 inline bool can_slide(const Part& part) {
   return part.may_slide || part.can_slip;
+}
+
+/// Whether nothing of it changes at present.
+inline bool is_idle(const Part& part) {
+  return part.asleep || part.waits;
 }
 
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
@@ -79,17 +85,17 @@ inline std::span<const int> contacts_of(const Parts& parts, const Part& part) {
 /// sleep. A part of the same bodies and cables as before keeps its system.
 void find_parts(const World& world, Workspace& work);
 
-/// Whether the body's centre is where it was: it cannot move, or its part sleeps.
+/// Whether the body's centre is where it was: it cannot move, or its part is idle.
 inline bool is_still(const Parts& parts, int body) {
   if (parts.immobile.empty()) return false;  // not divided yet
   const auto b = static_cast<std::size_t>(body);
-  return parts.immobile[b] || parts.list[static_cast<std::size_t>(parts.of_body[b])].asleep;
+  return parts.immobile[b] || is_idle(parts.list[static_cast<std::size_t>(parts.of_body[b])]);
 }
 
-/// Whether the cable's part sleeps.
-inline bool sleeps(const Parts& parts, std::size_t cable) {
+/// Whether the cable's part is idle.
+inline bool is_idle(const Parts& parts, std::size_t cable) {
   return !parts.of_cable.empty() &&
-         parts.list[static_cast<std::size_t>(parts.of_cable[cable])].asleep;
+         is_idle(parts.list[static_cast<std::size_t>(parts.of_cable[cable])]);
 }
 
 /// Counts for how many steps the bodies of a part have been at rest, after the solve. A part with a

@@ -117,7 +117,7 @@ void Promises::note_energy(const Scene& scene, const World& world) {
   const double after = lag_ / (lag_ + 0.5 * world.step_length);
   const double kinetic = kinetic_energy(world, before_, after);
   at_play_ = std::max(at_play_, kinetic);
-  const bool whole = world.diagnostics.intervals - intervals_ <= 1;
+  const bool whole = world.diagnostics.intervals - intervals_ <= 1 && world.lag > 0.0;
   if (at_play_ > 0.0 && whole) {
     note_value(Promise::energy, (kinetic + potential_ - start_energy_) / at_play_, limits_.energy,
                world.step, -1, -1);

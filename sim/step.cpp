@@ -147,7 +147,9 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   const bool located = locates_events(world.configuration);
   Stopwatch untimed(nullptr);
   if (located) {
-    find_present_velocities(scene, world, world.time(), work);
+    put_together(world, work.parts, work.neighbourhoods);
+    find_present_velocities(scene, world, work.neighbourhoods.parts.items, world.time(), world.lag,
+                            work);
   } else {
     apply_forces(scene, world, whole_step(world), work);
   }

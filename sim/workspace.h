@@ -9,6 +9,7 @@
 
 #include "sim/detect/broad_phase.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/neighbourhoods.h"
 #include "sim/parts.h"
 #include "sim/solve/part_system.h"
 #include "sim/solve/solve_scratch.h"
@@ -49,6 +50,25 @@ struct Start {
   std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
+/// What came of trying an interval.
+struct Trial {
+  bool met = true;           // lengths and gaps are exact at its end
+  bool settled = true;       // every solve
+  bool violated = false;     // what it began with, by more than it makes up for
+  double missed = 0.0;       // by lengths and gaps, over the part's extent, where not met
+  double local_error = 0.0;  // m
+};
+
+/// A step's start, but for what Start has, to take it back to.
+struct StepStart {
+  Start start;
+  std::vector<int> first_link;  // of Workspace
+  std::vector<CableState> cables;
+  std::vector<Contact> contacts;
+  std::vector<int> still_steps;
+  Diagnostics diagnostics;
+};
+
 /// Storage of find_contacts and configure_pinches.
 struct ContactScratch {
   std::vector<Contact> old_contacts;  // of the step before
@@ -78,14 +98,16 @@ struct Workspace {
   Start start;                  // of the last interval
   Instant found;                // for which contacts were found, before the last impact
   std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide
-  bool settled = true;          // every solve of the last trial; by move_part
-  double missed = 0.0;  // by lengths and gaps, over the part's extent, where not met; by move_part
-  bool violated = false;  // what an interval began with, more than it makes up for; by move_part
   std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
-  double local_error = 0.0;                      // m, of the last trial; by move_part
+  std::vector<Trial> trials;                     // the last of each part
+  Trial trial;                                   // the last, of all that were tried
   std::vector<Happening> events;                 // of the interval being tried
 
-  Instant before;  // at the start of the step; with diagnostics
+  Neighbourhoods neighbourhoods;  // by advance
+  StepStart step_start;           // of a step that has been divided
+  Instant before;                 // at the start of the step; with diagnostics
+  std::vector<double> speeds;     // m/s, of a part's bodies before an impact
+  std::vector<char> repaired;     // parts, at an interval's end
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

@@ -15,10 +15,10 @@ struct GrowingScene {
   const char* what;
   std::vector<int> sizes;
   Scene (*scene)(int size);
-  bool is_made = false;  // its make_world is what counts
+  int steps = 1;  // timed at once, where what happens differs from step to step; 0: its make_world
 };
 
-/// Swinging cables, discs on walls, pulleys without friction under one cable, and make_world of the
+/// Swinging cables, balls that bounce, discs on walls, pulleys without friction under one cable, and make_world of the
 /// pinched stress scene.
 const std::vector<GrowingScene>& growing_scenes();
 

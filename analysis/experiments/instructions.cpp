@@ -88,7 +88,7 @@ std::string count_growth(const std::filesystem::path& file, Csv& csv) {
     std::vector<double> counts;
     for (const int size : growing.sizes) {
       const std::string what = fmt::format("--growing {} --size {}", i, size);
-      counts.push_back(growing.is_made ? count_each("make_world", what, 1, 2, file)
+      counts.push_back(growing.steps == 0 ? count_each("make_world", what, 1, 2, file)
                                        : count_each("step", what, few, many, file));
       csv.row({std::string(growing.what), std::int64_t{size}, counts.back()});
       sizes += (sizes.empty() ? "" : ", ") + fmt::format("{}", size);
@@ -116,7 +116,7 @@ bool step_growing_scene(int number, int size, int calls) {
   if (number < 0 || index(number) >= growing_scenes().size() || size < 1) return false;
   const GrowingScene& growing = at(growing_scenes(), number);
   const Scene scene = growing.scene(size);
-  if (!growing.is_made) {
+  if (growing.steps > 0) {
     step_on(scene, "pinch", calls);
     return true;
   }

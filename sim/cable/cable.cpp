@@ -266,7 +266,7 @@ void update_segments(World& world, Workspace& work) {
   work.released.clear();
   work.spans_moved = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(work.parts, c)) continue;
+    if (is_idle(work.parts, c)) continue;
     const bool moved = update_cable(world, world.cables[c], true, is_known(work));
     if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;

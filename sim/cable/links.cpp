@@ -100,7 +100,7 @@ bool remove_links(World& world, Workspace& work) {
   bool any = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     CableState& cable = world.cables[c];
-    bool changed = cable.unwound && !sleeps(work.parts, c);
+    bool changed = cable.unwound && !is_idle(work.parts, c);
     while (changed) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {

@@ -168,7 +168,7 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
     const std::size_t first = first_segment(cable);
-    if (sleeps(parts, c)) {
+    if (is_idle(parts, c)) {
       box += cable.segments.size() - first;
       continue;
     }

@@ -188,7 +188,7 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
 /// closes by the second-order gap of a rolling step.
 void remove_open_pinches(World& world, const Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (work.contacts.stands[c] || sleeps(work.parts, c)) continue;
+    if (work.contacts.stands[c] || is_idle(work.parts, c)) continue;
     CableState& cable = world.cables[c];
     for (int i = static_cast<int>(cable.links.size()) - 1; i >= 0; --i) {
       const Link& link = at(cable.links, i);
@@ -226,6 +226,13 @@ void find_standing_cables(const World& world, const Parts& parts, ContactScratch
   }
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     scratch.stands[c] = world.cables[c].stands && !at(scratch.stirred, parts.of_cable[c]);
+  }
+}
+
+/// Likewise those of parts that wait.
+void find_waiting_cables(const Parts& parts, ContactScratch& scratch) {
+  for (std::size_t c = 0; c < scratch.stands.size(); ++c) {
+    if (at(parts.list, parts.of_cable[c]).waits) scratch.stands[c] = true;
   }
 }
 
@@ -299,6 +306,12 @@ double speed_of(const World& world, int body) {
   return at(world.velocity, body).norm() + rim;
 }
 
+/// How far a body may get by the end of the step; by what it may get in all of it, parts were divided.
+double way_left(const Scene& scene, const World& world, const Neighbourhoods& near, int body) {
+  const double gained = scene.gravity.norm() * world.step_length;
+  return 2.0 * near.left_of(body) * (speed_of(world, body) + gained);
+}
+
 /// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre lies by
 /// `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than `most` (m).
 void add_contacts(const Scene& scene, World& world, int a, int b, int wall, const Vec2& d,
@@ -357,6 +370,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   std::size_t kept = 0;
   const double width = full_width(world);
   Kept old_pairs(old), old_of_walls(old);
+  Neighbourhoods& near = work.neighbourhoods;
   for (const BodyPair& pair : broad.body_pairs) {
     if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
       kept += old_pairs.keep(pair.a, pair.b, -1, world.contacts);
@@ -367,6 +381,12 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
     const double most = width + reach(scene, world, speed, std::min(a, b));
     const Vec2 d = at(world.position, pair.b) - at(world.position, pair.a);
+    if (near.separate_bodies(pair.a, pair.b)) {
+      const double left =
+          width + way_left(scene, world, near, pair.a) + way_left(scene, world, near, pair.b);
+      near.crossed = near.crossed || d.norm() - a - b <= left;
+      continue;
+    }
     add_contacts(scene, world, pair.a, pair.b, -1, d, a + b, most);
   }
   for (const WallPair& pair : broad.wall_pairs) {
@@ -396,6 +416,7 @@ void configure_pinches(World& world, Workspace& work) {
                          scratch.configured_changes == changes_of_cables(world);
   if (scratch.pinches_kept) return;
   find_standing_cables(world, work.parts, scratch);
+  if (work.neighbourhoods.divided) find_waiting_cables(work.parts, scratch);
   const auto& stands = scratch.stands;
   if (std::find(stands.begin(), stands.end(), false) == stands.end()) return;
   remove_open_pinches(world, work);

@@ -178,8 +178,12 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   return first;
 }
 
-/// Whether the span can be hit by the body at all.
-bool may_hit(const World& world, const CableState& cable, std::size_t s, int body) {
+/// Whether the span can be hit by the body at all, now that one of them has moved.
+bool may_hit(const World& world, const Workspace& work, const SpanPair& pair, std::size_t s) {
+  const CableState& cable = at(world.cables, pair.cable);
+  const int body = pair.body;
+  const bool moved = cable.segments[s].moved && !is_idle(work.parts, index(pair.cable));
+  if (!moved && is_still(work.parts, body)) return false;
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
   const Link &to = cable.links[s], &from = at(cable.links, tail);
   return !holds_span(world, cable, to, body) && !holds_span(world, cable, from, body) &&
@@ -202,10 +206,13 @@ void find_hits(const World& world, Workspace& work, std::vector<Happening>& even
   for (const SpanPair& pair : work.broad_phase.span_pairs) {
     const CableState& cable = at(world.cables, pair.cable);
     const auto s = index(pair.segment);
-    if (is_still(work.parts, pair.body) && !cable.segments[s].moved) continue;
-    if (!may_hit(world, cable, s, pair.body)) continue;
+    if (!may_hit(world, work, pair, s)) continue;
     const Hit hit = test_span(world, work, cable, s, pair.body);
     if (!hit.found) continue;
+    if (work.neighbourhoods.separate_from_cable(pair.body, pair.cable)) {
+      work.neighbourhoods.crossed = true;
+      continue;
+    }
     Happening event{EventKind::hit};
     event.cable = pair.cable;
     event.item = pair.segment;
@@ -235,11 +242,10 @@ void add_hit_links(World& world, const Workspace& work) {
       again = false;
       Hit earliest;
       for (std::size_t i = begin; i < end; ++i) {
-        const bool still = is_still(work.parts, pairs[i].body);
+        if (work.neighbourhoods.separate_from_cable(pairs[i].body, pairs[i].cable)) continue;
         for (std::size_t part = 0; part <= added; ++part) {
           const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
-          if (still && !cable.segments[s].moved) continue;
-          if (!may_hit(world, cable, s, pairs[i].body)) continue;
+          if (!may_hit(world, work, pairs[i], s)) continue;
           const Hit hit = test_span(world, work, cable, s, pairs[i].body);
           if (hit.found && (!earliest.found || hit.time < earliest.time)) earliest = hit;
         }

@@ -36,11 +36,12 @@ constexpr int most_events = 48;    // that are located in one step
 constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 
 /// Velocities at the positions' time, with what bears force now.
-void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part) {
+void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part,
+                   double lag) {
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
   t.repair = world.step_length;
-  t.kick = t.lag = world.lag;
+  t.kick = t.lag = lag;
   t.reach = s.reach;
   t.held_only = t.clamps = true;
   steady_light_bodies(world, work.parts, part, t.kick, s);
@@ -50,10 +51,11 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
 }
 
 /// Brings the velocities to the positions' time.
-void catch_up(const Scene& scene, World& world, double time, Workspace& work) {
-  find_present_velocities(scene, world, time, work);
-  for (const Part& part : work.parts.list) {
-    if (part.asleep) continue;
+void catch_up(const Scene& scene, World& world, std::span<const int> parts, double time, double lag,
+              Workspace& work) {
+  find_present_velocities(scene, world, parts, time, lag, work);
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
     const PartSystem& s = at(work.systems, part.system);
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -62,76 +64,87 @@ void catch_up(const Scene& scene, World& world, double time, Workspace& work) {
     }
     carry(world, carried_of(work.parts, part));
   }
-  world.lag = 0.0;
 }
 
 /// Forces of an instant at the positions' time.
-void apply_no_forces(const Scene& scene, const World& world, double time, Workspace& work) {
+void apply_no_forces(const Scene& scene, const World& world, const Part& part, double time,
+                     Workspace& work) {
   TimeSpan instant;
   instant.start = time;
-  apply_forces(scene, world, instant, work);
+  apply_forces(scene, world, instant, work.parts, part, at(work.systems, part.system));
 }
 
 /// Whether a contact is, that can give.
-bool is_squeezed(const World& world, const Parts& parts) {
-  for (const Part& part : parts.list) {
-    if (!part.can_move) continue;
-    for (const int number : contacts_of(parts, part)) {
-      const Contact& c = at(world.contacts, number);
-      if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
-      if (can_move(at(world.bodies, c.a))) return true;
-      if (c.b >= 0 && can_move(at(world.bodies, c.b))) return true;
-    }
+bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
+  if (!part.can_move) return false;
+  for (const int number : contacts_of(parts, part)) {
+    const Contact& c = at(world.contacts, number);
+    if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
+    if (can_move(at(world.bodies, c.a))) return true;
+    if (c.b >= 0 && can_move(at(world.bodies, c.b))) return true;
   }
   return false;
-}
-
-void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
-  apply_no_forces(scene, world, time, work);
-  for (const Part& part : work.parts.list) {
-    if (!part.asleep) strike(scene, world, work, part, rebounds);
-  }
 }
 
 /// Contacts have been found for what bodies may do in a step at the speeds that they had, twice as much as
-/// that. Whether an impact has made one faster still.
-bool hastens(const Scene& scene, const World& world, const std::vector<Vec2>& velocity,
-             const std::vector<double>& angular_velocity) {
+/// that. Strikes a part; whether that has made a body of it faster still.
+bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const Part& part,
+                       double time, bool rebounds) {
+  const std::span<const int> bodies = bodies_of(work.parts, part);
+  const auto speed = [&world](int body) {
+    return at(world.velocity, body).norm() +
+           at(world.bodies, body).radius * std::abs(at(world.angular_velocity, body));
+  };
+  work.speeds.clear();
+  for (const int body : bodies) work.speeds.push_back(speed(body));
+  apply_no_forces(scene, world, part, time, work);
+  strike(scene, world, work, part, rebounds);
   const double slow = scene.gravity.norm() * world.step_length;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const double rim = world.bodies[b].radius;
-    const double before = velocity[b].norm() + rim * std::abs(angular_velocity[b]);
-    const double after = world.velocity[b].norm() + rim * std::abs(world.angular_velocity[b]);
-    if (after > 2.0 * before + slow) return true;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (speed(bodies[i]) > 2.0 * work.speeds[i] + slow) return true;
   }
   return false;
 }
 
-/// Puts right in the positions what an interval has left, and then the velocities to fit them; whether
-/// contacts have been found anew for these.
-bool settle_end(const Scene& scene, World& world, Workspace& work, double time, bool violated,
-                bool happened, bool rebounds, StageTimes* times) {
-  if (violated || happened) apply_no_forces(scene, world, time, work);
-  bool repaired = false;
-  for (Part& part : work.parts.list) {
-    if (part.asleep || !(violated || happened)) continue;
-    repaired = repair(scene, world, work, part) || repaired;
+/// Puts right in positions what an interval of these parts has left, and then the velocities to fit
+/// them; whether contacts must be found anew for these. `changed`: links have come or gone.
+bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<const int> parts,
+                double& lag, bool changed) {
+  const Neighbourhoods& near = work.neighbourhoods;
+  work.repaired.assign(work.parts.list.size(), false);
+  bool any = false;
+  double time = 0.0;
+  for (const int p : parts) {
+    Part& part = at(work.parts.list, p);
+    const Neighbourhood course = course_of(near, work.parts, part);
+    time = course.time;
+    const bool violated = changed || course.violated || is_squeezed(world, work.parts, part);
+    if (!violated && !course.happened) continue;
+    apply_no_forces(scene, world, part, time, work);
+    at(work.repaired, p) = repair(scene, world, work, part);
+    any = any || at(work.repaired, p);
   }
-  if (repaired && world.lag > 0.0) catch_up(scene, world, time, work);
-  if (!happened && !repaired) return false;
-  Instant& found = work.found;
-  found.velocity = world.velocity;
-  found.turning = world.angular_velocity;
-  strike_all(scene, world, work, time, rebounds);
-  if (!hastens(scene, world, found.velocity, found.turning)) return false;
-  detect_after_moving(scene, world, work, false, times);
-  return true;
+  if (any && lag > 0.0) {
+    catch_up(scene, world, parts, time, lag, work);
+    lag = 0.0;
+  }
+  bool hastens = false;
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
+    const Neighbourhood course = course_of(near, work.parts, part);
+    if (!course.happened && !at(work.repaired, p)) continue;
+    const bool rebounds = course.events <= most_rebounds;
+    hastens = strike_and_hasten(scene, world, work, part, time, rebounds) || hastens;
+  }
+  return hastens;
 }
 
-/// Elastic cables have come on to rims and off them in an interval.
-void lay_down_cables(World& world, const Parts& parts) {
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (!world.cables[c].rims.empty() && !sleeps(parts, c)) lay_down(world, world.cables[c]);
+/// What the scene starts with meets its cables and contacts.
+void strike_all(const Scene& scene, World& world, Workspace& work) {
+  for (const int p : work.neighbourhoods.parts.items) {
+    const Part& part = at(work.parts.list, p);
+    apply_no_forces(scene, world, part, 0.0, work);
+    strike(scene, world, work, part, true);
   }
 }
 
@@ -142,26 +155,213 @@ StepStatus fail_by_changes(World& world) {
   return StepStatus::not_finite;
 }
 
-/// Moves the world by an interval of at most `left` (s), to its next event; its length, in which
-/// `met` is as for find_interval.
-double move(const Scene& scene, World& world, Workspace& work, double left, bool locate, bool& met,
-            Stopwatch& watch) {
-  begin_interval(world, work, world.time() + (world.step_length - left));
-  if (locate) return find_interval(scene, world, work, left, met, watch);
-  met = cross_interval(scene, world, work, left, watch);
-  return left;
+/// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
+void finish_interval(const Scene& scene, World& world, Workspace& work, int n, double length,
+                     bool met) {
+  Neighbourhood& course = at(work.neighbourhoods.list, n);
+  const std::span<const int> parts = parts_of(work.neighbourhoods, n);
+  Diagnostics& d = world.diagnostics;
+  for (const int p : parts) {
+    for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
+      if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
+    }
+  }
+  d.local_error = std::max(d.local_error, work.trial.local_error);
+  course.time = work.start.time + length;
+  course.left = length < course.left ? course.left - length : 0.0;
+  course.lag = 0.5 * length;
+  course.moved = true;
+  course.happened = !work.events.empty();
+  course.violated = !met || work.trial.violated;
+  if (!met) ++course.events;
+  if (!course.happened) return;
+  ++course.events;
+  ++d.events;
+  catch_up(scene, world, parts, course.time, course.lag, work);
+  course.lag = 0.0;
+  change_courses(world, work);
+}
+
+/// Kinetic energy (J) of these at the time of their positions before an interval of `length` (s).
+double kinetic_energy(const World& world, const Workspace& work, const Movers& movers,
+                      double length) {
+  const double after = movers.lag / (movers.lag + 0.5 * length);
+  double energy = 0.0;
+  for (const int p : movers.parts) {
+    for (const int body : bodies_of(work.parts, at(work.parts.list, p))) {
+      energy += kinetic_energy(world, work.before, after, body);
+    }
+  }
+  return energy;
+}
+
+void set_waiting(Parts& parts, std::span<const int> of, bool waits) {
+  for (const int p : of) at(parts.list, p).waits = waits;
+}
+
+/// What is to be done in a step's next round.
+struct Round {
+  bool first = true;       // of the step
+  bool may_divide = true;  // the step into neighbourhoods
+};
+
+bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch);
+
+/// Moves a neighbourhood by an interval, to its next event or to the end of the step; whether all
+/// velocities are finite. `begins` as for try_whole_interval. With `may_divide` its parts are divided
+/// first where that is not the whole step.
+bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins, const Round& round,
+          Stopwatch& watch) {
+  Neighbourhoods& near = work.neighbourhoods;
+  Neighbourhood& course = at(near.list, n);
+  const Movers movers{parts_of(near, n), course.lag};
+  begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
+  double length = course.left;
+  bool met = true;
+  course.located = course.events < most_events;
+  if (!course.located) {
+    met = cross_interval(scene, world, work, movers, length, watch);
+  } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
+    if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
+    length = shorten_interval(scene, world, work, movers, length, met, watch);
+  }
+  if (!check_finite(scene, world)) return false;
+  if (round.first && world.configuration.diagnostics) {
+    world.diagnostics.energy += kinetic_energy(world, work, movers, length);
+  }
+  finish_interval(scene, world, work, n, length, met);
+  return true;
+}
+
+/// A step that has just been divided, as something happens in it: neighbourhoods in which nothing does
+/// have come to its end, others begin it anew.
+bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
+  Neighbourhoods& near = work.neighbourhoods;
+  keep_start(world, work);
+  const int count = static_cast<int>(near.list.size());
+  for (const Happening& event : work.events) {
+    const int part = event.part >= 0 ? event.part : at(work.parts.of_cable, event.cable);
+    at(near.list, number_of(near, work.parts, at(work.parts.list, part))).happened = true;
+  }
+  for (int n = 0; n < count; ++n) {
+    Neighbourhood& course = at(near.list, n);
+    course.happened = course.happened || !is_sound(world, trial_of(work, parts_of(near, n)));
+    if (course.happened) go_back(world, work, parts_of(near, n));
+  }
+  work.events.clear();
+  for (int n = 0; n < count; ++n) {
+    Neighbourhood& course = at(near.list, n);
+    if (course.happened) continue;
+    work.trial = trial_of(work, parts_of(near, n));
+    if (!work.trial.settled) ++world.diagnostics.fallbacks;
+    if (world.configuration.diagnostics) {
+      world.diagnostics.energy +=
+          kinetic_energy(world, work, {parts_of(near, n), course.lag}, course.left);
+    }
+    course.located = true;
+    finish_interval(scene, world, work, n, course.left, true);
+  }
+  for (int n = 0; n < count; ++n) {
+    if (at(near.list, n).moved) continue;
+    set_waiting(work.parts, parts_of(near, n), false);
+    if (!move(scene, world, work, n, false, {true, false}, watch)) return false;
+    set_waiting(work.parts, parts_of(near, n), true);
+  }
+  return true;
+}
+
+/// Moves every neighbourhood that has not come to the end of the step by an interval; likewise.
+bool move_all(const Scene& scene, World& world, Workspace& work, const Round& round,
+              Stopwatch& watch) {
+  Neighbourhoods& near = work.neighbourhoods;
+  work.released.clear();
+  work.spans_moved = false;
+  for (Neighbourhood& course : near.list) {
+    course.moved = course.happened = course.violated = false;
+  }
+  const int count = static_cast<int>(near.list.size());
+  if (count == 1) return move(scene, world, work, 0, true, round, watch);
+  for (Part& part : work.parts.list) part.waits = true;
+  for (int n = 0; n < count; ++n) {
+    if (at(near.list, n).left == 0.0) continue;
+    set_waiting(work.parts, parts_of(near, n), false);
+    if (!move(scene, world, work, n, true, round, watch)) return false;
+    set_waiting(work.parts, parts_of(near, n), true);
+  }
+  return true;
+}
+
+bool is_left(const Neighbourhoods& near) {
+  return std::any_of(near.list.begin(), near.list.end(),
+                     [](const Neighbourhood& course) { return course.left > 0.0; });
+}
+
+/// Neighbourhoods that have come to the end of a step by intervals of different lengths get velocities of
+/// one time, so that they may have contacts.
+void reunite(const Scene& scene, World& world, Workspace& work) {
+  Neighbourhoods& near = work.neighbourhoods;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
+    Neighbourhood& course = at(near.list, n);
+    if (course.lag > 0.0) {
+      catch_up(scene, world, parts_of(near, n), course.time, course.lag, work);
+    }
+    course.lag = 0.0;
+  }
+  near.divided = false;
+}
+
+/// What follows an interval: cables, contacts and pinches for where things are now, and velocities that
+/// fit them. Returns how many times links have come or gone by then; they had `changes` times.
+int settle(const Scene& scene, World& world, Workspace& work, int changes, StageTimes* times) {
+  Neighbourhoods& near = work.neighbourhoods;
+  bool pairs_stand = true;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
+    const Neighbourhood& course = at(near.list, n);
+    if (!course.moved) continue;
+    pairs_stand = pairs_stand && course.located && !course.happened;
+    if (course.left > 0.0) continue;
+    for (const int p : parts_of(near, n)) {
+      note_rest(scene, work.parts, at(work.parts.list, p), world);
+    }
+  }
+  if (near.divided && !is_left(near)) reunite(scene, world, work);
+  list_parts(work.parts, near);
+  detect_after_moving(scene, world, work, pairs_stand, times);
+  Stopwatch watch(times);
+  list_parts(work.parts, near);
+  empty_pinches(world, work.parts);
+  const int now = changes_of_cables(world);
+  bool hastens = false;
+  if (!near.divided) {
+    hastens =
+        settle_end(scene, world, work, near.parts.items, near.list.front().lag, now != changes);
+  }
+  for (int n = 0; near.divided && index(n) < near.list.size(); ++n) {
+    Neighbourhood& course = at(near.list, n);
+    if (!course.moved) continue;
+    hastens =
+        settle_end(scene, world, work, parts_of(near, n), course.lag, now != changes) || hastens;
+  }
+  watch.lap(Stage::solve);
+  if (!hastens) return now;
+  detect_after_moving(scene, world, work, false, times);
+  list_parts(work.parts, near);
+  return changes_of_cables(world);
 }
 
 }  // namespace
 
-void find_present_velocities(const Scene& scene, const World& world, double time, Workspace& work) {
+void find_present_velocities(const Scene& scene, const World& world, std::span<const int> parts,
+                             double time, double lag, Workspace& work) {
   TimeSpan instant;
   instant.start = time;
-  instant.kick = instant.lag = world.lag;
-  apply_forces(scene, world, instant, work);
-  for (const Part& part : work.parts.list) {
-    if (!part.asleep) solve_present(scene, world, work, part);
+  instant.kick = instant.lag = lag;
+  instant.held_only = true;
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
+    apply_forces(scene, world, instant, work.parts, part, at(work.systems, part.system));
   }
+  for (const int p : parts) solve_present(scene, world, work, at(work.parts.list, p), lag);
 }
 
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
@@ -172,51 +372,29 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   int changes = changes_of_cables(world);
   const std::int64_t allowed =
       changes + most_changes + most_changes_a_body * static_cast<std::int64_t>(world.bodies.size());
-  double left = world.step_length;
-  int events = 0;
+  const Neighbourhoods& near = work.neighbourhoods;
+  put_together(world, work.parts, work.neighbourhoods);
   // Velocities that the scene starts with need not fit its cables: they meet them at once.
-  if (world.step == 0) strike_all(scene, world, work, 0.0, true);
-  for (bool first = true; left > 0.0; first = false) {
-    const double lag = world.lag;
-    const bool locates = events < most_events;
-    bool met = true;
-    const double length = move(scene, world, work, left, locates, met, watch);
-    if (!check_finite(scene, world)) return StepStatus::not_finite;
-    lay_down_cables(world, work.parts);
-    if (first && world.configuration.diagnostics) {
-      d.energy += kinetic_energy(world, work.before, lag / (lag + 0.5 * length));
-    }
+  if (world.step == 0) strike_all(scene, world, work);
+  Round round;
+  while (is_left(near)) {
+    if (!move_all(scene, world, work, round, watch)) return StepStatus::not_finite;
     ++d.intervals;
-    d.local_error = std::max(d.local_error, work.local_error);
     d.total_solves += d.active_set_solves;
-    left = length < left ? left - length : 0.0;
-    world.lag = 0.5 * length;
-    const double now = work.start.time + length;
-    const bool happened = !work.events.empty();
-    if (!met) ++events;
-    if (happened) {
-      ++events;
-      ++d.events;
-      catch_up(scene, world, now, work);
-      change_courses(world, work);
-      if (changes_of_cables(world) > allowed) return fail_by_changes(world);
-    }
-    for (const Part& part : work.parts.list) {
-      if (left == 0.0 && !part.asleep) note_rest(scene, work.parts, part, world);
-    }
-    detect_after_moving(scene, world, work, locates && !happened, times);
+    if (changes_of_cables(world) > allowed) return fail_by_changes(world);
+    if (!near.crossed) changes = settle(scene, world, work, changes, times);
     watch = Stopwatch(times);
-    empty_pinches(world, work.parts);
-    const int before = changes;
+    round.first = near.crossed;
+    round.may_divide = false;
+    if (!near.crossed) continue;
+    take_back(world, work);
     changes = changes_of_cables(world);
-    const bool violated =
-        !met || work.violated || changes != before || is_squeezed(world, work.parts);
-    if (settle_end(scene, world, work, now, violated, happened, events <= most_rebounds, times)) {
-      changes = changes_of_cables(world);
-    }
-    watch.lap(Stage::solve);
   }
-  if (events > most_rebounds) ++d.clusters;
+  world.lag = near.list.front().lag;
+  const bool clusters =
+      std::any_of(near.list.begin(), near.list.end(),
+                  [](const Neighbourhood& course) { return course.events > most_rebounds; });
+  if (clusters) ++d.clusters;
   d.fallbacks = std::min(d.fallbacks, fallbacks + 1);
   return StepStatus::ok;
 }

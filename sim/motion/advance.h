@@ -14,12 +14,16 @@
 //   event      velocities at its time, from half a kick with the old constraints; then the cable's
 //              course changes, and an impact (impact.h) makes the velocities fit it.
 //
+// Parts that cannot meet within the step are divided each by its own events (neighbourhoods.h).
+//
 // After so many events in a step nothing rebounds any more, so that a body that chatters comes to
 // rest (Diagnostics::clusters); after twice as many the rest of the step is met at once, by
 // constraints that bear force as early as it takes.
 //
 // What no interval has put right, as where a constraint has no gradient, is repaired in the
 // positions alone: a repair never becomes velocity.
+
+#include <span>
 
 #include "sim/stages.h"
 #include "sim/world.h"
@@ -32,8 +36,9 @@ struct Workspace;
 /// StepStatus::not_finite: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
-/// Velocities of all bodies that are awake at the time of their positions (`time`), `world.lag` after those
-/// that the world has, in their parts' systems.
-void find_present_velocities(const Scene& scene, const World& world, double time, Workspace& work);
+/// Velocities of these parts' bodies at the time of their positions (`time`), `lag` after those that the world
+/// has, in their systems.
+void find_present_velocities(const Scene& scene, const World& world, std::span<const int> parts,
+                             double time, double lag, Workspace& work);
 
 }  // namespace pinchlab

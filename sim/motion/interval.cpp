@@ -66,9 +66,8 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
 
 /// Adds to the rows' biases what their conditions have missed at the present positions; returns the
 /// most (m).
-double add_missed(const Scene& scene, const World& world, Workspace& work, const TimeSpan& t,
-                  PartSystem& s) {
-  const CapstanScratch& capstan = work.solve.capstan;
+double add_missed(const Scene& scene, const World& world, const CapstanScratch& capstan,
+                  const TimeSpan& t, PartSystem& s, Trial& trial) {
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   double most = 0.0;
@@ -81,7 +80,7 @@ double add_missed(const Scene& scene, const World& world, Workspace& work, const
     const bool middle = row.kind == RowKind::pinch_middle;
     const bool violated = row.clearance < -t.made_up || (middle && row.clearance > t.made_up);
     if (violated && !middle && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
-      work.violated = true;
+      trial.violated = true;
     }
     if (!row.on && (middle || (group >= 0 && !shares))) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
@@ -121,7 +120,7 @@ double greatest_speed(const World& world, std::span<const int> bodies,
 
 /// Solves and moves a part; whether its lengths and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               int most_rounds, bool begins, Stopwatch& watch) {
+               int most_rounds, bool begins, Trial& trial, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   steady_light_bodies(world, work.parts, part, t.kick, s);
@@ -137,10 +136,10 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
     if (round > 0 &&
         greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
-      work.missed = infinity;
+      trial.missed = infinity;
       return false;
     }
-    work.settled = work.settled && settled;
+    trial.settled = trial.settled && settled;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
@@ -150,16 +149,16 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(scene, world, work, t, s);
+    const double missed = add_missed(scene, world, set.capstan, t, s, trial);
     const bool follows = round < 2 && most_rounds > 0 && !s.carried.empty();
     if (follows) follow_flow(work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
-    if (round == 1) work.local_error = std::max(work.local_error, missed);
+    if (round == 1) trial.local_error = std::max(trial.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.
     const bool meets = missed <= exact * s.reach || t.length < shortest_corrected * t.repair;
     if (meets && !follows) return true;
     // Where states flip it may get worse for a round.
-    work.missed = std::max(work.missed, missed / s.extent);
+    trial.missed = std::max(trial.missed, missed / s.extent);
     if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
       return false;
     before_last = last;
@@ -168,32 +167,37 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   }
 }
 
-/// Tries an interval from where the last began; whether lengths and gaps are exact at its end. Lists
-/// what has happened in it.
-bool try_interval(const Scene& scene, World& world, Workspace& work, double length, bool locate,
-                  int most_rounds, bool begins, Stopwatch& watch) {
+void add(const Trial& one, Trial& all) {
+  all.met = all.met && one.met;
+  all.settled = all.settled && one.settled;
+  all.violated = all.violated || one.violated;
+  all.missed = std::max(all.missed, one.missed);
+  all.local_error = std::max(all.local_error, one.local_error);
+}
+
+/// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
+void try_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                  double length, bool locate, int most_rounds, bool begins, Stopwatch& watch) {
   TimeSpan t;
   t.length = length;
   t.repair = world.step_length;
-  t.lag = world.lag;
+  t.lag = movers.lag;
   t.clamps = true;
-  t.kick = world.lag + 0.5 * length;
+  t.kick = movers.lag + 0.5 * length;
   t.start = work.start.time;
-  work.local_error = 0.0;
-  work.settled = true;
-  work.violated = false;
-  work.missed = 0.0;
+  work.trial = Trial{};
+  work.trials.resize(work.parts.list.size());
   for (Happening& event : work.events) event.seen = false;
-  bool met = true;
-  for (int p = 0; index(p) < work.parts.list.size(); ++p) {
+  for (const int p : movers.parts) {
     Part& part = at(work.parts.list, p);
-    if (part.asleep) continue;
     PartSystem& s = at(work.systems, part.system);
+    Trial& trial = at(work.trials, p) = Trial{};
     apply_forces(scene, world, t, work.parts, part, s);
     watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
     t.reach = locate ? s.reach : infinity;
-    met = move_part(scene, world, work, part, t, most_rounds, begins, watch) && met;
+    trial.met = move_part(scene, world, work, part, t, most_rounds, begins, trial, watch);
+    add(trial, work.trial);
     if (!locate) continue;
     find_catches(scene, world, work, p);
     find_gone_links(world, work, p);
@@ -202,72 +206,58 @@ bool try_interval(const Scene& scene, World& world, Workspace& work, double leng
   for (Happening& event : work.events) {
     if (!event.seen) event.clearance = infinity;
   }
-  return met;
-}
-
-/// Puts everything back to where the interval began.
-void go_back(World& world, Workspace& work) {
-  const Start& start = work.start;
-  world.diagnostics.fallbacks = start.fallbacks;
-  world.position = start.position;
-  world.velocity = start.velocity;
-  world.angle = start.angle;
-  world.angular_velocity = start.angular_velocity;
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (sleeps(work.parts, c)) continue;
-    CableState& cable = world.cables[c];
-    if (const int first = work.first_link[c]; first >= 0) {
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material = start.material[index(first) + i];
-      }
-    }
-    update_cable(world, cable, false, is_known(work));
-  }
 }
 
 /// Tries an interval from the same start again.
-bool try_again(const Scene& scene, World& world, Workspace& work, double length, int most_rounds,
-               Stopwatch& watch) {
-  go_back(world, work);
-  return try_interval(scene, world, work, length, true, most_rounds, false, watch);
+void try_again(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+               double length, int most_rounds, Stopwatch& watch) {
+  go_back(world, work, movers.parts);
+  try_interval(scene, world, work, movers, length, true, most_rounds, false, watch);
 }
 
-/// The longest interval of at most `length` that is exact at its end and errs by no more than the
-/// scene allows, whatever happens in it; likewise.
-double find_sound_interval(const Scene& scene, World& world, Workspace& work, double length,
-                           bool& met, Stopwatch& watch) {
+bool errs(const World& world, const Trial& trial) {
+  const double allowed = share_of_error * world.configuration.error;
+  return allowed > 0.0 && trial.met && trial.local_error > allowed;
+}
+
+/// The longest interval of at most `length`, which was just tried, that is exact at its end and errs by no
+/// more than the scene allows, whatever happens in it; likewise.
+double find_sound_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                           double length, Stopwatch& watch) {
+  const Trial& trial = work.trial;
   const auto again = [&](int most_rounds) {
     work.events.clear();
-    return try_again(scene, world, work, length, most_rounds, watch);
+    try_again(scene, world, work, movers, length, most_rounds, watch);
   };
-  met = try_interval(scene, world, work, length, true, shake_rounds, true, watch);
   const double allowed = share_of_error * world.configuration.error;
-  while (allowed > 0.0 && met && work.local_error > allowed &&
-         length > shortest * world.step_length) {
-    length *= std::clamp(0.8 * std::cbrt(allowed / work.local_error), 0.1, 0.7);
-    met = again(shake_rounds);
+  while (errs(world, trial) && length > shortest * world.step_length) {
+    length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
+    again(shake_rounds);
   }
-  const auto unsound = [&work, &met] { return !met && (work.settled || work.missed > sound); };
+  const auto unsound = [&trial] { return !trial.met && (trial.settled || trial.missed > sound); };
   const double whole = length;
   for (int halvings = 0; unsound() && halvings < most_halvings; ++halvings) {
-    const double missed = work.missed;
+    const double missed = trial.missed;
     length *= 0.5;
-    met = again(shake_rounds);
+    again(shake_rounds);
     // A way that bends misses a quarter then. What misses half contradicts itself, as a motor that
     // turns against a jammed cable does: no interval is short enough.
-    if (unsound() && missed < infinity && work.missed > 0.4 * missed) {
+    if (unsound() && missed < infinity && trial.missed > 0.4 * missed) {
       length = whole;
       break;
     }
   }
   // The linear solution is sound at least; what it misses is repaired.
-  if (!met && (work.settled || length == whole)) again(0);
+  if (!trial.met && (trial.settled || length == whole)) {
+    again(0);
+    work.trial.met = false;
+  }
   return length;
 }
 
 /// Shortens the interval that was tried last to the first of its events; likewise.
-double locate_first_event(const Scene& scene, World& world, Workspace& work, double length,
-                          bool& met, Stopwatch& watch) {
+double locate_first_event(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                          double length, bool& met, Stopwatch& watch) {
   double late = length, early = 0.0;
   double late_by = least_clearance(work.events), early_by = infinity;
   double tried = length;
@@ -287,53 +277,111 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, dou
     const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
     if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
     tried = next;
-    met = try_again(scene, world, work, tried, met ? shake_rounds : 0, watch) && met;
+    try_again(scene, world, work, movers, tried, met ? shake_rounds : 0, watch);
+    met = work.trial.met && met;
   }
   return tried;
 }
 
 }  // namespace
 
-void begin_interval(const World& world, Workspace& work, double time) {
+void go_back(World& world, Workspace& work, std::span<const int> parts) {
+  const Start& start = work.start;
+  world.diagnostics.fallbacks = start.fallbacks;
+  const auto put_back = [&](int body) {
+    at(world.position, body) = at(start.position, body);
+    at(world.velocity, body) = at(start.velocity, body);
+    at(world.angle, body) = at(start.angle, body);
+    at(world.angular_velocity, body) = at(start.angular_velocity, body);
+  };
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
+    for (const int body : bodies_of(work.parts, part)) put_back(body);
+    for (const int shape : carried_of(work.parts, part)) put_back(shape);
+    for (const int c : cables_of(work.parts, part)) {
+      CableState& cable = at(world.cables, c);
+      if (const int first = at(work.first_link, c); first >= 0) {
+        for (std::size_t i = 0; i < cable.links.size(); ++i) {
+          cable.links[i].material = start.material[index(first) + i];
+        }
+      }
+      update_cable(world, cable, false, is_known(work));
+    }
+  }
+}
+
+void begin_interval(const World& world, Workspace& work, const Movers& movers, double time) {
   Start& start = work.start;
   start.time = time;
   start.fallbacks = world.diagnostics.fallbacks;
-  start.position = world.position;
-  start.velocity = world.velocity;
-  start.angle = world.angle;
-  start.angular_velocity = world.angular_velocity;
   start.material.clear();
-  work.first_link.assign(world.cables.size(), -1);
-  for (const Part& part : work.parts.list) {
-    if (part.asleep || !can_slide(part)) continue;
+  work.events.clear();
+  if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
+  for (const int p : movers.parts) {
+    const Part& part = at(work.parts.list, p);
+    const bool slides = can_slide(part);
     for (const int c : cables_of(work.parts, part)) {
-      at(work.first_link, c) = static_cast<int>(start.material.size());
+      at(work.first_link, c) = slides ? static_cast<int>(start.material.size()) : -1;
+      if (!slides) continue;
       for (const Link& link : at(world.cables, c).links) start.material.push_back(link.material);
     }
   }
-  work.released.clear();
-  work.spans_moved = false;
-  work.events.clear();
-}
-
-double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
-                     Stopwatch& watch) {
-  length = find_sound_interval(scene, world, work, length, met, watch);
-  if (work.events.empty()) return length;
-  return locate_first_event(scene, world, work, length, met, watch);
-}
-
-bool cross_interval(const Scene& scene, World& world, Workspace& work, double length,
-                    Stopwatch& watch) {
-  if (try_interval(scene, world, work, length, false, shake_rounds, true, watch)) return true;
-  const double missed = work.missed;
-  const auto again = [&](int most_rounds) {
-    go_back(world, work);
-    try_interval(scene, world, work, length, false, most_rounds, false, watch);
+  if (!work.neighbourhoods.divided) {
+    start.position = world.position;
+    start.velocity = world.velocity;
+    start.angle = world.angle;
+    start.angular_velocity = world.angular_velocity;
+    return;
+  }
+  const auto note = [&](int body) {
+    at(start.position, body) = at(world.position, body);
+    at(start.velocity, body) = at(world.velocity, body);
+    at(start.angle, body) = at(world.angle, body);
+    at(start.angular_velocity, body) = at(world.angular_velocity, body);
   };
-  again(0);
+  for (const int p : movers.parts) {
+    const Part& part = at(work.parts.list, p);
+    for (const int body : bodies_of(work.parts, part)) note(body);
+    for (const int shape : carried_of(work.parts, part)) note(shape);
+  }
+}
+
+Trial trial_of(const Workspace& work, std::span<const int> parts) {
+  Trial all;
+  for (const int p : parts) add(at(work.trials, p), all);
+  return all;
+}
+
+bool is_sound(const World& world, const Trial& trial) {
+  return trial.met && !errs(world, trial);
+}
+
+bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                        double length, bool begins, Stopwatch& watch) {
+  try_interval(scene, world, work, movers, length, true, shake_rounds, begins, watch);
+  return is_sound(world, work.trial) && work.events.empty();
+}
+
+double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                        double length, bool& met, Stopwatch& watch) {
+  length = find_sound_interval(scene, world, work, movers, length, watch);
+  met = work.trial.met;
+  if (work.events.empty()) return length;
+  return locate_first_event(scene, world, work, movers, length, met, watch);
+}
+
+bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                    double length, Stopwatch& watch) {
+  const auto cross = [&](int most_rounds, bool begins) {
+    if (!begins) go_back(world, work, movers.parts);
+    try_interval(scene, world, work, movers, length, false, most_rounds, begins, watch);
+  };
+  cross(shake_rounds, true);
+  if (work.trial.met) return true;
+  const double missed = work.trial.missed;
+  cross(0, false);
   // Of two solutions that do not hold the one that misses less.
-  if (work.missed > missed && work.missed > sound) again(shake_rounds);
+  if (work.trial.missed > missed && work.trial.missed > sound) cross(shake_rounds, false);
   return false;
 }
 

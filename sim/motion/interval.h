@@ -3,11 +3,14 @@
 // One interval of a step: tried, taken back and tried again until nothing happens in it but at its
 // end, lengths and gaps are exact there, and its error is what the scene allows.
 
+#include <span>
+
 #include "sim/stages.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
+struct Trial;
 struct Workspace;
 
 /// The share of Configuration::error that one interval may err by. Intervals' errors add up, and an
@@ -15,18 +18,39 @@ struct Workspace;
 /// ask for (analysis/results/convergence.md).
 constexpr double share_of_error = 4e-5;
 
-/// Notes that an interval begins at `time` (s), with the world as it is: Workspace::start.
-void begin_interval(const World& world, Workspace& work, double time);
+/// What moves together by one interval: some parts, whose velocities are `lag` (s) behind.
+struct Movers {
+  std::span<const int> parts;
+  double lag;
+};
 
-/// Moves the world by the longest interval of at most `length` (s) in which nothing happens but at its
-/// end; what happens there is in Workspace::events. Returns its length. `met`: lengths and gaps are
-/// exact there.
-double find_interval(const Scene& scene, World& world, Workspace& work, double length, bool& met,
-                     Stopwatch& watch);
+/// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.
+void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
-/// Moves the world by an interval of `length` (s) whatever happens in it: constraints bear force as
-/// early as it takes. Whether lengths and gaps are exact at its end.
-bool cross_interval(const Scene& scene, World& world, Workspace& work, double length,
-                    Stopwatch& watch);
+/// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact and the error is
+/// what the scene allows, so that this is the interval. `begins`: it is the first try since
+/// begin_interval.
+bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                        double length, bool begins, Stopwatch& watch);
+
+/// Moves them, where a whole interval of `length` has just been tried in vain, by the longest in which
+/// nothing happens but at its end; what happens there is in Workspace::events. Returns its length.
+/// `met`: lengths and gaps are exact there.
+double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                        double length, bool& met, Stopwatch& watch);
+
+/// Moves them by an interval of `length` (s) whatever happens in it: constraints bear force as early
+/// as it takes. Whether lengths and gaps are exact at its end.
+bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                    double length, Stopwatch& watch);
+
+/// The last trial of these parts.
+Trial trial_of(const Workspace& work, std::span<const int> parts);
+
+/// Whether a trial errs by no more than the scene allows, and needs no repair.
+bool is_sound(const World& world, const Trial& trial);
+
+/// Puts these back to where their interval began.
+void go_back(World& world, Workspace& work, std::span<const int> parts);
 
 }  // namespace pinchlab

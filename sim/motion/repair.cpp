@@ -121,7 +121,7 @@ void empty_pinches_of(const World& world, CableState& cable) {
 
 void empty_pinches(World& world, const Parts& parts) {
   for (const Part& part : parts.list) {
-    if (part.asleep || !has_contacts(part)) continue;
+    if (is_idle(part) || !has_contacts(part)) continue;
     for (const int c : cables_of(parts, part)) empty_pinches_of(world, at(world.cables, c));
   }
 }

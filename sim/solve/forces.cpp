@@ -76,6 +76,17 @@ BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties no
   return now;
 }
 
+/// Whether a motor without a limit has left its body to the cables in the interval before an instant, `lag`
+/// after that interval's middle.
+bool has_stalled(const Body& body, const TimeSpan& instant, double omega) {
+  constexpr double rounding = 1e-9;
+  if (body.torque_limit < infinity) return false;
+  const double asked =
+      body.motor.empty() ? *body.driven_angular_velocity
+                         : mean_drive(body.motor, instant.start - 2.0 * instant.lag, instant.start);
+  return std::abs(omega - asked) > rounding * std::abs(asked);
+}
+
 /// The free velocity of a body with a motor, or a table of torques.
 void drive_body(const Scene& scene, const World& world, const TimeSpan& t, int body, int place,
                 PartSystem& s) {
@@ -87,6 +98,11 @@ void drive_body(const Scene& scene, const World& world, const TimeSpan& t, int b
   free = free_velocity(forcing_of(scene, now, t.kick), at(world.velocity, body), omega);
   if (!now.driven_angular_velocity) return;
   free.z() = *now.driven_angular_velocity;
+  if (t.held_only && t.kick > 0.0 && has_stalled(given, t, omega)) {
+    free.z() = omega;
+    add_stalled_motor(always, place, omega, s);
+    return;
+  }
   add_motor(always, place, free.z(), omega, t.kick, s);
 }
 

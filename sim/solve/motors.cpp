@@ -88,7 +88,18 @@ void add_motor(const BodyProperties& body, int place, double speed, double befor
   find_first_state(motor);
 }
 
+void add_stalled_motor(const BodyProperties& body, int place, double before, PartSystem& s) {
+  Motor& motor = s.motors.emplace_back();
+  motor.place = place;
+  motor.speed = motor.before = before;
+  motor.inertia = inertia_of(body);
+  motor.moves = can_move(body);
+  motor.most = infinity;
+  motor.state = MotorState::stalls;
+}
+
 void find_first_state(Motor& motor) {
+  if (motor.state == MotorState::stalls) return;
   const double needed = motor.inertia * (motor.speed - motor.before);
   const bool gives = std::abs(needed) > motor.most || motor.most == 0.0;
   motor.state = !gives         ? MotorState::holds

@@ -150,7 +150,7 @@ TEST(DisconnectedScene, SleepsWithoutDisturbingWhatMoves) {
     }
   }
   int asleep = 0;
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += sleeps(with_work.parts, c);
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) asleep += is_idle(with_work.parts, c);
   EXPECT_EQ(asleep, count - moving);
 }
 

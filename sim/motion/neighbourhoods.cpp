@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/neighbourhoods.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/motion/interval.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+int find_root(std::vector<int>& root, int part) {
+  while (at(root, part) != part) part = at(root, part) = at(root, at(root, part));
+  return part;
+}
+
+/// The lesser root stays.
+void join(std::vector<int>& root, int a, int b) {
+  a = find_root(root, a);
+  b = find_root(root, b);
+  at(root, std::max(a, b)) = std::min(a, b);
+}
+
+/// Where a body may get to in a step from its start, at twice its speed.
+Reach reach_of(const Scene& scene, const World& world, const Start& start, int body) {
+  constexpr double room = 1.02;
+  const double h = world.step_length;
+  Reach reach{body, at(start.position, body), room * at(world.bodies, body).radius};
+  if (is_static(at(world.bodies, body))) return reach;
+  reach.radius += 2.0 * h * (at(start.velocity, body).norm() + scene.gravity.norm() * h);
+  return reach;
+}
+
+/// The same of a link, with its cable.
+Reach reach_of(const Scene& scene, const World& world, const Start& start, const CableState& cable,
+               const Link& link) {
+  if (link.body < 0) return {-1, link.offset, cable.half_width};
+  Reach reach = reach_of(scene, world, start, link.body);
+  reach.radius += cable.half_width + link.offset.norm();
+  return reach;
+}
+
+double distance(const Vec2& x, const Vec2& from, const Vec2& to) {
+  const Vec2 d = to - from;
+  const double share = d.squaredNorm() > 0.0 ? (x - from).dot(d) / d.squaredNorm() : 0.0;
+  return (x - from - std::clamp(share, 0.0, 1.0) * d).norm();
+}
+
+/// Joins the parts of bodies that may reach the span with the part of its cable.
+void join_at_span(const Parts& parts, Neighbourhoods& near, int part, const Reach& tail,
+                  const Reach& head, double longest) {
+  const double width = std::max(tail.radius, head.radius);
+  const double low = std::min(tail.centre.x(), head.centre.x()) - width;
+  const double high = std::max(tail.centre.x(), head.centre.x()) + width;
+  auto it = std::lower_bound(near.reaches.begin(), near.reaches.end(), low - longest,
+                             [](const Reach& r, double x) { return r.centre.x() - r.radius < x; });
+  for (; it != near.reaches.end() && it->centre.x() - it->radius <= high; ++it) {
+    const int other = at(parts.of_body, it->body);
+    if (other == part || find_root(near.root, other) == find_root(near.root, part)) continue;
+    if (distance(it->centre, tail.centre, head.centre) > width + it->radius) continue;
+    join(near.root, part, other);
+  }
+}
+
+/// Joins what spans and bodies may meet.
+void join_at_spans(const Scene& scene, const World& world, const Workspace& work,
+                   Neighbourhoods& near) {
+  near.reaches.clear();
+  double longest = 0.0;
+  for (int b = 0; index(b) < world.bodies.size(); ++b) {
+    if (is_static(at(world.bodies, b)) || !meets_spans(at(world.bodies, b))) continue;
+    near.reaches.push_back(reach_of(scene, world, work.start, b));
+    longest = std::max(longest, 2.0 * near.reaches.back().radius);
+  }
+  std::sort(near.reaches.begin(), near.reaches.end(), [](const Reach& p, const Reach& q) {
+    const double low_p = p.centre.x() - p.radius, low_q = q.centre.x() - q.radius;
+    return low_p != low_q ? low_p < low_q : p.body < q.body;
+  });
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    const CableState& cable = world.cables[c];
+    if (is_passed(cable)) continue;
+    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+      const Link& to = cable.links[s];
+      const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
+      if (is_side(from, to)) continue;
+      join_at_span(work.parts, near, work.parts.of_cable[c],
+                   reach_of(scene, world, work.start, cable, from),
+                   reach_of(scene, world, work.start, cable, to), longest);
+    }
+  }
+}
+
+/// Joins what presses on a static body with the parts of all cables that run over it.
+void join_at_static_bodies(const World& world, const Parts& parts, Neighbourhoods& near) {
+  near.over.assign(world.bodies.size(), -1);
+  for (const Contact& contact : world.contacts) {
+    if (contact.b < 0) continue;
+    const int first = at(parts.of_body, contact.a), second = at(parts.of_body, contact.b);
+    if ((first < 0) == (second < 0)) continue;
+    int& over = at(near.over, first < 0 ? contact.a : contact.b);
+    const int part = std::max(first, second);
+    if (over >= 0) join(near.root, over, part);
+    over = part;
+  }
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    for (const Link& link : world.cables[c].links) {
+      if (link.body < 0 || link.orientation == 0 || at(near.over, link.body) < 0) continue;
+      join(near.root, at(near.over, link.body), parts.of_cable[c]);
+    }
+  }
+}
+
+/// Numbers the neighbourhoods, in `over` by their roots; how many there are.
+int number(const Parts& parts, Neighbourhoods& near) {
+  near.over.assign(parts.list.size(), -1);
+  int count = 0;
+  for (int p = 0; index(p) < parts.list.size(); ++p) {
+    int& number = at(near.over, find_root(near.root, p));
+    if (number < 0) number = count++;
+  }
+  return count;
+}
+
+}  // namespace
+
+double Neighbourhoods::left_of(int body) const {
+  return at(list, at(of_body, body)).left;
+}
+
+bool Neighbourhoods::separate_bodies(int body, int other) const {
+  if (!divided) return false;
+  const int a = at(of_body, body), b = at(of_body, other);
+  return a >= 0 && b >= 0 && a != b;
+}
+
+bool Neighbourhoods::separate_from_cable(int body, int cable) const {
+  if (!divided) return false;
+  const int a = at(of_body, body), b = at(of_cable, cable);
+  return a >= 0 && b >= 0 && a != b;
+}
+
+void keep_start(const World& world, Workspace& work) {
+  StepStart& kept = work.step_start;
+  kept.start = work.start;
+  kept.first_link = work.first_link;
+  kept.cables = world.cables;
+  kept.contacts = world.contacts;
+  kept.still_steps = world.still_steps;
+  kept.diagnostics = world.diagnostics;
+}
+
+void take_back(World& world, Workspace& work) {
+  StepStart& kept = work.step_start;
+  world.cables = kept.cables;
+  world.contacts = kept.contacts;
+  world.still_steps = kept.still_steps;
+  world.diagnostics = kept.diagnostics;
+  Workspace fresh;
+  fresh.start = kept.start;
+  fresh.first_link = kept.first_link;
+  fresh.before = std::move(work.before);
+  work = std::move(fresh);
+  find_parts(world, work);
+  put_together(world, work.parts, work.neighbourhoods);
+  go_back(world, work, work.neighbourhoods.parts.items);
+}
+
+int number_of(const Neighbourhoods& near, const Parts& parts, const Part& part) {
+  if (!near.divided) return 0;
+  if (part.bodies_begin < part.bodies_end) {
+    return at(near.of_body, at(parts.bodies, part.bodies_begin));
+  }
+  return at(near.of_cable, at(parts.cables, part.cables_begin));
+}
+
+void put_together(const World& world, Parts& parts, Neighbourhoods& near) {
+  near.of_body.clear();
+  near.of_cable.clear();
+  near.divided = near.crossed = false;
+  near.list.assign(1, {world.step_length, world.lag, world.time()});
+  list_parts(parts, near);
+}
+
+bool divide(const Scene& scene, const World& world, Workspace& work) {
+  Neighbourhoods& near = work.neighbourhoods;
+  Parts& parts = work.parts;
+  if (near.parts.items.size() < 2) return false;
+  near.root.resize(parts.list.size());
+  std::iota(near.root.begin(), near.root.end(), 0);
+  join_at_static_bodies(world, parts, near);
+  join_at_spans(scene, world, work, near);
+  const int count = number(parts, near);
+  if (count < 2) return false;
+  near.list.assign(index(count), near.list.front());
+  near.divided = true;
+  const auto of_part = [&near](int part) {
+    return part < 0 ? -1 : at(near.over, find_root(near.root, part));
+  };
+  near.of_body.resize(world.bodies.size());
+  near.of_cable.resize(world.cables.size());
+  std::transform(parts.of_body.begin(), parts.of_body.end(), near.of_body.begin(), of_part);
+  std::transform(parts.of_cable.begin(), parts.of_cable.end(), near.of_cable.begin(), of_part);
+  list_parts(parts, near);
+  for (int n = 0; n < count; ++n) {
+    if (parts_of(near, n).empty()) at(near.list, n).left = 0.0;  // asleep
+  }
+  return true;
+}
+
+void list_parts(Parts& parts, Neighbourhoods& near) {
+  std::vector<int>& begin = near.parts.begin;
+  begin.assign(near.list.size() + 1, 0);
+  for (Part& part : parts.list) {
+    const int n = number_of(near, parts, part);
+    if (!part.asleep) ++at(begin, n + 1);
+    part.waits = near.divided && !at(near.list, n).moved;
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  near.parts.items.resize(index(begin.back()));
+  for (int p = static_cast<int>(parts.list.size()) - 1; p >= 0; --p) {
+    const Part& part = at(parts.list, p);
+    if (!part.asleep) at(near.parts.items, --at(begin, number_of(near, parts, part) + 1)) = p;
+  }
+  // Each begin has become that of the list before.
+  std::rotate(begin.begin(), begin.begin() + 1, begin.end());
+  begin.back() = static_cast<int>(near.parts.items.size());
+}
+
+std::span<const int> parts_of(const Neighbourhoods& near, int number) {
+  return slice(near.parts.items, at(near.parts.begin, number), at(near.parts.begin, number + 1));
+}
+
+Neighbourhood course_of(const Neighbourhoods& near, const Parts& parts, const Part& part) {
+  if (near.of_body.empty()) return near.list.front();
+  Neighbourhood all;
+  const auto add = [&all, &near](int number) {
+    const Neighbourhood& one = at(near.list, number);
+    all.lag = std::max(all.lag, one.lag);
+    all.time = std::max(all.time, one.time);
+    all.events = std::max(all.events, one.events);
+    all.happened = all.happened || one.happened;
+    all.violated = all.violated || one.violated;
+  };
+  for (const int b : bodies_of(parts, part)) add(at(near.of_body, b));
+  for (const int c : cables_of(parts, part)) add(at(near.of_cable, c));
+  return all;
+}
+
+}  // namespace pinchlab

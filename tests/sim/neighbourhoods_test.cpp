@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts that cannot meet within a step are divided each by its own events: sim/motion/neighbourhoods.h.
+
+#include "sim/motion/neighbourhoods.h"
+
+#include "base/at.h"
+#include "sim/workspace.h"
+#include "tests/sim/same_state.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+double height_of_ball(int i) {  // m, of its lowest point at time 0
+  return 0.5 + 0.4 * std::fmod(0.6180339887 * i, 1.0);
+}
+
+/// Balls side by side that fall on one floor and rebound by 0.8.
+Scene balls(int count, double (*height)(int)) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    Body ball = body(fmt::format("ball {}", i), BodyKind::free, i, 0.1 + height(i), 0.1, 1.0);
+    ball.restitution = 0.8;
+    scene.bodies.push_back(ball);
+  }
+  scene.walls.push_back({Vec2(-1.0, 0.0), Vec2(count + 1.0, 0.0), 0.5, 0.0});
+  scene.steps_per_frame = 1;
+  return scene;
+}
+
+TEST(Neighbourhoods, BallsBounceAsIfEachWereAlone) {
+  constexpr int count = 120;  // five times as many as may rebound in a step of one of them
+  const Scene scene = balls(count, height_of_ball);
+  World world = make_world(scene, measured());
+  std::vector<Scene> alone;
+  std::vector<World> worlds;
+  for (int i = 0; i < count; ++i) {
+    Scene one = balls(1, height_of_ball);
+    one.bodies[0] = scene.bodies[index(i)];
+    one.walls = scene.walls;
+    alone.push_back(one);
+    worlds.push_back(make_world(one, measured()));
+  }
+  Workspace work;
+  for (int k = 0; k < 60; ++k) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    for (int i = 0; i < count; ++i) {
+      run(alone[index(i)], worlds[index(i)], 1);
+      ASSERT_NEAR(world.position[index(i)].y(), worlds[index(i)].position[0].y(), 1e-9)
+          << "ball " << i << ", step " << k;
+    }
+  }
+  EXPECT_EQ(world.diagnostics.clusters, 0);
+  EXPECT_GT(world.diagnostics.events, count);
+}
+
+// All in one step of 17 ms, but at 120 times of it.
+TEST(Neighbourhoods, HoweverManyLandInOneStepAllRebound) {
+  constexpr int count = 120;
+  const auto height = [](int i) { return 0.5 + 1e-4 * i; };
+  const Scene scene = balls(count, height);
+  World world = make_world(scene, measured());
+  const double g = -scene.gravity.y();
+  while (world.time() < 0.4) {
+    run(scene, world, 1);
+    for (int i = 0; i < count; ++i) {
+      const double t0 = std::sqrt(2.0 * height(i) / g), t = world.time() - t0;
+      const double exact = t < 0.0 ? height(i) - 0.5 * g * world.time() * world.time()
+                                   : 0.8 * g * t0 * t - 0.5 * g * t * t;
+      ASSERT_NEAR(world.position[index(i)].y() - 0.1, exact, 1e-8) << i << ", t = " << world.time();
+    }
+  }
+  EXPECT_EQ(world.diagnostics.clusters, 0);
+}
+
+// A body of 1 kg hits one of 1 g, which flies twice as fast and meets a third far out of the first's reach, all
+// in one step; far off a ball bounces, so that the step is divided. By then the third has come to the
+// step's end, and is taken back.
+TEST(Neighbourhoods, ThoseThatMeetAfterAllAreTakenBack) {
+  Scene scene;
+  scene.gravity = Vec2::Zero();
+  const auto add = [&scene](double x, double y, double mass, Vec2 velocity) {
+    Body ball = body(fmt::format("ball {}", scene.bodies.size()), BodyKind::free, x, y, 0.02, mass);
+    ball.restitution = 1.0;
+    ball.contact_friction = 0.0;
+    ball.velocity = velocity;
+    scene.bodies.push_back(ball);
+  };
+  add(0.0, 0.0, 1.0, Vec2(10.0, 0.0));
+  add(0.06, 0.0, 1e-3, Vec2::Zero());
+  add(0.3, 0.0, 1e-3, Vec2::Zero());
+  add(50.0, 0.07, 1.0, Vec2(0.0, -10.0));
+  scene.walls.push_back({Vec2(49.0, 0.0), Vec2(51.0, 0.0), 0.0, 0.0});
+  scene.walls[0].restitution = 1.0;
+  scene.steps_per_frame = 1;
+  World world = make_world(scene, measured());
+  run(scene, world, 1);
+  // Elastic: the light one goes on with v2 = 2 v M / (M + m), the third takes all of that.
+  const double m = 1e-3, v2 = 2.0 * 10.0 / (1.0 + m), v1 = 10.0 * (1.0 - m) / (1.0 + m);
+  const double first_hit = 0.02 / 10.0, second_hit = first_hit + 0.2 / v2;
+  const double t = world.time();
+  EXPECT_GT(t, second_hit);
+  // The first then hits the second again, where that has stopped.
+  const double third_hit = second_hit + (0.2 - v1 * (second_hit - first_hit)) / v1;
+  ASSERT_GT(third_hit, t);
+  EXPECT_NEAR(world.position[0].x(), 0.02 + v1 * (t - first_hit), 1e-9);
+  EXPECT_NEAR(world.position[1].x(), 0.26, 1e-9);
+  EXPECT_NEAR(world.position[2].x(), 0.3 + v2 * (t - second_hit), 1e-9);
+  EXPECT_NEAR(world.position[3].y(), 0.02 + 10.0 * (t - 0.005), 1e-9);
+  EXPECT_NEAR(world.velocity[2].x(), v2, 1e-9);
+}
+
+/// A pendulum on a peg at x, and a ball above.
+void add_pendulum(Scene& scene, double x) {
+  scene.bodies.push_back(body(fmt::format("bob {}", x), BodyKind::free, x + 1.0, 0.0, 0.1, 1.0));
+  Cable rope = cable(at(x, 0.0), {}, on(static_cast<int>(scene.bodies.size()) - 1));
+  scene.cables.push_back(rope);
+}
+
+std::vector<int> neighbourhoods_of_bodies(const Scene& scene) {
+  World world = make_world(scene, measured());
+  Workspace work;
+  fit(world, work);
+  put_together(world, work.parts, work.neighbourhoods);
+  work.start.position = world.position;
+  work.start.velocity = world.velocity;
+  if (!divide(scene, world, work)) return std::vector<int>(world.bodies.size(), 0);
+  return work.neighbourhoods.of_body;
+}
+
+TEST(Neighbourhoods, AreOfWhatMayMeetInAStep) {
+  Scene scene;
+  add_pendulum(scene, 0.0);
+  add_pendulum(scene, 5.0);
+  scene.bodies.push_back(body("far", BodyKind::free, 0.5, 2.0, 0.1, 1.0));
+  EXPECT_EQ(neighbourhoods_of_bodies(scene), (std::vector<int>{0, 1, 2}));
+  scene.bodies.back().position.y() = 0.2;  // above the first one's rope
+  EXPECT_EQ(neighbourhoods_of_bodies(scene), (std::vector<int>{0, 1, 0}));
+  scene.bodies.back().position.y() = 2.0;
+  scene.bodies.back().velocity = {0.0, -300.0};
+  EXPECT_EQ(neighbourhoods_of_bodies(scene), (std::vector<int>{0, 1, 0}));
+}
+
+// Two weights over a pulley that does not turn: what presses on it may press a rope of theirs.
+TEST(Neighbourhoods, ReachOverStaticPulleys) {
+  Scene scene;
+  scene.bodies.push_back(body("pulley", BodyKind::fixed, 0.0, 0.0, 0.5, 1.0));
+  scene.bodies.push_back(body("left", BodyKind::free, -0.55, -3.0, 0.1, 1.0));
+  scene.bodies.push_back(body("right", BodyKind::free, 0.55, -3.0, 0.1, 1.0));
+  scene.bodies[0].cable_friction = 0.0;
+  scene.cables.push_back(cable(on(1), {{0, -1, 0}}, on(2)));
+  scene.bodies.push_back(body("roller", BodyKind::free, 0.0, 0.7005, 0.1, 1.0));
+  scene.bodies.push_back(body("far", BodyKind::free, 9.0, 0.7, 0.1, 1.0));
+  EXPECT_EQ(neighbourhoods_of_bodies(scene), (std::vector<int>{-1, 0, 0, 0, 1}));
+}
+
+// Its velocities are brought to the steps' ends where others need that, which is no more than a kick in
+// two halves.
+TEST(Neighbourhoods, APendulumSwingsAsBesideNothing) {
+  Scene scene;
+  add_pendulum(scene, 0.0);
+  Scene both = scene;
+  Scene others = balls(20, height_of_ball);
+  for (Body& ball : others.bodies) {
+    ball.position.x() += 50.0;
+    both.bodies.push_back(ball);
+  }
+  both.walls = others.walls;
+  both.walls[0].a.x() = 49.0;
+  both.walls[0].b.x() = 71.0;
+  for (const int steps : {4, 8, 16}) {
+    scene.steps_per_frame = both.steps_per_frame = steps;
+    World alone = make_world(scene, measured()), beside = make_world(both, measured());
+    run(scene, alone, 60 * steps);
+    run(both, beside, 60 * steps);
+    EXPECT_LT((alone.position[0] - beside.position[0]).norm(), 1e-12) << steps;
+    EXPECT_GT(beside.diagnostics.events, 20);
+  }
+}
+
+TEST(Neighbourhoods, AnotherWorkspaceGivesTheSameBits) {
+  EXPECT_TRUE(is_all_state(balls(30, height_of_ball), measured(), 120));
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
