@@ -42,11 +42,14 @@ World bodies_of_scene(const Scene& scene) {
 
 void lay_cables(const Scene& scene, World& world) {
   const double allowed = overlap_allowed(scene);
-  world.cables.clear();
-  world.cables.reserve(scene.cables.size());
+  std::vector<CableState> laid;
+  laid.reserve(scene.cables.size());
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    world.cables.push_back(lay_cable(scene, world, allowed, c));
+    laid.push_back(lay_cable(scene, world, allowed, c));
   }
+  // Copies made at once lie next to each other. With what laying leaves between them the steps of a
+  // scene of many cables would go through a third more pages of memory.
+  world.cables = laid;
 }
 
 /// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not

@@ -111,17 +111,17 @@ struct Cable {
   std::string name;          ///< unique in the scene
   double half_width = 0.05;  ///< m, > 0
   bool closed = false;
+  bool creep = false;  ///< elastic: rims carry it over as stretched as it came on (creep.h)
+  bool rod = false;    ///< bears force both ways, and nothing hits it: between nodes, and joints
+  Joint joint = Joint::none;
   Attachment start, end;  ///< unused when closed
   std::vector<Wrap> wraps;
   double slack = 0.0;                 ///< m, total length beyond the taut path at time 0; >= 0,
                                       ///< negative (pre-stretched) only with finite stiffness
   double axial_stiffness = infinity;  ///< N, EA; infinity: inextensible
-  bool creep = false;    ///< elastic: rims carry it over as stretched as it came on (creep.h)
-  double damping = 0.0;  ///< N s/m, of a spring: force per speed of its lengthening
-  Joint joint = Joint::none;
+  double damping = 0.0;               ///< N s/m, of a spring: force per speed of its lengthening
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
-  bool rod = false;      ///< bears force both ways, and nothing hits it: between nodes, and joints
   /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes a chain
   /// of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;

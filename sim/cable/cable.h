@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 
+#include "base/at.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -23,12 +24,12 @@ Vec2 offset_centre(const World& world, const Link& link);
 inline Vec2 link_centre(const World& world, const Link& link) {
   if (link.body < 0) return link.offset;
   if (!is_central(link)) return offset_centre(world, link);
-  return world.position[static_cast<std::size_t>(link.body)];
+  return at(world.position, link.body);
 }
 
 /// Angle (rad) of the body that carries the link; 0 for the world.
 inline double body_angle(const World& world, const Link& link) {
-  return link.body >= 0 ? world.angle[static_cast<std::size_t>(link.body)] : 0.0;
+  return link.body >= 0 ? at(world.angle, link.body) : 0.0;
 }
 
 /// Links inserted and removed so far, of all cables.
@@ -110,8 +111,7 @@ int way_of_layers(const CableState& cable, std::size_t link);
 
 /// The drum's link whose layers a contact presses (Contact::layers_cable): next to one of the ends.
 inline const Link& pressed_layers(const World& world, const Contact& contact) {
-  const std::vector<Link>& links =
-      world.cables[static_cast<std::size_t>(contact.layers_cable)].links;
+  const std::vector<Link>& links = at(world.cables, contact.layers_cable).links;
   const Link& first = links[1];
   const bool is_first =
       first.layers.way > 0 && (first.body == contact.a || first.body == contact.b);
@@ -121,7 +121,7 @@ inline const Link& pressed_layers(const World& world, const Contact& contact) {
 /// The least gap of a contact as its layers now lie (m).
 inline double target_of(const World& world, const Contact& contact) {
   if (contact.layers_cable < 0 || contact.target == 0.0) return contact.target;
-  const CableState& cable = world.cables[static_cast<std::size_t>(contact.layers_cable)];
+  const CableState& cable = at(world.cables, contact.layers_cable);
   return cable.least_gap + thickness_of_layers(pressed_layers(world, contact));
 }
 

@@ -152,7 +152,7 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
 void lay_tangents(const Scene& scene, const World& world, Course& course) {
   CableState& cable = course.cable;
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
-    const auto tail = static_cast<std::size_t>(previous_link(cable, static_cast<int>(i)));
+    const auto tail = index(previous_link(cable, static_cast<int>(i)));
     const Link &from = cable.links[tail], &to = cable.links[i];
     const double distance = (link_centre(world, to) - link_centre(world, from)).norm();
     const double pressed = opposite(from, to) ? 2.0 * cable.half_width - cable.least_gap : 0.0;

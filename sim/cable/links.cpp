@@ -44,14 +44,9 @@ void remove_link(const World& world, CableState& cable, int link) {
     if (now.pinch_middle) now.slip_speed = 0.0;
     now.pinch_middle = false;
   }
-  const bool merge = cable.links[static_cast<std::size_t>(before)].body ==
-                         cable.links[static_cast<std::size_t>(after)].body &&
-                     cable.links[static_cast<std::size_t>(before)].orientation ==
-                         cable.links[static_cast<std::size_t>(after)].orientation &&
-                     cable.links[static_cast<std::size_t>(before)].corner ==
-                         cable.links[static_cast<std::size_t>(after)].corner &&
-                     cable.links[static_cast<std::size_t>(before)].orientation != 0 &&
-                     before != after;
+  const Link &one = at(cable.links, before), &other = at(cable.links, after);
+  const bool merge = before != after && one.body == other.body && one.corner == other.corner &&
+                     one.orientation == other.orientation && one.orientation != 0;
   const bool of_corner = !merge && at(cable.links, link).corner >= 0;
   ++cable.changes;
   // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
@@ -194,7 +189,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
     links.push_back(whole);
     segments.push_back(cable.segments[i]);
     if (!cable.rims.empty()) rims.push_back(cable.rims[i]);
-    for (; next != pinches.end() && static_cast<std::size_t>(next->link) == i; ++next) {
+    for (; next != pinches.end() && index(next->link) == i; ++next) {
       Segment between;
       between.alpha = cable.segments[i].alpha + whole.orientation * next->arc;
       Link middle;

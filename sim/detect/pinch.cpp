@@ -459,7 +459,7 @@ void configure_pinches(World& world, Workspace& work) {
 
 namespace {
 
-/// The same of one part.
+/// assign_contacts, of one part.
 void assign_contacts(World& world, const Parts& parts, const Part& part) {
   for (const int i : contacts_of(parts, part)) at(world.contacts, i).pinch_points = 0;
   for (const int c : cables_of(parts, part)) {

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "base/at.h"
 #include "sim/contact.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/terms.h"
@@ -65,8 +66,8 @@ bool slides_somewhere(const World& world, const CableState& cable);
 
 /// Sliding speed over the wrapped body at a middle link's pinch: that of its run.
 inline double run_speed(const PartSystem& system, const CapstanScratch& capstan, const Row& row) {
-  const int run = system.frictions[static_cast<std::size_t>(row.friction)].run;
-  return run >= 0 ? capstan.runs[static_cast<std::size_t>(run)].speed : 0.0;
+  const int run = at(system.frictions, row.friction).run;
+  return run >= 0 ? at(capstan.runs, run).speed : 0.0;
 }
 
 /// Lists the runs of a part's cables that touch a body of finite friction; empty if none do.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/at.h"
 #include "sim/cable/mass.h"
 #include "sim/contact.h"
 #include "sim/scene.h"
@@ -235,17 +236,15 @@ inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 /// J v + bias at the present velocities (m/s).
 inline double row_speed(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];
-  return s.rows[r].bias + dot(row.ja, s.velocity[static_cast<std::size_t>(row.a)]) +
-         dot(row.jb, s.velocity[static_cast<std::size_t>(row.b)]);
+  return s.rows[r].bias + dot(row.ja, at(s.velocity, row.a)) + dot(row.jb, at(s.velocity, row.b));
 }
 
 /// Changes the velocities of the row's bodies by an impulse on it (N s).
 inline void push(PartSystem& s, std::size_t r, double impulse) {
   if (impulse == 0.0) return;
   const RowResponse& row = s.responses[r];
-  const auto a = static_cast<std::size_t>(row.a), b = static_cast<std::size_t>(row.b);
-  s.velocity[a] += impulse * row.ra;
-  s.velocity[b] += impulse * row.rb;
+  at(s.velocity, row.a) += impulse * row.ra;
+  at(s.velocity, row.b) += impulse * row.rb;
 }
 
 }  // namespace pinchlab

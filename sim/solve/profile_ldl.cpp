@@ -18,12 +18,11 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   double before = 0.0;  // reciprocal of the pivot before
   for (std::size_t u = 0; u < count; ++u) {
     const int first = first_[u], n = static_cast<int>(u);
-    double* row = factors_.data() + begin_[u] - first;
+    double* row = factors_.data() + offset_[u];
     for (int v = first + 1; v < n; ++v) {
-      const int first_v = first_[static_cast<std::size_t>(v)];
-      const double* row_v = factors_.data() + begin_[static_cast<std::size_t>(v)] - first_v;
+      const double* row_v = factors_.data() + at(offset_, v);
       double y = row[v];
-      for (int k = std::max(first, first_v); k < v; ++k) y -= row[k] * row_v[k];
+      for (int k = std::max(first, at(first_, v)); k < v; ++k) y -= row[k] * row_v[k];
       row[v] = y;
     }
     double pivot = row[n] + scale[u] * (1.0 + ridge);
@@ -32,7 +31,7 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
       row[v] = y * reciprocal;
       pivot -= row[v] * y;
     };
-    for (int v = first; v < n - 1; ++v) eliminate(v, reciprocal_[static_cast<std::size_t>(v)]);
+    for (int v = first; v < n - 1; ++v) eliminate(v, at(reciprocal_, v));
     if (first < n) eliminate(n - 1, before);
     if (pivot < dependence * scale[u] && pivot > -dependence * scale[u]) {
       before = 0.0;
@@ -51,9 +50,9 @@ void ProfileLdl::solve(std::vector<double>& x) const {
   double last = 0.0;  // x[u - 1]
   for (std::size_t u = 0; u < count; ++u) {
     const int first = first_[u], n = static_cast<int>(u);
-    const double* row = factors_.data() + begin_[u] - first;
+    const double* row = factors_.data() + offset_[u];
     double sum = x[u];
-    for (int k = first; k < n - 1; ++k) sum -= row[k] * x[static_cast<std::size_t>(k)];
+    for (int k = first; k < n - 1; ++k) sum -= row[k] * at(x, k);
     if (first < n) sum -= row[n - 1] * last;
     x[u] = last = sum;
   }
@@ -61,8 +60,8 @@ void ProfileLdl::solve(std::vector<double>& x) const {
   last = x[count - 1];  // x[u]
   for (std::size_t u = count - 1; u > 0; --u) {
     const int first = first_[u], n = static_cast<int>(u);
-    const double* row = factors_.data() + begin_[u] - first;
-    for (int k = first; k < n - 1; ++k) x[static_cast<std::size_t>(k)] -= row[k] * last;
+    const double* row = factors_.data() + offset_[u];
+    for (int k = first; k < n - 1; ++k) at(x, k) -= row[k] * last;
     double next = x[u - 1];
     if (first < n) next -= row[n - 1] * last;
     x[u - 1] = last = next;

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/at.h"
+
 namespace pinchlab {
 
 /// L D L^T factors without pivoting inside the matrix' profile (George & Liu 1981, ch. 4): row u is
@@ -20,28 +22,28 @@ class ProfileLdl {
   /// Starts an empty matrix.
   void clear() {
     first_.clear();
-    begin_.clear();
+    offset_.clear();
     used_ = 0;
   }
 
   /// Appends row u = size(), of zeros, whose first entry stands in column `first` <= u. The row's
-  /// entry in column v is the result's [v - first], until the next call.
+  /// entry in column v is the result's [v], until the next call.
   double* append(int first) {
-    const int u = static_cast<int>(first_.size());
+    const int u = size();
     first_.push_back(first);
-    begin_.push_back(static_cast<int>(used_));
+    offset_.push_back(static_cast<int>(used_) - first);
     const std::size_t begin = used_;
-    used_ += static_cast<std::size_t>(u - first + 1);
+    used_ += index(u - first + 1);
     if (entries_.size() < used_) entries_.resize(2 * used_);
     for (std::size_t k = begin; k < used_; ++k) entries_[k] = 0.0;
-    return entries_.data() + begin;
+    return row(u);
   }
 
   int size() const { return static_cast<int>(first_.size()); }
 
   /// First column of row u, and its entries as from `append`.
-  int first(int u) const { return first_[static_cast<std::size_t>(u)]; }
-  double* row(int u) { return entries_.data() + begin_[static_cast<std::size_t>(u)]; }
+  int first(int u) const { return at(first_, u); }
+  double* row(int u) { return entries_.data() + at(offset_, u); }
 
   /// Factors the matrix with scale[u] (1 + ridge) added to its diagonal, and leaves it as it is.
   /// scale[u] > 0 is also the size against which pivot u is judged. Returns how many rows were
@@ -53,7 +55,7 @@ class ProfileLdl {
 
  private:
   std::vector<int> first_;
-  std::vector<int> begin_;          // of row u in entries_
+  std::vector<int> offset_;         // A(u,v) is entries_[offset_[u] + v]; likewise L in factors_
   std::size_t used_ = 0;            // of entries_
   std::vector<double> entries_;     // rows of the matrix
   std::vector<double> factors_;     // rows of L, unit diagonal not stored, then the pivot's place

@@ -219,7 +219,7 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
     int first = u;
     if (last_a >= 0) first = std::min(first, ends[last_a].least);
     if (last_b >= 0) first = std::min(first, ends[last_b].least);
-    double* entries = s.ldl.append(first) - first;
+    double* entries = s.ldl.append(first);
     const auto add = [&](int last, const Eigen::Vector3d& response) {
       for (int e = last; e >= 0; e = ends[e].previous) {
         const RowBodies& other = at(s.bodies, set.row_of_unknown[index(e / 2)]);
@@ -245,7 +245,7 @@ void reassemble_changed(PartSystem& s) {
     if (last_changed < first) continue;
     const RowBodies& row = at(s.bodies, r);
     const RowResponse& response = at(s.responses, r);
-    double* entries = s.ldl.row(u) - first;
+    double* entries = s.ldl.row(u);
     for (int v = first; v < u; ++v) {
       const int other = s.assembled[index(v)];
       if (!at(s.changed, r) && !at(s.changed, other)) continue;
