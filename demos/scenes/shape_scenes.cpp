@@ -217,16 +217,18 @@ Scene flexible_pendulum(int pieces, int steps_per_frame) {
   return scene;
 }
 
-Scene folded_chain(int pieces, int steps_per_frame) {
+Scene folded_chain(int pieces, int steps_per_frame, double tolerance) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;
   const double piece = 1.0 / pieces;
-  scene.bodies.push_back(body("tip", BodyKind::free, 0.5 * piece, 0.0, 0.002, 0.5 * piece));
+  const double tip = tolerance > 0.0 ? 1e-6 * piece : 0.5 * piece;  // kg
+  scene.bodies.push_back(body("tip", BodyKind::free, 0.5 * piece, 0.0, 0.002, tip));
   scene.bodies[0].node = true;  // its half piece, which meets no other node
   scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.002));
   scene.cables[0].slack = 1.0 - 0.5 * piece;
   scene.cables[0].mass_per_metre = 1.0;
   scene.cables[0].nodes = pieces - 1;
+  scene.cables[0].node_tolerance = tolerance;
   spread_nodes(scene);
   return scene;
 }

@@ -67,7 +67,8 @@ Scene catenary(int pieces, int steps_per_frame);
 Scene flexible_pendulum(int pieces, int steps_per_frame);
 
 /// A chain of 1 m and 1 kg in so many pieces, hung up by both ends beside one another, one of which, body
-/// 0, is let go. After spread_nodes.
-Scene folded_chain(int pieces, int steps_per_frame);
+/// 0, is let go. With a tolerance (m) its number of nodes adapts, and the end has its half piece itself. After
+/// spread_nodes.
+Scene folded_chain(int pieces, int steps_per_frame, double tolerance = 0.0);
 
 }  // namespace pinchlab::build

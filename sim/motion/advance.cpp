@@ -12,6 +12,7 @@
 #include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/adapt_nodes.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
 #include "sim/motion/impact.h"
@@ -135,6 +136,20 @@ void lay_down_cables(World& world, const Parts& parts) {
   }
 }
 
+/// Makes cables of nodes finer and coarser.
+void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
+                 StageTimes* times) {
+  if (wants_other_nodes(scene, world, work)) {
+    if (world.lag > 0.0) catch_up(scene, world, time, work);
+    const double before = energy_of_motion(world);
+    change_nodes(scene, world, work);
+    detect_after_moving(scene, world, work, false, times);
+    strike_all(scene, world, work, time, false);
+    world.diagnostics.node_losses += before - energy_of_motion(world);
+  }
+  follow_chains(scene, world, work);
+}
+
 StepStatus fail_by_changes(World& world) {
   world.failure = fmt::format(
       "step {} (t = {} s): cables meet and leave bodies without end; move apart what they are in",
@@ -216,6 +231,8 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     }
     watch.lap(Stage::solve);
   }
+  if (!scene.chains.empty())
+    adapt_nodes(scene, world, work, world.time() + world.step_length, times);
   if (events > most_rebounds) ++d.clusters;
   d.fallbacks = std::min(d.fallbacks, fallbacks + 1);
   return StepStatus::ok;

@@ -6,6 +6,7 @@
 #include "base/at.h"
 #include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held.h"
 #include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/solve/motors.h"
@@ -162,6 +163,14 @@ void bend(const World& world, const Parts& parts, const CableState& cable, doubl
   pull(world, parts, at(world.cables, cable.bends_with).links[1], forces.end, k, s);
 }
 
+/// By the weight of the bend that a piece holds.
+void turn_held(const World& world, const Parts& parts, const CableState& piece, const Vec2& gravity,
+               double k, PartSystem& s) {
+  const Vec2 force = held_force(piece, gravity);
+  pull(world, parts, piece.links[0], -force, k, s);
+  pull(world, parts, piece.links[1], force, k, s);
+}
+
 /// Loads the part's bodies with the cables that they carry, and their motors.
 void load_bodies(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                  const TimeSpan& t, PartSystem& s) {
@@ -215,7 +224,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
     massed = massed || is_massed(cable);
-    bends = bends || cable.bends_with >= 0;
+    bends = bends || cable.bends_with >= 0 || cable.pieces > 1;
     const auto segments = static_cast<double>(cable.segments.size());
     s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
   }
@@ -225,7 +234,9 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   drive(s);
   if (!bends) return;
   for (const int c : cables_of(parts, part)) {
-    if (at(world.cables, c).bends_with >= 0) bend(world, parts, at(world.cables, c), t.kick, s);
+    const CableState& cable = at(world.cables, c);
+    if (cable.bends_with >= 0) bend(world, parts, cable, t.kick, s);
+    if (cable.pieces > 1) turn_held(world, parts, cable, scene.gravity, t.kick, s);
   }
 }
 
