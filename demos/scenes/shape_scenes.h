@@ -71,4 +71,9 @@ Scene flexible_pendulum(int pieces, int steps_per_frame);
 /// spread_nodes.
 Scene folded_chain(int pieces, int steps_per_frame, double tolerance = 0.0);
 
+/// A cable of 1.25 m and 0.8 kg/m hangs between a post and a ring, body 0, which a winch's rope pulls until the cable is
+/// straight, at 2 kN, and lets down again, in 5 s. So many nodes, at most; with a tolerance (m) they adapt. After
+/// spread_nodes.
+Scene drawn_taut(int nodes, int steps_per_frame, double tolerance = 0.0);
+
 }  // namespace pinchlab::build

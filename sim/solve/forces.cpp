@@ -152,7 +152,15 @@ void pull(const World& world, const Parts& parts, const Link& end, const Vec2& f
   const int place = at(parts.local, end.body);
   const Vec2 arm = link_centre(world, end) - at(world.position, mover_of(world, end.body));
   const Eigen::Vector3d impulse(k * force.x(), k * force.y(), k * cross(arm, force));
-  at(s.free_velocity, place) += at(s.mobility, place) * impulse;
+  Mobility mobility = at(s.mobility, place);
+  if (s.carried.empty() || at(s.carried, place)(0, 0) == 0.0) {
+    // Its own: that of the step before may be a light body's still (light_bodies.h).
+    const Mobility own = mobility_of(at(world.bodies, mover_of(world, end.body)), k);
+    mobility.xx = own.xx;
+    mobility.xy = own.xy;
+    mobility.yy = own.yy;
+  }
+  at(s.free_velocity, place) += mobility * impulse;
 }
 
 void bend(const World& world, const Parts& parts, const CableState& cable, double k,

@@ -23,6 +23,7 @@ std::vector<Item> stability_items(bool quick) {
           corners(quick),
           heavy_ropes(quick),
           folding(quick),
+          refinement(quick),
           long_swing(quick),
           plain_joints_under_pinch(quick)};
 }
