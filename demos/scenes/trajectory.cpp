@@ -11,7 +11,6 @@
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/scenes/scene_format.h"
-#include "sim/cable/cable.h"
 
 namespace pinchlab {
 namespace {
@@ -37,7 +36,7 @@ void add_segments(const Player& player, std::string& rows) {
   const World& world = player.world();
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
-    if (is_dormant(cable)) continue;
+    if (cable.pieces == 0) continue;  // part of another
     const std::size_t first = cable.closed ? 0 : 1;
     for (std::size_t i = first; i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];
