@@ -186,6 +186,28 @@ void load_end(Scene& scene, const Attachment& end, double mass) {
   body.mass += mass;
 }
 
+/// kg, of each node; the ends' half pieces are theirs, or of bodies that hold a cable whose number of nodes adapts.
+std::vector<double> weigh_nodes(Scene& scene, const Cable& whole, int pieces, double piece) {
+  std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
+  const double half = 0.5 * whole.mass_per_metre * piece;
+  if (whole.node_tolerance != 0.0) {
+    load_end(scene, whole.start, half);
+    load_end(scene, whole.end, half);
+    return masses;
+  }
+  if (ends_on_mobile(scene, whole.start)) masses.front() += half;
+  if (ends_on_mobile(scene, whole.end)) masses.back() += half;
+  return masses;
+}
+
+/// Lets a cable's number of nodes adapt.
+void add_chain(Scene& scene, const NodedCable& made, const Cable& whole, double piece) {
+  scene.chains.push_back({made.cable, made.first_piece, made.first_body, made.pieces + 1, piece,
+                          whole.mass_per_metre, whole.node_tolerance});
+  keep_off_end(scene, scene.chains.back(), whole.start, true);
+  keep_off_end(scene, scene.chains.back(), whole.end, false);
+}
+
 NodedCable spread(Scene& scene, std::size_t c) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
@@ -197,17 +219,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
     throw SceneError(place, "the cable has no length; give it slack or move its ends apart");
   const int pieces = count_pieces(scene, whole, length, place);
   const double piece = length / pieces;
-  std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
-  const double half = 0.5 * whole.mass_per_metre * piece;
-  const bool adapts = whole.node_tolerance != 0.0;
-  if (adapts) {
-    load_end(scene, whole.start, half);
-    load_end(scene, whole.end, half);
-  } else {
-    if (ends_on_mobile(scene, whole.start)) masses.front() += half;
-    if (ends_on_mobile(scene, whole.end)) masses.back() += half;
-  }
-
+  const std::vector<double> masses = weigh_nodes(scene, whole, pieces, piece);
   std::vector<Vec2> directions(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
   const bool hangs = whole.slack > 0.0 && scene.gravity.norm() > 0.0;
   if (hangs) {
@@ -218,10 +230,6 @@ NodedCable spread(Scene& scene, std::size_t c) {
   }
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), pieces - 1,
                   static_cast<int>(scene.cables.size()), pieces - 1};
-  if (adapts) {
-    scene.chains.push_back({made.cable, made.first_piece, made.first_body, pieces, piece,
-                            whole.mass_per_metre, whole.node_tolerance});
-  }
   Vec2 position = from;
   for (int k = 0; k < pieces; ++k) {
     Cable part = whole;
@@ -252,10 +260,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
       scene.cables.push_back(part);
     }
   }
-  if (adapts) {
-    keep_off_end(scene, scene.chains.back(), whole.start, true);
-    keep_off_end(scene, scene.chains.back(), whole.end, false);
-  }
+  if (whole.node_tolerance != 0.0) add_chain(scene, made, whole, piece);
   return made;
 }
 
