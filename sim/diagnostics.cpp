@@ -10,6 +10,7 @@
 #include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/held.h"
 #include "sim/cable/mass.h"
 
 namespace pinchlab {
@@ -103,6 +104,9 @@ double potential_energy(const Scene& scene, const World& world) {
       energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
     }
     if (!cable.rims.empty()) energy += energy_carried(world, cable, stiffness);
+  }
+  for (const NodeChain& chain : scene.chains) {
+    energy += potential_energy_held(world, chain, scene.gravity);
   }
   return energy;
 }

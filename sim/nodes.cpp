@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/compound.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
@@ -84,6 +85,33 @@ void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
   }
 }
 
+/// What an end of a cable whose number of nodes adapts may be held by: it takes over the mass of nodes that go.
+void refuse_ends_that_turn(const Scene& scene, const Cable& cable, const std::string& place) {
+  for (const Attachment* end : {&cable.start, &cable.end}) {
+    if (end->body < 0 || is_static(at(scene.bodies, end->body))) continue;
+    const Body& body = at(scene.bodies, end->body);
+    if (end->point == Vec2::Zero() && body.carrier < 0) continue;
+    throw SceneError(
+        place + (end == &cable.start ? "/start" : "/end"),
+        "a cable whose number of nodes adapts must be held at a body's centre, where its "
+        "mass turns nothing; or give the cable a number of nodes, and no tolerance");
+  }
+}
+
+void refuse_what_does_not_adapt(const Scene& scene, const Cable& cable, const std::string& place) {
+  const std::string key = place + "/node_tolerance_m";
+  if (!(cable.node_tolerance > 0.0 && cable.node_tolerance < infinity))
+    throw SceneError(key, "must be finite and above 0");
+  if (cable.axial_stiffness < infinity || cable.bending_stiffness > 0.0) {
+    throw SceneError(key,
+                     "only cables that neither stretch nor resist bending adapt their number of "
+                     "nodes; leave out the stiffness, or the tolerance");
+  }
+  if (scene.gravity.norm() == 0.0)
+    throw SceneError(key, "asks for gravity, by which it tells what motion matters; leave it out");
+  refuse_ends_that_turn(scene, cable, place);
+}
+
 Body node_of(const Cable& cable, int number, const Vec2& position, double mass) {
   Body node;
   node.name = cable.name + ":" + std::to_string(number);
@@ -98,12 +126,26 @@ Body node_of(const Cable& cable, int number, const Vec2& position, double mass) 
   return node;
 }
 
+/// A power of two, as pieces become one in pairs.
+int count_adaptive_pieces(const Cable& cable, int pieces, const std::string& place) {
+  int power = 2;
+  while (2 * power <= pieces) power *= 2;
+  if (cable.nodes > 0 && power != pieces) {
+    throw SceneError(place + "/nodes",
+                     fmt::format("pieces of a cable whose number of nodes adapts become one in "
+                                 "pairs, so that it has 1, 3, 7, 15 and so on at most; {} or {}, "
+                                 "not {}",
+                                 power - 1, 2 * power - 1, cable.nodes));
+  }
+  return power;
+}
+
 /// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps can follow.
 int count_pieces(const Scene& scene, const Cable& cable, double length, const std::string& place) {
-  const int pieces =
-      cable.nodes > 0
-          ? cable.nodes + 1
-          : std::max(2, static_cast<int>(length / shortest_piece(scene, cable, length)));
+  int pieces = cable.nodes > 0
+                   ? cable.nodes + 1
+                   : std::max(2, static_cast<int>(length / shortest_piece(scene, cable, length)));
+  if (cable.node_tolerance != 0.0) pieces = count_adaptive_pieces(cable, pieces, place);
   const double piece = length / pieces;
   if (piece <= 2.0 * cable.half_width) {
     throw SceneError(
@@ -123,20 +165,61 @@ int count_pieces(const Scene& scene, const Cable& cable, double length, const st
   return pieces;
 }
 
+/// Nodes that are nearer along the cable to the body that holds an end than that is large are never clear of it.
+void keep_off_end(Scene& scene, const NodeChain& chain, const Attachment& end, bool is_start) {
+  if (end.body < 0) return;
+  for (const int body : outlines_of(scene, end.body)) {
+    const Body& outline = at(scene.bodies, body);
+    const double reach = (place_of(scene, end) - outline.position).norm() + outline.radius +
+                         at(scene.cables, chain.cable).half_width;
+    for (int i = 1; i < chain.pieces && i * chain.piece_length <= reach; ++i) {
+      keep_apart(scene, chain.first_body + (is_start ? i : chain.pieces - i) - 1, body);
+    }
+  }
+}
+
+/// A body that holds an end has the end's half piece.
+void load_end(Scene& scene, const Attachment& end, double mass) {
+  if (!ends_on_mobile(scene, end)) return;
+  Body& body = at(scene.bodies, end.body);
+  body.inertia = inertia_of(body);
+  body.mass += mass;
+}
+
+/// kg, of each node; the ends' half pieces are theirs, or of bodies that hold a cable whose number of nodes adapts.
+std::vector<double> weigh_nodes(Scene& scene, const Cable& whole, int pieces, double piece) {
+  std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
+  const double half = 0.5 * whole.mass_per_metre * piece;
+  if (whole.node_tolerance != 0.0) {
+    load_end(scene, whole.start, half);
+    load_end(scene, whole.end, half);
+    return masses;
+  }
+  if (ends_on_mobile(scene, whole.start)) masses.front() += half;
+  if (ends_on_mobile(scene, whole.end)) masses.back() += half;
+  return masses;
+}
+
+/// Lets a cable's number of nodes adapt.
+void add_chain(Scene& scene, const NodedCable& made, const Cable& whole, double piece) {
+  scene.chains.push_back({made.cable, made.first_piece, made.first_body, made.pieces + 1, piece,
+                          whole.mass_per_metre, whole.node_tolerance});
+  keep_off_end(scene, scene.chains.back(), whole.start, true);
+  keep_off_end(scene, scene.chains.back(), whole.end, false);
+}
+
 NodedCable spread(Scene& scene, std::size_t c) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(whole, place);
+  if (whole.node_tolerance != 0.0) refuse_what_does_not_adapt(scene, whole, place);
   const Vec2 from = place_of(scene, whole.start), d = place_of(scene, whole.end) - from;
   const double straight = d.norm(), length = straight + whole.slack;
   if (!(length > 0.0))
     throw SceneError(place, "the cable has no length; give it slack or move its ends apart");
   const int pieces = count_pieces(scene, whole, length, place);
   const double piece = length / pieces;
-  std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
-  if (ends_on_mobile(scene, whole.start)) masses.front() += 0.5 * whole.mass_per_metre * piece;
-  if (ends_on_mobile(scene, whole.end)) masses.back() += 0.5 * whole.mass_per_metre * piece;
-
+  const std::vector<double> masses = weigh_nodes(scene, whole, pieces, piece);
   std::vector<Vec2> directions(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
   const bool hangs = whole.slack > 0.0 && scene.gravity.norm() > 0.0;
   if (hangs) {
@@ -150,6 +233,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
   Vec2 position = from;
   for (int k = 0; k < pieces; ++k) {
     Cable part = whole;
+    part.node_tolerance = 0.0;
     part.mass_per_metre = 0.0;
     part.nodes = 0;
     part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
@@ -176,6 +260,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
       scene.cables.push_back(part);
     }
   }
+  if (whole.node_tolerance != 0.0) add_chain(scene, made, whole, piece);
   return made;
 }
 

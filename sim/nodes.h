@@ -35,9 +35,12 @@ inline bool becomes_nodes(const Cable& cable) {
 /// h sqrt(g L), beyond which nodes vibrate faster than steps can follow; and, with a bending stiffness EI and
 /// the mass rho a metre, than sqrt(2 h sqrt(EI / rho)), beyond which their bending does.
 ///
+/// With a node tolerance their number adapts as it moves (motion/adapt_nodes.h): it starts with the most, 2^k - 1 of them, and
+/// a body that holds an end has the end's half piece itself.
+///
 /// With a bending stiffness pieces bear force both ways, and bend against one another (cable/bending.h).
 ///
-/// Throws SceneError where a cable has no length, or more nodes than fit.
+/// Throws SceneError where a cable has no length, or more nodes than fit, or cannot adapt their number.
 std::vector<NodedCable> spread_nodes(Scene& scene);
 
 }  // namespace pinchlab

@@ -110,7 +110,7 @@ void list_by_part(std::vector<Part>& list, int count, PartOf part_of, int Part::
 }
 
 /// Which part each body and each cable is in; returns how many parts there are. Their order is that
-/// of their first bodies, then of cables without any.
+/// of their first bodies, then of cables without any, then of all that are dormant.
 int number_parts(const World& world, Parts& parts) {
   join_bodies(world, parts.root);
   const int bodies = static_cast<int>(world.bodies.size());
@@ -126,16 +126,24 @@ int number_parts(const World& world, Parts& parts) {
     at(parts.of_body, b) = root == b ? count++ : at(parts.of_body, root);
   }
   parts.of_cable.assign(world.cables.size(), -1);
+  bool dormant = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    dormant = dormant || is_dormant(world.cables[c]);
+    if (is_dormant(world.cables[c])) continue;
     const int body = body_of_cable(world, world.cables[c]);
     parts.of_cable[c] = body >= 0 ? at(parts.of_body, body) : count++;
   }
-  return count;
+  if (!dormant) return count;
+  for (std::size_t c = 0; c < world.cables.size(); ++c) {
+    if (is_dormant(world.cables[c])) parts.of_cable[c] = count;
+  }
+  return count + 1;
 }
 
 /// What a part is like, from its bodies and cables; and the places of its bodies.
 void describe(const World& world, Parts& parts, Part& part) {
   for (const int c : cables_of(parts, part)) {
+    part.dormant = part.dormant || is_dormant(at(world.cables, c));
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
   }
   for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
@@ -259,7 +267,8 @@ void find_parts(const World& world, Workspace& work) {
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {
     const bool before = part.asleep;
-    part.asleep = world.configuration.sleep && part.bodies_begin < part.bodies_end;
+    part.asleep =
+        part.dormant || (world.configuration.sleep && part.bodies_begin < part.bodies_end);
     for (const int b : bodies_of(parts, part)) {
       if (!part.asleep) break;
       part.asleep = at(world.still_steps, b) >= enough;

@@ -23,6 +23,7 @@ struct Part {
   bool can_move = false;                     // a body of it can do more than turn
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
+  bool dormant = false;                      // pieces of cable that are part of others
   bool kept = false;                         // asleep, and was so in the step before
   bool waits = false;                        // by list_parts: for others to come to its time
   bool can_slip = false;                     // a contact of it presses a cable that may slip there

@@ -125,12 +125,27 @@ struct Cable {
   /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes a chain
   /// of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;
-  int nodes = 0;                   ///< of such a chain; 0: as spread_nodes chooses
+  int nodes = 0;  ///< of such a chain; 0: as spread_nodes chooses
+  /// m, of such a chain: how far from straight it may be between two nodes, whose number adapts; 0: it is
+  /// fixed.
+  double node_tolerance = 0.0;
   double bending_stiffness = 0.0;  ///< N m^2, EI, of such a chain
   int bends_with = -1;  ///< of a piece between nodes: the next one, against which it bends; or -1
   double bend = 0.0;    ///< N m a rad, there
   double contact_friction = 0.5;  ///< Coulomb coefficient of its nodes on bodies and walls
   double linear_drag = 0.0;       ///< 1/s, of its nodes
+};
+
+/// A cable of nodes whose number adapts, by spread_nodes: its finest pieces, equally long, and the nodes between
+/// them.
+struct NodeChain {
+  int cable = 0;                ///< the first piece
+  int first_piece = 0;          ///< the second; all others follow
+  int first_body = 0;           ///< the first node; all others follow
+  int pieces = 0;               ///< a power of two
+  double piece_length = 0.0;    ///< m
+  double mass_per_metre = 0.0;  ///< kg/m
+  double tolerance = 0.0;       ///< m
 };
 
 /// A static straight wall: bodies cannot pass it from either side. Cables ignore walls.
@@ -159,6 +174,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<Cable> cables;
   std::vector<Wall> walls;
+  std::vector<NodeChain> chains;  ///< of cables whose number of nodes adapts
   /// Bodies, the lesser index first, that do not touch each other whatever they do; ascending.
   std::vector<std::array<int, 2>> apart;
   int frame_count = 600;

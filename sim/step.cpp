@@ -5,6 +5,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held.h"
 #include "sim/compound.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
@@ -176,6 +177,7 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
       at(now.linear, shape) = at(now.linear, mover) + turning * left(seat_of(world, shape));
     }
   }
+  for (const NodeChain& chain : scene.chains) carry_velocities(world, chain, now.linear);
   return now;
 }
 

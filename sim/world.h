@@ -125,6 +125,11 @@ struct CableState {
                             // Method::pinch_no_contact
   double grip = 1.0;        // factor on the friction of its pinches
   double bend = 0.0;        // N m a rad, between it and `bends_with`
+  // Of a chain whose number of nodes adapts (held.h), by adapt_nodes:
+  int pieces = 1;            // the finest that it is made of; 0: dormant, part of another
+  double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
+  Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that it holds
+  double let_out = 0.0;      // 1/s, at which tension straightens that bend
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
@@ -162,10 +167,12 @@ struct Diagnostics {
   std::int64_t total_solves = 0;             // since the start
   std::int64_t fallbacks =
       0;  // parts of steps (Events::located: steps) whose active set did not settle
-  std::int64_t events = 0;     // located since the start
-  std::int64_t intervals = 0;  // into which steps have been divided, since the start
-  double local_error = 0.0;    // m, the largest estimate of an interval since the start
-  std::int64_t clusters = 0;   // steps with so many events that what came last did not rebound
+  std::int64_t events = 0;        // located since the start
+  std::int64_t intervals = 0;     // into which steps have been divided, since the start
+  std::int64_t node_changes = 0;  // of cables whose number of nodes adapts, since the start
+  double node_losses = 0.0;       // J, kinetic energy lost in these
+  double local_error = 0.0;       // m, the largest estimate of an interval since the start
+  std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
@@ -176,7 +183,8 @@ struct World {
   std::int64_t step = 0;     // steps done; the time is step * step_length
   double lag = 0.0;          // s, by which velocities are behind positions (leapfrog), see step.h
 
-  std::vector<BodyProperties> bodies;  // by make_world
+  std::vector<BodyProperties> bodies;  // by make_world; masses, kinds and seats of what belongs to
+                                       // chains whose number of nodes adapts, by adapt_nodes
   std::vector<int> carried;    // bodies that are shapes of others (compound.h), by make_world
   std::vector<Vec2> position;  // m, one a body, at `time()`; by move_bodies
   std::vector<double> angle;   // rad, likewise

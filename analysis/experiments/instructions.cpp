@@ -89,7 +89,7 @@ std::string count_growth(const std::filesystem::path& file, Csv& csv) {
     for (const int size : growing.sizes) {
       const std::string what = fmt::format("--growing {} --size {}", i, size);
       counts.push_back(growing.steps == 0 ? count_each("make_world", what, 1, 2, file)
-                                       : count_each("step", what, few, many, file));
+                                          : count_each("step", what, few, many, file));
       csv.row({std::string(growing.what), std::int64_t{size}, counts.back()});
       sizes += (sizes.empty() ? "" : ", ") + fmt::format("{}", size);
       units += (units.empty() ? "" : ", ") + fmt::format("{:.0f}", counts.back() / size);

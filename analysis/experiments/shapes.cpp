@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "analysis/experiments/adapting_nodes.h"
 #include "analysis/experiments/step_cost.h"
 #include "demos/scenes/shape_scenes.h"
 #include "sim/nodes.h"
@@ -286,6 +287,7 @@ struct Shapes {
   std::vector<Polygon> polygons;
   std::vector<Hanging> hanging;
   std::vector<Fall> falls;
+  AdaptingNodes adapting;
   std::vector<Pendulum> pendulums;
   std::vector<Creep> creeps;
   ChainCost cost;
@@ -315,6 +317,7 @@ Csv csv_of(const Shapes& shapes) {
     csv.row({std::string("folded chain"), std::int64_t{f.pieces}, std::string("energy_made_j"),
              f.energy_made});
   }
+  add_rows(shapes.adapting, csv);
   for (const Pendulum& p : shapes.pendulums) {
     csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_x_m"),
              p.tip.x()});
@@ -334,7 +337,7 @@ Csv csv_of(const Shapes& shapes) {
 }
 
 std::string page_text(const Shapes& shapes) {
-  const auto& [ladders, polygons, hanging, falls, pendulums, creeps, cost] = shapes;
+  const auto& [ladders, polygons, hanging, falls, adapting, pendulums, creeps, cost] = shapes;
   std::vector<std::vector<std::string>> polygon_rows, hanging_rows, fall_rows, creep_rows,
       pendulum_rows;
   for (const Pendulum& p : pendulums) {
@@ -381,6 +384,7 @@ std::string page_text(const Shapes& shapes) {
       "at 64 steps a frame. If no energy is lost it is 0.847213 (Calkin & March 1989, Am. J. Phys. "
       "57:154), less than the "
       "1 of a free fall.\n\n{}\n"
+      "{}"
       "## A flexible pendulum\n\n1 m, 0.393 kg/m, EA = 1571 N, EI = 0.2 N m^2, pinned and let go "
       "horizontally: its tip "
       "after a second, beside the authors' own (Westin and Irani's code, ten finite elements). As "
@@ -400,6 +404,7 @@ std::string page_text(const Shapes& shapes) {
       markdown_table(
           {"pieces N", "time, of sqrt(2 L / g)", "(time - 0.847213) N", "energy made, J"},
           fall_rows),
+      adapting_text(adapting),
       markdown_table({"pieces", "steps a frame", "x, m", "y, m", "a second costs"}, pendulum_rows),
       markdown_table({"steps a frame", "T1, N", "T2, N", "speed lost", "error of the loss"},
                      creep_rows),
@@ -414,6 +419,7 @@ Shapes measure_shapes(const Options& options, Progress& progress) {
   for (const int pieces : {20, 50, 100, 0}) shapes.hanging.push_back(hang(pieces));
   progress.done(1.0);
   for (const int pieces : {20, 50, 100}) shapes.falls.push_back(fall(pieces, 64));
+  shapes.adapting = measure_adapting_nodes();
   progress.done(1.0);
   for (const auto& [pieces, n] : {std::pair(20, 16), std::pair(40, 64), std::pair(80, 192)}) {
     shapes.pendulums.push_back(swing_flexibly(pieces, n));
@@ -430,7 +436,7 @@ Shapes measure_shapes(const Options& options, Progress& progress) {
 
 void run_shapes(const Options& options) {
   Output output(options.out);
-  Progress progress("shapes", 10.0);
+  Progress progress("shapes", 11.0);
   const Shapes shapes = measure_shapes(options, progress);
   output.csv("shapes", csv_of(shapes), options.command);
   output.page("shapes", page_text(shapes), options.command);

@@ -188,18 +188,20 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "grip", cable.grip);
   take(from, "mass_per_metre_kg", cable.mass_per_metre);
   take(from, "nodes", cable.nodes);
+  take(from, "node_tolerance_m", cable.node_tolerance);
   take(from, "bending_stiffness_n_m2", cable.bending_stiffness);
   take(from, "contact_friction", cable.contact_friction);
   take(from, "linear_drag_per_s", cable.linear_drag);
   if (!from.contains("mass_per_metre_kg")) {
     refuse_keys(from, place,
-                {"nodes", "bending_stiffness_n_m2", "contact_friction", "linear_drag_per_s"},
+                {"nodes", "node_tolerance_m", "bending_stiffness_n_m2", "contact_friction",
+                 "linear_drag_per_s"},
                 "a cable without mass_per_metre_kg");
   } else if (from.contains("wraps")) {
-    refuse_keys(
-        from, place,
-        {"nodes", "bending_stiffness_n_m2", "contact_friction", "linear_drag_per_s", "creep"},
-        "a cable with mass_per_metre_kg that runs over bodies");
+    refuse_keys(from, place,
+                {"nodes", "node_tolerance_m", "bending_stiffness_n_m2", "contact_friction",
+                 "linear_drag_per_s", "creep"},
+                "a cable with mass_per_metre_kg that runs over bodies");
   } else {
     refuse_keys(from, place, {"squeeze", "grip", "creep"}, "a cable with mass_per_metre_kg");
   }

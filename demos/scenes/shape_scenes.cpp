@@ -217,16 +217,43 @@ Scene flexible_pendulum(int pieces, int steps_per_frame) {
   return scene;
 }
 
-Scene folded_chain(int pieces, int steps_per_frame) {
+Scene folded_chain(int pieces, int steps_per_frame, double tolerance) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;
   const double piece = 1.0 / pieces;
-  scene.bodies.push_back(body("tip", BodyKind::free, 0.5 * piece, 0.0, 0.002, 0.5 * piece));
+  const double tip = tolerance > 0.0 ? 1e-6 * piece : 0.5 * piece;  // kg
+  scene.bodies.push_back(body("tip", BodyKind::free, 0.5 * piece, 0.0, 0.002, tip));
   scene.bodies[0].node = true;  // its half piece, which meets no other node
   scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.002));
   scene.cables[0].slack = 1.0 - 0.5 * piece;
   scene.cables[0].mass_per_metre = 1.0;
   scene.cables[0].nodes = pieces - 1;
+  scene.cables[0].node_tolerance = tolerance;
+  spread_nodes(scene);
+  return scene;
+}
+
+Scene drawn_taut(int nodes, int steps_per_frame, double tolerance) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("ring", BodyKind::free, 1.0, 0.0, 0.01, 0.2));
+  scene.bodies[0].node = true;  // which no node of the cable meets
+  scene.bodies[0].linear_drag = 0.5;
+  scene.bodies.push_back(body("winch", BodyKind::fixed_axle, 2.0, -0.15, 0.15, 5.0));
+  Body& winch = scene.bodies[1];
+  winch.driven_angular_velocity = 0.0;
+  winch.torque_limit = 300.0;
+  winch.motor = {{0.2, 0.0}, {0.5, -2.0}, {2.5, -2.0}, {2.8, 1.5}, {4.0, 1.5}, {4.1, 0.0}};
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.003));
+  Cable& hanging = scene.cables[0];
+  hanging.slack = 0.25;
+  hanging.mass_per_metre = 0.8;
+  hanging.nodes = nodes;
+  hanging.node_tolerance = tolerance;
+  hanging.linear_drag = 0.8;
+  Attachment rim = on(1);
+  rim.point = {winch.radius + 0.003, 0.0};
+  scene.cables.push_back(cable(on(0), {{1, -1, 1}}, rim, 0.003));
   spread_nodes(scene);
   return scene;
 }

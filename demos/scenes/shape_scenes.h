@@ -67,7 +67,13 @@ Scene catenary(int pieces, int steps_per_frame);
 Scene flexible_pendulum(int pieces, int steps_per_frame);
 
 /// A chain of 1 m and 1 kg in so many pieces, hung up by both ends beside one another, one of which, body
-/// 0, is let go. After spread_nodes.
-Scene folded_chain(int pieces, int steps_per_frame);
+/// 0, is let go. With a tolerance (m) its number of nodes adapts, and the end has its half piece itself. After
+/// spread_nodes.
+Scene folded_chain(int pieces, int steps_per_frame, double tolerance = 0.0);
+
+/// A cable of 1.25 m and 0.8 kg/m hangs between a post and a ring, body 0, which a winch's rope pulls until the cable is
+/// straight, at 2 kN, and lets down again, in 5 s. So many nodes, at most; with a tolerance (m) they adapt. After
+/// spread_nodes.
+Scene drawn_taut(int nodes, int steps_per_frame, double tolerance = 0.0);
 
 }  // namespace pinchlab::build

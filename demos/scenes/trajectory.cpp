@@ -36,6 +36,7 @@ void add_segments(const Player& player, std::string& rows) {
   const World& world = player.world();
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
+    if (cable.pieces == 0) continue;  // part of another
     const std::size_t first = cable.closed ? 0 : 1;
     for (std::size_t i = first; i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];

@@ -141,6 +141,17 @@ class Composer {
     return link.body >= 0 && scene_.bodies[static_cast<std::size_t>(link.body)].node;
   }
 
+  /// The body before the first of the nodes that a piece holds, of a chain whose number of nodes adapts.
+  int first_held(std::size_t piece) const {
+    const int c = static_cast<int>(piece);
+    for (const NodeChain& chain : scene_.chains) {
+      if (c == chain.cable) return chain.first_body - 1;
+      const int number = c - chain.first_piece + 1;
+      if (number >= 1 && number < chain.pieces) return chain.first_body + number - 1;
+    }
+    return -1;
+  }
+
   /// A cable with mass from its first piece on, in one strip that bends at the nodes.
   void add_chain(std::size_t c, Strip& strip) {
     strip.first = picture_.points.size();
@@ -150,10 +161,24 @@ class Composer {
     for (std::size_t piece = c; piece < count;) {
       const CableState& cable = world_.cables[piece];
       const Segment& segment = cable.segments[1];
-      if (piece != c) add_bend(segment.direction);
-      picture_.points.push_back({segment.tail, segment.direction, material});
-      material += segment.length;
-      picture_.points.push_back({segment.head, segment.direction, material});
+      Vec2 from = segment.tail;
+      const auto go_to = [&](const Vec2& to, const Vec2& direction, double length) {
+        if (picture_.points.size() != strip.first) add_bend(direction);
+        picture_.points.push_back({from, direction, material});
+        material += length;
+        picture_.points.push_back({to, direction, material});
+        from = to;
+      };
+      for (int i = 1; i < cable.pieces; ++i) {  // with the bend that it holds
+        const Vec2& node = world_.position[index(first_held(piece) + i)];
+        go_to(node, (node - from).normalized(), (node - from).norm());
+      }
+      if (cable.pieces == 1) {
+        go_to(segment.head, segment.direction, segment.length);
+      } else {
+        const Vec2 way = segment.head - from;
+        go_to(segment.head, way.normalized(), way.norm());
+      }
       const Link& end = cable.links.back();
       if (!is_node(end)) break;
       const auto starts_there = [&end](const CableState& next) {

@@ -78,6 +78,11 @@ inline bool is_passed(const CableState& cable) {
   return cable.rod || cable.joint != Joint::none;
 }
 
+/// Whether it is part of another piece of its chain (held.h).
+inline bool is_dormant(const CableState& cable) {
+  return cable.pieces == 0;
+}
+
 /// Whether links i and j roll in opposite senses, so that a segment between them can be pinched.
 inline bool opposite(const Link& a, const Link& b) {
   return a.orientation * b.orientation < 0;

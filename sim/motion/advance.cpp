@@ -12,6 +12,7 @@
 #include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/adapt_nodes.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
 #include "sim/motion/impact.h"
@@ -139,13 +140,29 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<con
   return hastens;
 }
 
-/// What the scene starts with meets its cables and contacts.
-void strike_all(const Scene& scene, World& world, Workspace& work) {
+void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
   for (const int p : work.neighbourhoods.parts.items) {
     const Part& part = at(work.parts.list, p);
-    apply_no_forces(scene, world, part, 0.0, work);
-    strike(scene, world, work, part, true);
+    apply_no_forces(scene, world, part, time, work);
+    strike(scene, world, work, part, rebounds);
   }
+}
+
+/// Makes cables of nodes finer and coarser.
+void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
+                 StageTimes* times) {
+  if (wants_other_nodes(scene, world, work)) {
+    Neighbourhoods& near = work.neighbourhoods;
+    if (world.lag > 0.0) catch_up(scene, world, near.parts.items, time, world.lag, work);
+    world.lag = 0.0;
+    const double before = energy_of_motion(world);
+    change_nodes(scene, world, work);
+    detect_after_moving(scene, world, work, false, times);
+    list_parts(work.parts, near);
+    strike_all(scene, world, work, time, false);
+    world.diagnostics.node_losses += before - energy_of_motion(world);
+  }
+  follow_chains(scene, world, work);
 }
 
 StepStatus fail_by_changes(World& world) {
@@ -375,7 +392,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   const Neighbourhoods& near = work.neighbourhoods;
   put_together(world, work.parts, work.neighbourhoods);
   // Velocities that the scene starts with need not fit its cables: they meet them at once.
-  if (world.step == 0) strike_all(scene, world, work);
+  if (world.step == 0) strike_all(scene, world, work, 0.0, true);
   Round round;
   while (is_left(near)) {
     if (!move_all(scene, world, work, round, watch)) return StepStatus::not_finite;
@@ -391,6 +408,9 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     changes = changes_of_cables(world);
   }
   world.lag = near.list.front().lag;
+  if (!scene.chains.empty()) {
+    adapt_nodes(scene, world, work, world.time() + world.step_length, times);
+  }
   const bool clusters =
       std::any_of(near.list.begin(), near.list.end(),
                   [](const Neighbourhood& course) { return course.events > most_rebounds; });

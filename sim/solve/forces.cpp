@@ -6,6 +6,7 @@
 #include "base/at.h"
 #include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held.h"
 #include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/solve/motors.h"
@@ -167,7 +168,15 @@ void pull(const World& world, const Parts& parts, const Link& end, const Vec2& f
   const int place = at(parts.local, end.body);
   const Vec2 arm = link_centre(world, end) - at(world.position, mover_of(world, end.body));
   const Eigen::Vector3d impulse(k * force.x(), k * force.y(), k * cross(arm, force));
-  at(s.free_velocity, place) += at(s.mobility, place) * impulse;
+  Mobility mobility = at(s.mobility, place);
+  if (s.carried.empty() || at(s.carried, place)(0, 0) == 0.0) {
+    // Its own: that of the step before may be a light body's still (light_bodies.h).
+    const Mobility own = mobility_of(at(world.bodies, mover_of(world, end.body)), k);
+    mobility.xx = own.xx;
+    mobility.xy = own.xy;
+    mobility.yy = own.yy;
+  }
+  at(s.free_velocity, place) += mobility * impulse;
 }
 
 void bend(const World& world, const Parts& parts, const CableState& cable, double k,
@@ -176,6 +185,14 @@ void bend(const World& world, const Parts& parts, const CableState& cable, doubl
   pull(world, parts, cable.links[0], forces.start, k, s);
   pull(world, parts, cable.links[1], forces.node, k, s);
   pull(world, parts, at(world.cables, cable.bends_with).links[1], forces.end, k, s);
+}
+
+/// By the weight of the bend that a piece holds.
+void turn_held(const World& world, const Parts& parts, const CableState& piece, const Vec2& gravity,
+               double k, PartSystem& s) {
+  const Vec2 force = held_force(piece, gravity);
+  pull(world, parts, piece.links[0], -force, k, s);
+  pull(world, parts, piece.links[1], force, k, s);
 }
 
 /// Loads the part's bodies with the cables that they carry, and their motors.
@@ -231,7 +248,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
     massed = massed || is_massed(cable);
-    bends = bends || cable.bends_with >= 0;
+    bends = bends || cable.bends_with >= 0 || cable.pieces > 1;
     const auto segments = static_cast<double>(cable.segments.size());
     s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
   }
@@ -241,7 +258,9 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   drive(s);
   if (!bends) return;
   for (const int c : cables_of(parts, part)) {
-    if (at(world.cables, c).bends_with >= 0) bend(world, parts, at(world.cables, c), t.kick, s);
+    const CableState& cable = at(world.cables, c);
+    if (cable.bends_with >= 0) bend(world, parts, cable, t.kick, s);
+    if (cable.pieces > 1) turn_held(world, parts, cable, scene.gravity, t.kick, s);
   }
 }
 

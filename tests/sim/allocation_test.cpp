@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A warm step allocates nothing. (The sanitizers bring allocators of their own, so they skip this.)
 
+#include "demos/scenes/shape_scenes.h"
 #include "tests/sim/scenes.h"
 
 #ifndef __SANITIZE_ADDRESS__
@@ -62,6 +63,18 @@ TEST(Allocation, NoneOnceWarmWithPinches) {
   scene.bodies[1].driven_angular_velocity = -1.0;
   scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
   EXPECT_EQ(allocations_of_warm_steps(scene), 0);
+}
+
+TEST(Allocation, NoneOnceWarmWithNodesThatAdapt) {
+  const Scene scene = build::drawn_taut(31, 4, 2e-3);
+  World world = make_world(scene, Method::pinch);
+  Workspace work;
+  for (int i = 0; i < 700; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+  const long before = allocations;
+  const std::int64_t changes = world.diagnostics.node_changes;
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(world.diagnostics.node_changes, changes + 50);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "demos/scenes/scene_json.h"
+#include "tests/sim/random_hanging.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 
@@ -26,6 +27,8 @@ void forget_idle_angles(World& world) {
 
 void mirror(CableState& cable) {
   cable.turning = -cable.turning;
+  cable.turned = -cable.turned;
+  cable.held.y() = -cable.held.y();
   for (Link& link : cable.links) {
     link.orientation = -link.orientation;
     link.offset = mirror(link.offset);
@@ -51,6 +54,10 @@ bool is_image(World world, World other) {
   for (Vec2& v : world.velocity) v = mirror(v);
   for (double& angle : world.angle) angle = -angle;
   for (double& omega : world.angular_velocity) omega = -omega;
+  for (BodyProperties& body : world.bodies) {
+    double& across = body.node ? body.seat.y() : body.seat.x();  // in a piece's frame, or a body's
+    across = -across;
+  }
   for (CableState& cable : world.cables) mirror(cable);
   for (Contact& contact : world.contacts) mirror(contact);
   forget_idle_angles(world);
@@ -95,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(, Mirror,
                          ::testing::Values(Population{"Discs", random_scene, 200},
                                            Population{"Elastic", random_elastic, 60},
                                            Population{"Linkages", linkage, 60},
-                                           Population{"Ropes", falling_on_rope, 60}),
+                                           Population{"Ropes", falling_on_rope, 60},
+                                           Population{"Adapting", random_hanging, 20}),
                          [](const auto& of) { return of.param.name; });
 
 TEST(MirrorMethods, ImageMovesAsTheImageByEveryMethod) {

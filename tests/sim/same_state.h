@@ -55,13 +55,19 @@ inline bool same_state(const World& a, const World& b) {
   const auto equal = [](const auto& p, const auto& q, auto same) {
     return std::equal(p.begin(), p.end(), q.begin(), q.end(), same);
   };
-  return a.step == b.step && a.step_length == b.step_length && a.lag == b.lag &&
-         a.position == b.position && a.angle == b.angle && a.velocity == b.velocity &&
+  const auto same_body = [](const BodyProperties& p, const BodyProperties& q) {
+    return p.mass == q.mass && p.kind == q.kind && p.seat == q.seat;
+  };
+  return a.step == b.step && equal(a.bodies, b.bodies, same_body) &&
+         a.step_length == b.step_length && a.lag == b.lag && a.position == b.position &&
+         a.angle == b.angle && a.velocity == b.velocity &&
          a.angular_velocity == b.angular_velocity && a.still_steps == b.still_steps &&
          equal(a.cables, b.cables,
                [&](const CableState& p, const CableState& q) {
                  return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
-                        equal(p.links, q.links, same_link) && equal(p.rims, q.rims, same_rim) &&
+                        p.pieces == q.pieces && p.turned == q.turned && p.held == q.held &&
+                        p.let_out == q.let_out && equal(p.links, q.links, same_link) &&
+                        equal(p.rims, q.rims, same_rim) &&
                         equal(p.segments, q.segments, same_segment);
                }) &&
          equal(a.contacts, b.contacts, same_contact) &&

@@ -6,25 +6,16 @@
 namespace pinchlab::experiments::stability {
 
 std::vector<Item> stability_items(bool quick) {
-  return {mass_ratio(quick),
-          frames_and_steps(quick),
-          pulleys(quick),
-          caught_loads(quick),
-          jerks(quick),
-          windings(quick),
-          stacks(quick),
-          cables_under_a_pinch(quick),
-          closed_loop(quick),
-          friction(quick),
-          chatter(quick),
-          fast_bodies(quick),
-          impacts(quick),
-          thin_cables(quick),
-          corners(quick),
-          heavy_ropes(quick),
-          folding(quick),
-          long_swing(quick),
-          plain_joints_under_pinch(quick)};
+  return {mass_ratio(quick),  frames_and_steps(quick),
+          pulleys(quick),     caught_loads(quick),
+          jerks(quick),       windings(quick),
+          stacks(quick),      cables_under_a_pinch(quick),
+          closed_loop(quick), friction(quick),
+          chatter(quick),     fast_bodies(quick),
+          impacts(quick),     thin_cables(quick),
+          corners(quick),     heavy_ropes(quick),
+          folding(quick),     refinement(quick),
+          long_swing(quick),  plain_joints_under_pinch(quick)};
 }
 
 std::vector<double> decades(double from, double to, int per_decade) {

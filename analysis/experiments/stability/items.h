@@ -47,6 +47,7 @@ Item impacts(bool quick);
 Item corners(bool quick);
 Item heavy_ropes(bool quick);
 Item folding(bool quick);
+Item refinement(bool quick);
 
 /// 10^from, 10^(from + 1/per_decade) .. 10^to.
 std::vector<double> decades(double from, double to, int per_decade);

@@ -201,6 +201,21 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
             "s.json: /cables/0/bending_stiffness_n_m2: must be 0 to 1e+09, not -1");
   EXPECT_EQ(error(R"({"mass_per_metre_kg": 0})"),
             "s.json: /cables/0/mass_per_metre_kg: must be 1e-09 to 1e+09, not 0");
+  EXPECT_EQ(error(R"({"node_tolerance_m": 0.002, "nodes": 15})"), "no error");
+  EXPECT_EQ(error(R"({"node_tolerance_m": 0.002, "nodes": null})"), "no error");
+  EXPECT_EQ(error(R"({"node_tolerance_m": 0.002})"),
+            "s.json: /cables/0/nodes: pieces of a cable whose number of nodes adapts become one in "
+            "pairs, so that it has 1, 3, 7, 15 and so on at most; 7 or 15, not 9");
+  EXPECT_EQ(error(R"({"mass_per_metre_kg": null, "nodes": null, "node_tolerance_m": 0.002})"),
+            "s.json: /cables/0/node_tolerance_m: has no effect on a cable without "
+            "mass_per_metre_kg; leave it out");
+  EXPECT_EQ(error(R"({"node_tolerance_m": 0.002, "nodes": 15, "bending_stiffness_n_m2": 0.01})"),
+            "s.json: /cables/0/node_tolerance_m: only cables that neither stretch nor resist "
+            "bending adapt their number of nodes; leave out the stiffness, or the tolerance");
+  EXPECT_EQ(error(R"({"node_tolerance_m": 0.002, "nodes": 15,
+                      "end": {"world_m": null, "body": "wheel", "rim_angle_rad": 3}})")
+                .substr(0, 23),
+            "s.json: /cables/0/end: ");
   json many = hanging_scene();
   for (int i = 0; i < 60; ++i) {
     json another = many["cables"][0];
