@@ -184,16 +184,26 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
   return true;
 }
 
-/// Whether all bodies are where their boxes allow for.
-bool boxes_hold(const Scene& scene, const World& world, const Parts& parts,
-                const BroadPhase& broad) {
+/// Whether all bodies are where their boxes allow for; of a divided step, those that may have moved.
+bool boxes_hold(const Scene& scene, const World& world, const Workspace& work) {
+  const Parts& parts = work.parts;
+  const BroadPhase& broad = work.broad_phase;
   if (broad.boxes.size() != world.bodies.size() || broad.cables != world.cables.size())
     return false;
   if (parts.immobile.empty()) return world.bodies.empty();  // not divided yet
   const Margin margin(scene, world);
-  return std::all_of(parts.movers.begin(), parts.movers.end(), [&](int b) {
+  const auto is_in_box = [&](int b) {
     return is_still(parts, b) ||
            holds(at(broad.boxes, b), at(world.position, b), reach_of_body(world, margin, index(b)));
+  };
+  const auto all_in_boxes = [&is_in_box](std::span<const int> bodies) {
+    return std::all_of(bodies.begin(), bodies.end(), is_in_box);
+  };
+  if (!work.neighbourhoods.divided) return all_in_boxes(parts.movers);
+  const std::span<const int> moving = work.neighbourhoods.moving;
+  return std::all_of(moving.begin(), moving.end(), [&](int p) {
+    const Part& part = at(parts.list, p);
+    return all_in_boxes(bodies_of(parts, part)) && all_in_boxes(carried_of(parts, part));
   });
 }
 
@@ -228,7 +238,7 @@ Box span_box(const Segment& segment) {
 void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   BroadPhase& broad = work.broad_phase;
   const std::size_t count = world.bodies.size();
-  if (boxes_hold(scene, world, work.parts, broad)) return;
+  if (boxes_hold(scene, world, work)) return;
   broad.cables = world.cables.size();
   broad.bodies_changed = true;
   broad.body_pairs.clear();

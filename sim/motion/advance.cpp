@@ -112,7 +112,7 @@ bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const 
 bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<const int> parts,
                 double& lag, bool changed) {
   const Neighbourhoods& near = work.neighbourhoods;
-  work.repaired.assign(work.parts.list.size(), false);
+  work.repaired.resize(work.parts.list.size());
   bool any = false;
   double time = 0.0;
   for (const int p : parts) {
@@ -120,6 +120,7 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<con
     const Neighbourhood course = course_of(near, work.parts, part);
     time = course.time;
     const bool violated = changed || course.violated || is_squeezed(world, work.parts, part);
+    at(work.repaired, p) = false;
     if (!violated && !course.happened) continue;
     apply_no_forces(scene, world, part, time, work);
     at(work.repaired, p) = repair(scene, world, work, part);
@@ -212,6 +213,18 @@ double kinetic_energy(const World& world, const Workspace& work, const Movers& m
   return energy;
 }
 
+/// Whether their bodies' velocities are.
+bool are_finite(const World& world, const Parts& all, std::span<const int> parts) {
+  double sum = 0.0;  // zero times what is finite is zero
+  for (const int p : parts) {
+    for (const int b : bodies_of(all, at(all.list, p))) {
+      const Vec2& v = at(world.velocity, b);
+      sum += 0.0 * v.x() + 0.0 * v.y() + 0.0 * at(world.angular_velocity, b);
+    }
+  }
+  return sum == 0.0;
+}
+
 void set_waiting(Parts& parts, std::span<const int> of, bool waits) {
   for (const int p : of) at(parts.list, p).waits = waits;
 }
@@ -232,6 +245,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   Neighbourhoods& near = work.neighbourhoods;
   Neighbourhood& course = at(near.list, n);
   const Movers movers{parts_of(near, n), course.lag};
+  near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
   double length = course.left;
   bool met = true;
@@ -242,7 +256,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
     length = shorten_interval(scene, world, work, movers, length, met, watch);
   }
-  if (!check_finite(scene, world)) return false;
+  if (!are_finite(world, work.parts, movers.parts)) return check_finite(scene, world);
   if (round.first && world.configuration.diagnostics) {
     world.diagnostics.energy += kinetic_energy(world, work, movers, length);
   }

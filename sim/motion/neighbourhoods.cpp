@@ -69,6 +69,7 @@ void join_at_span(const Parts& parts, Neighbourhoods& near, int part, const Reac
 /// Joins what spans and bodies may meet.
 void join_at_spans(const Scene& scene, const World& world, const Workspace& work,
                    Neighbourhoods& near) {
+  if (world.cables.empty()) return;
   near.reaches.clear();
   double longest = 0.0;
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
@@ -228,6 +229,7 @@ void list_parts(Parts& parts, Neighbourhoods& near) {
   // Each begin has become that of the list before.
   std::rotate(begin.begin(), begin.begin() + 1, begin.end());
   begin.back() = static_cast<int>(near.parts.items.size());
+  near.moving = near.parts.items;
 }
 
 std::span<const int> parts_of(const Neighbourhoods& near, int number) {

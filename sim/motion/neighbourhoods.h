@@ -44,6 +44,7 @@ struct Reach {
 struct Neighbourhoods {
   std::vector<Neighbourhood> list;
   Lists<int> parts;                    // awake ones, of each
+  std::span<const int> moving;         // of these, those that an interval is found for
   std::vector<int> of_body, of_cable;  // -1: a static body. Empty where there is only one
   bool divided = false;                // there are several, at different times
   bool crossed = false;                // two have come together after all
