@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/cable/lay.h"
 #include "sim/compound.h"
+#include "sim/detect/contacts.h"
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"

@@ -9,6 +9,7 @@
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/solve/capstan.h"
+#include "sim/trees.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -17,22 +18,6 @@ namespace {
 
 /// After this long (s) at rest a part stays at rest: all its forces are constant.
 constexpr double rest_time = 0.5;
-
-int find_root(std::vector<int>& root, int body) {
-  while (root[index(body)] != body) {
-    root[index(body)] = root[index(root[index(body)])];
-    body = root[index(body)];
-  }
-  return body;
-}
-
-/// The tree with the lesser root takes the other, so that parts come in the order of their first
-/// bodies.
-void join(std::vector<int>& root, int a, int b) {
-  a = find_root(root, a);
-  b = find_root(root, b);
-  root[index(std::max(a, b))] = std::min(a, b);
-}
 
 /// The pairs in contact and the changes of all cables; false if they are those of the last time, as
 /// contacts are that were kept.

@@ -11,6 +11,7 @@
 #include "base/at.h"
 #include "demos/scenes/library.h"
 #include "sim/cable/cable.h"
+#include "sim/detect/contacts.h"
 #include "sim/detect/pinch.h"
 #include "sim/diagnostics.h"
 #include "sim/solve/capstan.h"

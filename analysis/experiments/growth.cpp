@@ -18,20 +18,31 @@ Configuration awake() {
   return configuration;
 }
 
-/// Discs that lie on slabs of their own, in a row.
-Scene discs_on_walls(int count) {
+constexpr double disc_spacing = 4.0, disc_radius = 0.2;  // m
+
+/// Discs in a row, each at a height (m) of its own above the line y = 0.
+template <class Height>
+Scene discs_in_a_row(const char* name, int count, Height height) {
   Scene scene = disconnected_scene(0, 0);
-  scene.name = "discs-on-walls";
-  constexpr double spacing = 4.0, radius = 0.2, half_slab = 1.0;
+  scene.name = name;
   for (int i = 0; i < count; ++i) {
     Body disc;
     disc.name = "disc " + std::to_string(i);
-    disc.radius = radius;
-    disc.position = {spacing * i, radius};
+    disc.radius = disc_radius;
+    disc.position = {disc_spacing * i, disc_radius + height(i)};
     scene.bodies.push_back(disc);
+  }
+  return scene;
+}
+
+/// Discs that lie on slabs of their own.
+Scene discs_on_walls(int count) {
+  Scene scene = discs_in_a_row("discs-on-walls", count, [](int) { return 0.0; });
+  constexpr double half_slab = 1.0;
+  for (const Body& disc : scene.bodies) {
     Wall slab;
-    slab.a = {spacing * i - half_slab, 0.0};
-    slab.b = {spacing * i + half_slab, 0.0};
+    slab.a = {disc.position.x() - half_slab, 0.0};
+    slab.b = {disc.position.x() + half_slab, 0.0};
     scene.walls.push_back(slab);
   }
   return scene;
@@ -40,20 +51,13 @@ Scene discs_on_walls(int count) {
 /// Balls that bounce for ever on one floor, from heights that are all different, so that of many some land
 /// in every step.
 Scene bouncing_balls(int count) {
-  Scene scene = disconnected_scene(0, 0);
-  scene.name = "bouncing-balls";
-  constexpr double spacing = 4.0, radius = 0.2, golden = 0.6180339887498949;
-  for (int i = 0; i < count; ++i) {
-    Body ball;
-    ball.name = "ball " + std::to_string(i);
-    ball.radius = radius;
-    ball.restitution = 1.0;
-    ball.position = {spacing * i, radius + 0.1 + std::fmod(golden * i, 1.0)};
-    scene.bodies.push_back(ball);
-  }
+  constexpr double golden = 0.6180339887498949;
+  Scene scene = discs_in_a_row("bouncing-balls", count,
+                               [](int i) { return 0.1 + std::fmod(golden * i, 1.0); });
+  for (Body& ball : scene.bodies) ball.restitution = 1.0;
   Wall floor;
-  floor.a = {-spacing, 0.0};
-  floor.b = {spacing * count, 0.0};
+  floor.a = {-disc_spacing, 0.0};
+  floor.b = {disc_spacing * count, 0.0};
   scene.walls.push_back(floor);
   return scene;
 }

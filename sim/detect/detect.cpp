@@ -4,6 +4,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/links.h"
 #include "sim/detect/all_pairs.h"
+#include "sim/detect/contacts.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
 #include "sim/workspace.h"

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Contacts of bodies, and which of them press a cable (thesis: PinchNarrowPhase, PinchConfirm,
-// ConfigurePinchJoints).
+// Which contacts press a cable (thesis: PinchNarrowPhase, PinchConfirm, ConfigurePinchJoints).
 
 #include "sim/world.h"
 
 namespace pinchlab {
 
 struct Workspace;
-
-/// Contacts of all pairs and walls that can touch within the next step; states of old ones are
-/// kept.
-void find_contacts(const Scene& scene, World& world, Workspace& work);
 
 /// Which contacts press a cable, and the gap that they therefore keep. Puts middle links into new
 /// non-transitional pinches and takes them out of those that have opened.

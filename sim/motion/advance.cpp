@@ -264,6 +264,19 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   return true;
 }
 
+/// Moves every neighbourhood that has not come to the end of the step, while all others wait; likewise.
+bool move_one_by_one(const Scene& scene, World& world, Workspace& work, bool begins,
+                     const Round& round, Stopwatch& watch) {
+  const Neighbourhoods& near = work.neighbourhoods;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
+    if (at(near.list, n).left == 0.0) continue;
+    set_waiting(work.parts, parts_of(near, n), false);
+    if (!move(scene, world, work, n, begins, round, watch)) return false;
+    set_waiting(work.parts, parts_of(near, n), true);
+  }
+  return true;
+}
+
 /// A step that has just been divided, as something happens in it: neighbourhoods in which nothing does
 /// have come to its end, others begin it anew.
 bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
@@ -292,16 +305,10 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
     course.located = true;
     finish_interval(scene, world, work, n, course.left, true);
   }
-  for (int n = 0; n < count; ++n) {
-    if (at(near.list, n).moved) continue;
-    set_waiting(work.parts, parts_of(near, n), false);
-    if (!move(scene, world, work, n, false, {true, false}, watch)) return false;
-    set_waiting(work.parts, parts_of(near, n), true);
-  }
-  return true;
+  return move_one_by_one(scene, world, work, false, {true, false}, watch);
 }
 
-/// Moves every neighbourhood that has not come to the end of the step by an interval; likewise.
+/// The next round: every neighbourhood that has not come to the end of the step moves by an interval; likewise.
 bool move_all(const Scene& scene, World& world, Workspace& work, const Round& round,
               Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
@@ -310,16 +317,9 @@ bool move_all(const Scene& scene, World& world, Workspace& work, const Round& ro
   for (Neighbourhood& course : near.list) {
     course.moved = course.happened = course.violated = false;
   }
-  const int count = static_cast<int>(near.list.size());
-  if (count == 1) return move(scene, world, work, 0, true, round, watch);
+  if (near.list.size() == 1) return move(scene, world, work, 0, true, round, watch);
   for (Part& part : work.parts.list) part.waits = true;
-  for (int n = 0; n < count; ++n) {
-    if (at(near.list, n).left == 0.0) continue;
-    set_waiting(work.parts, parts_of(near, n), false);
-    if (!move(scene, world, work, n, true, round, watch)) return false;
-    set_waiting(work.parts, parts_of(near, n), true);
-  }
-  return true;
+  return move_one_by_one(scene, world, work, true, round, watch);
 }
 
 bool is_left(const Neighbourhoods& near) {
@@ -355,8 +355,10 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
       note_rest(scene, work.parts, at(work.parts.list, p), world);
     }
   }
-  if (near.divided && !is_left(near)) reunite(scene, world, work);
-  list_parts(work.parts, near);
+  if (near.divided) {
+    if (!is_left(near)) reunite(scene, world, work);
+    list_parts(work.parts, near);
+  }
   detect_after_moving(scene, world, work, pairs_stand, times);
   Stopwatch watch(times);
   list_parts(work.parts, near);

@@ -7,23 +7,12 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/motion/interval.h"
+#include "sim/trees.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
 
 namespace {
-
-int find_root(std::vector<int>& root, int part) {
-  while (at(root, part) != part) part = at(root, part) = at(root, at(root, part));
-  return part;
-}
-
-/// The lesser root stays.
-void join(std::vector<int>& root, int a, int b) {
-  a = find_root(root, a);
-  b = find_root(root, b);
-  at(root, std::max(a, b)) = std::min(a, b);
-}
 
 /// Where a body may get to in a step from its start, at twice its speed.
 Reach reach_of(const Scene& scene, const World& world, const Start& start, int body) {
@@ -116,7 +105,7 @@ void join_at_static_bodies(const World& world, const Parts& parts, Neighbourhood
 }
 
 /// Numbers the neighbourhoods, in `over` by their roots; how many there are.
-int number(const Parts& parts, Neighbourhoods& near) {
+int number_trees(const Parts& parts, Neighbourhoods& near) {
   near.over.assign(parts.list.size(), -1);
   int count = 0;
   for (int p = 0; index(p) < parts.list.size(); ++p) {
@@ -194,7 +183,7 @@ bool divide(const Scene& scene, const World& world, Workspace& work) {
   std::iota(near.root.begin(), near.root.end(), 0);
   join_at_static_bodies(world, parts, near);
   join_at_spans(scene, world, work, near);
-  const int count = number(parts, near);
+  const int count = number_trees(parts, near);
   if (count < 2) return false;
   near.list.assign(index(count), near.list.front());
   near.divided = true;

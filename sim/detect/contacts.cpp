@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/detect/contacts.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/outline.h"
+#include "sim/touch.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+double full_width(const World& world) {
+  double width = 0.0;
+  if (world.configuration.method != Method::cable) {
+    for (const CableState& cable : world.cables) width = std::max(width, thickness(cable));
+  }
+  return width;
+}
+
+/// How much nearer two things whose speeds add up to `speed` may come within the next step,
+/// generously.
+double reach(const Scene& scene, const World& world, double speed, double radius) {
+  const double h = world.step_length;
+  return 2.0 * h * (speed + scene.gravity.norm() * h) + 0.01 * radius;
+}
+
+/// Of a pair they come in their order, those of walls after all of pairs.
+bool comes_before(const Contact& p, const Contact& q) {
+  if (p.a != q.a) return p.a < q.a;
+  if (p.b != q.b) return p.b < q.b;
+  return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
+}
+
+/// Old contacts of pairs, or of bodies and walls, that are asked for in their order.
+class Kept {
+ public:
+  explicit Kept(const std::vector<Contact>& old) : next_(old.begin()), end_(old.end()) {}
+
+  /// Between bodies that are where they were, what was a contact is one; how many there are.
+  std::size_t keep(int a, int b, int wall, std::vector<Contact>& to) {
+    const auto comes_before = [a, b, wall](const Contact& c) {
+      if (c.a != a) return c.a < a;
+      return c.b != b ? c.b < b : c.wall < wall;
+    };
+    while (next_ != end_ && comes_before(*next_)) ++next_;
+    const std::size_t before = to.size();
+    for (; next_ != end_ && next_->a == a && next_->b == b && next_->wall == wall; ++next_) {
+      to.push_back(*next_);
+    }
+    return to.size() - before;
+  }
+
+ private:
+  std::vector<Contact>::const_iterator next_, end_;
+};
+
+/// A polygon may come nearer by turning as well.
+double speed_of(const World& world, int body) {
+  const BodyProperties& b = at(world.bodies, body);
+  const double rim = is_polygon(b) ? b.radius * std::abs(at(world.angular_velocity, body)) : 0.0;
+  return at(world.velocity, body).norm() + rim;
+}
+
+/// How far a body may get by the end of the step; by what it may get in all of it, parts were divided.
+double way_left(const Scene& scene, const World& world, const Neighbourhoods& near, int body) {
+  const double gained = scene.gravity.norm() * world.step_length;
+  return 2.0 * near.left_of(body) * (speed_of(world, body) + gained);
+}
+
+/// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre lies by
+/// `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than `most` (m).
+void add_contacts(const Scene& scene, World& world, int a, int b, int wall, const Vec2& d,
+                  double radii, double most) {
+  const double distance = d.norm();
+  if (distance - radii > most) return;
+  if (is_polygon(at(world.bodies, a)) || (b >= 0 && is_polygon(at(world.bodies, b)))) {
+    append_touches(scene, world, a, b, wall, most, world.contacts);
+    return;
+  }
+  const Vec2 somewhere = b >= 0 ? Vec2(1.0, 0.0) : Vec2(0.0, -1.0);
+  Contact contact;
+  contact.a = a;
+  contact.b = b;
+  contact.wall = wall;
+  contact.normal = distance > 0.0 ? Vec2(d / distance) : somewhere;
+  contact.gap = distance - radii;
+  world.contacts.push_back(contact);
+}
+
+bool is_same(const Contact& p, const Contact& q) {
+  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point;
+}
+
+/// What the last solve left of the contacts that there were.
+void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts) {
+  auto previous = old.begin();
+  for (Contact& contact : contacts) {
+    if (previous != old.end() && !is_same(*previous, contact)) {
+      while (previous != old.end() && comes_before(*previous, contact)) ++previous;
+    }
+    if (previous != old.end() && is_same(*previous, contact)) {
+      contact.touching = previous->touching;
+      contact.slip = previous->slip;
+      contact.normal_force = previous->normal_force;
+      contact.tangent_force = previous->tangent_force;
+    }
+  }
+}
+
+}  // namespace
+
+void find_contacts(const Scene& scene, World& world, Workspace& work) {
+  bool& all_kept = work.contacts.contacts_kept;
+  std::vector<Contact>& old = work.contacts.old_contacts;
+  const BroadPhase& broad = work.broad_phase;
+  if (world.contacts.empty() && broad.body_pairs.empty() && broad.wall_pairs.empty()) {
+    all_kept = true;
+    old.clear();
+    return;
+  }
+  all_kept = !work.parts.list.empty() && !work.parts.any_moves;
+  if (all_kept) return;
+  std::swap(old, world.contacts);
+  world.contacts.clear();
+  std::size_t kept = 0;
+  const double width = full_width(world);
+  Kept old_pairs(old), old_of_walls(old);
+  Neighbourhoods& near = work.neighbourhoods;
+  for (const BodyPair& pair : broad.body_pairs) {
+    if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
+      kept += old_pairs.keep(pair.a, pair.b, -1, world.contacts);
+      continue;
+    }
+    const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
+    // Bodies that move together have no speed between them until one is stopped within the step.
+    const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
+    const double most = width + reach(scene, world, speed, std::min(a, b));
+    const Vec2 d = at(world.position, pair.b) - at(world.position, pair.a);
+    if (near.separate_bodies(pair.a, pair.b)) {
+      const double left =
+          width + way_left(scene, world, near, pair.a) + way_left(scene, world, near, pair.b);
+      near.crossed = near.crossed || d.norm() - a - b <= left;
+      continue;
+    }
+    add_contacts(scene, world, pair.a, pair.b, -1, d, a + b, most);
+  }
+  for (const WallPair& pair : broad.wall_pairs) {
+    if (!can_move(at(world.bodies, pair.body))) continue;
+    if (is_still(work.parts, pair.body)) {
+      kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
+      continue;
+    }
+    const Vec2& x = at(world.position, pair.body);
+    const Vec2 d = nearest_point(at(scene.walls, pair.wall), x) - x;
+    const double radius = at(world.bodies, pair.body).radius;
+    const double most = reach(scene, world, speed_of(world, pair.body), radius);
+    add_contacts(scene, world, pair.body, -1, pair.wall, d, radius, most);
+  }
+  if (!broad.wall_pairs.empty()) {
+    std::sort(world.contacts.begin(), world.contacts.end(), comes_before);
+  }
+  all_kept = kept == world.contacts.size() && kept == old.size();
+  carry_over(old, world.contacts);
+}
+
+}  // namespace pinchlab
