@@ -9,6 +9,7 @@
 
 #include "base/at.h"
 #include "render/picture/cable_path.h"
+#include "render/picture/chain_path.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/outline.h"
@@ -137,74 +138,6 @@ class Composer {
     }
   }
 
-  bool is_node(const Link& link) const {
-    return link.body >= 0 && scene_.bodies[static_cast<std::size_t>(link.body)].node;
-  }
-
-  /// The body before the first of the nodes that a piece holds, of a chain whose number of nodes adapts.
-  int first_held(std::size_t piece) const {
-    const int c = static_cast<int>(piece);
-    for (const NodeChain& chain : scene_.chains) {
-      if (c == chain.cable) return chain.first_body - 1;
-      const int number = c - chain.first_piece + 1;
-      if (number >= 1 && number < chain.pieces) return chain.first_body + number - 1;
-    }
-    return -1;
-  }
-
-  /// A cable with mass from its first piece on, in one strip that bends at the nodes.
-  void add_chain(std::size_t c, Strip& strip) {
-    strip.first = picture_.points.size();
-    double material = 0.0;
-    const std::size_t count = world_.cables.size();
-    // Pieces follow one another, the first one's successor after all cables that the scene had.
-    for (std::size_t piece = c; piece < count;) {
-      const CableState& cable = world_.cables[piece];
-      const Segment& segment = cable.segments[1];
-      Vec2 from = segment.tail;
-      const auto go_to = [&](const Vec2& to, const Vec2& direction, double length) {
-        if (picture_.points.size() != strip.first) add_bend(direction);
-        picture_.points.push_back({from, direction, material});
-        material += length;
-        picture_.points.push_back({to, direction, material});
-        from = to;
-      };
-      for (int i = 1; i < cable.pieces; ++i) {  // with the bend that it holds
-        const Vec2& node = world_.position[index(first_held(piece) + i)];
-        go_to(node, (node - from).normalized(), (node - from).norm());
-      }
-      if (cable.pieces == 1) {
-        go_to(segment.head, segment.direction, segment.length);
-      } else {
-        const Vec2 way = segment.head - from;
-        go_to(segment.head, way.normalized(), way.norm());
-      }
-      const Link& end = cable.links.back();
-      if (!is_node(end)) break;
-      const auto starts_there = [&end](const CableState& next) {
-        return next.rod && next.links.front().body == end.body;
-      };
-      piece = piece + 1 < count && starts_there(world_.cables[piece + 1])
-                  ? piece + 1
-                  : static_cast<std::size_t>(
-                        std::find_if(world_.cables.begin(), world_.cables.end(), starts_there) -
-                        world_.cables.begin());
-    }
-    strip.count = picture_.points.size() - strip.first;
-    picture_.add(strip);
-  }
-
-  /// A fan of points after the last, where a strip bends to `to` by more than two of them can.
-  void add_bend(const Vec2& to) {
-    const StripPoint from = picture_.points.back();
-    const double bend = std::atan2(cross(from.tangent, to), from.tangent.dot(to));
-    const int pieces = static_cast<int>(std::ceil(std::abs(bend) / most_turn));
-    for (int k = 1; k < pieces; ++k) {
-      picture_.points.push_back(
-          {from.position, turned(from.tangent, bend * k / pieces), from.material});
-    }
-  }
-
   void add_cable(std::size_t c) {
     const CableState& cable = world_.cables[c];
     if (cable.joint != Joint::none) return;
@@ -218,7 +151,11 @@ class Composer {
     strip.edge = look.colour ? shade(*look.colour) : theme_.cable.edge;
     strip.mark = look.colour ? shade(*look.colour) : theme_.cable_mark;
     if (cable.rod) {
-      if (!is_node(cable.links.front())) add_chain(c, strip);
+      if (is_on_node(scene_, cable.links.front())) return;
+      strip.first = picture_.points.size();
+      append_chain_path(scene_, world_, c, picture_.points);
+      strip.count = picture_.points.size() - strip.first;
+      picture_.add(strip);
       return;
     }
     const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
@@ -504,7 +441,7 @@ class Composer {
   void add_fastenings(const CableState& cable) {
     if (cable.closed || cable.links.size() < 2) return;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
-      if (is_node(*link)) continue;
+      if (is_on_node(scene_, *link)) continue;
       if (link->body >= 0) {
         picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
       } else {
