@@ -66,15 +66,22 @@ void store(SolveScratch& set, int row, const std::vector<Term>& expression) {
 }
 
 /// The tension after the run if it slid in direction `way` everywhere, for the impulses just
-/// solved.
+/// solved. Cable is pushed in pinches only: what would have to be pushed along an arc slides on to it
+/// or, seen from the other end, lies on it without tension.
 double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way) {
   const auto impulse = [&system](int row) { return row >= 0 ? at(system.rows, row).impulse : 0.0; };
   double t = impulse(run.row_in);
   for (int k = run.passages_begin; k < run.passages_end; ++k) {
     const Passage& p = at(s.passages, k);
+    if (is_arc(p) && t < 0.0) t = way > 0 ? -infinity : 0.0;
     t = tension_after(p, way, t, impulse(p.normal), impulse(p.middle));
   }
   return t;
+}
+
+/// Whether a segment bears more force than `tolerance` (N s): tension, or what it is pushed by in a pinch.
+bool bears(const Row& row, double tolerance) {
+  return row.impulse > tolerance || (row.clamped && row.impulse < -tolerance);
 }
 
 Run make_run(const World& world, int cable, int first, int last) {
@@ -365,7 +372,7 @@ void slip_speeds(const PartSystem& system, CapstanScratch& s) {
       const Row& row = rows[index(s.members[index(m)])];
       total += row.speed;
       (row.speed > 0.0 ? spare : short_of) += std::abs(row.speed);
-      tension = tension || row.impulse > 0.0;
+      tension = tension || bears(row, 0.0);
     }
     // A group without tension moves material only to segments that would be taut, from those that
     // have some to spare, in proportion.
@@ -421,9 +428,9 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     int worst = -1;
     double least = -impulse_tolerance;
     for (int m = group.begin; m < group.end; ++m) {
-      const double impulse = rows[index(s.members[index(m)])].impulse;
-      if (impulse < least) {
-        least = impulse;
+      const Row& row = rows[index(s.members[index(m)])];
+      if (row.impulse < least && !row.clamped) {
+        least = row.impulse;
         worst = s.members[index(m)];
       }
     }
@@ -435,10 +442,10 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     const int number = static_cast<int>(i);
     const double out = rows[index(run.row_out)].impulse;
     if (run.slip != Slip::stick) {
-      const bool bears =
-          out > impulse_tolerance || rows[index(run.row_in)].impulse > impulse_tolerance;
+      const bool rubs = bears(rows[index(run.row_out)], impulse_tolerance) ||
+                        bears(rows[index(run.row_in)], impulse_tolerance);
       const bool against = sign(run.slip) * run.speed < -speed_tolerance;
-      if (bears && against) set.flips.push_back({number, true, true, Slip::stick});
+      if (rubs && against) set.flips.push_back({number, true, true, Slip::stick});
       continue;
     }
     if (out > sliding_limit(system, s, run, 1) + impulse_tolerance) {

@@ -28,11 +28,6 @@ double share(double mu, const Contact& contact) {
   return mu / std::max(1, contact.pinch_points);
 }
 
-/// A body's coefficient mu at a pinch of the cable.
-double gripped(const CableState& cable, double mu) {
-  return cable.grip == 0.0 ? 0.0 : cable.grip * mu;  // of no slip too: 0 times infinity
-}
-
 /// The transitional pinch of a segment, as seen by a body whose friction there is mu at one of its
 /// ends.
 void append_pressed_end(const World& world, const SolveScratch& scratch, const Segment& segment,
@@ -45,6 +40,11 @@ void append_pressed_end(const World& world, const SolveScratch& scratch, const S
 }
 
 }  // namespace
+
+double friction_in_pinch(const World& world, const CableState& cable, int body) {
+  if (cable.grip == 0.0) return 0.0;  // of no slip too: 0 times infinity
+  return cable.grip * at(world.bodies, body).cable_friction;
+}
 
 double contact_coefficient(double mu_a, double mu_b) {
   return std::sqrt(mu_a * mu_b);
@@ -67,7 +67,7 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   const Contact* contact = middle.contact >= 0 ? &at(world.contacts, middle.contact) : nullptr;
   const int normal = contact ? at(scratch.normal_row_of_contact, middle.contact) : -1;
   const bool clamped = contact && (normal < 0 || at(system.rows, normal).diagonal == 0.0);
-  const double mu = gripped(cable, at(world.bodies, middle.body).cable_friction);
+  const double mu = friction_in_pinch(world, cable, middle.body);
   Friction friction;
   friction.row = number;
   const bool held = clamped || yields(cable);  // however little a soft sheath presses
@@ -78,7 +78,7 @@ Friction middle_friction(const World& world, const PartSystem& system, const Sol
   if (clamped || normal < 0) return friction;
   friction.normal = normal;
   friction.coefficient = share(mu, *contact);
-  friction.wrapped = share(gripped(cable, at(world.bodies, wrapped.body).cable_friction), *contact);
+  friction.wrapped = share(friction_in_pinch(world, cable, wrapped.body), *contact);
   return friction;
 }
 
@@ -142,7 +142,7 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
                      std::vector<Passage>& passages) {
   const CableState& cable = at(world.cables, cable_number);
   const double mu = at(world.bodies, at(cable.links, first).body).cable_friction;
-  const double pinched_mu = gripped(cable, mu);
+  const double pinched_mu = friction_in_pinch(world, cable, at(cable.links, first).body);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   if (!three) append_pressed_end(world, scratch, at(cable.segments, first), pinched_mu, passages);
   for (int i = first;; i = next_link(cable, i)) {
@@ -155,7 +155,7 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
       if (three) {
         passage.middle_out = row_of_segment[next_link(cable, i)];
         passage.middle_factor =
-            capstan_factor(gripped(cable, at(world.bodies, part.body).cable_friction), middle_arc);
+            capstan_factor(friction_in_pinch(world, cable, part.body), middle_arc);
       } else {
         at(system.frictions, at(system.rows, passage.middle).friction).run = run;
         if (part.contact >= 0) {

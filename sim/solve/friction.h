@@ -18,6 +18,7 @@
 
 namespace pinchlab {
 
+struct CableState;
 struct SolveScratch;
 struct World;
 
@@ -30,6 +31,10 @@ struct Passage {
   int middle_out = -1;    // with three rows: the second one of the middle body
   double middle_factor = 1.0;  // with three rows: the most that the middle body changes the tension
 };
+
+inline bool is_arc(const Passage& p) {
+  return p.normal < 0 && p.friction == 0.0 && p.middle < 0;
+}
 
 /// Tension after a passage over which the material slides forward (way = 1) or backward (-1) as a sum:
 /// of `before` times the tension before it and `pressed` times the force that presses, less the middle
@@ -46,6 +51,10 @@ inline SlidingTerms sliding_terms(const Passage& p, int way) {
 inline double tension_after(const Passage& p, int way, double before, double force, double middle) {
   return (way > 0 ? before * p.factor : before / p.factor) + way * p.friction * force - middle;
 }
+
+/// What a body that presses the cable in a pinch holds it by, as a share of the force that presses;
+/// infinity: without slip.
+double friction_in_pinch(const World& world, const CableState& cable, int body);
 
 /// Coulomb coefficient of two bare surfaces: the geometric mean of the two bodies' (or the body's
 /// and the wall's).

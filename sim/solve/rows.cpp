@@ -292,14 +292,14 @@ void begin_middles(PartSystem& s) {
   }
 }
 
-/// The row of the force that clamps the cable of a transitional pinch between two bodies neither of
-/// which it can slide over; or -1.
+/// The row of the force that clamps the cable of a transitional pinch between two bodies both of which
+/// hold it by friction; or -1.
 int presser_of(const World& world, const SolveScratch& scratch, const Row& row) {
   const CableState& cable = at(world.cables, row.index);
   const Segment& segment = at(cable.segments, row.item);
   if (row.idle || row.compliance > 0.0) return -1;
   for (const int link : {row.item, previous_link(cable, row.item)}) {
-    if (at(world.bodies, at(cable.links, link).body).cable_friction < infinity) return -1;
+    if (friction_in_pinch(world, cable, at(cable.links, link).body) == 0.0) return -1;
   }
   return at(scratch.normal_row_of_contact, segment.contact);
 }
