@@ -16,12 +16,8 @@
 namespace pinchlab {
 
 bool check_finite(const Scene& scene, World& world) {
-  // Zero times what is finite is zero, and sums of that are.
   double sum = 0.0;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    sum +=
-        0.0 * world.velocity[b].x() + 0.0 * world.velocity[b].y() + 0.0 * world.angular_velocity[b];
-  }
+  for (int b = 0; index(b) < world.bodies.size(); ++b) sum += zero_if_finite(world, b);
   if (sum == 0.0) return true;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     if (std::isfinite(world.velocity[b].x()) && std::isfinite(world.velocity[b].y()) &&
@@ -111,9 +107,26 @@ double potential_energy(const Scene& scene, const World& world) {
   return energy;
 }
 
+namespace {
+
+double kinetic_energy(const BodyProperties& body, const Vec2& v, double omega) {
+  if (body.kind == BodyKind::fixed) return 0.0;
+  const double turning = 0.5 * inertia_of(body) * omega * omega;
+  return can_move(body) ? turning + 0.5 * body.mass * v.squaredNorm() : turning;
+}
+
+}  // namespace
+
+double kinetic_energy(const World& world) {
+  double energy = 0.0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    energy += kinetic_energy(world.bodies[b], world.velocity[b], world.angular_velocity[b]);
+  }
+  return energy;
+}
+
 double kinetic_energy(const World& world, const Instant& before, double after, int body) {
   const auto b = index(body);
-  const BodyProperties& p = world.bodies[b];
   const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
   const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
   double energy = 0.0;
@@ -121,10 +134,7 @@ double kinetic_energy(const World& world, const Instant& before, double after, i
     const Eigen::Vector3d all(v.x(), v.y(), omega);
     energy += 0.5 * all.dot(before.carried[b] * all);
   }
-  if (p.kind == BodyKind::fixed) return energy;
-  energy += 0.5 * inertia_of(p) * omega * omega;
-  if (can_move(p)) energy += 0.5 * p.mass * v.squaredNorm();
-  return energy;
+  return energy + kinetic_energy(world.bodies[b], v, omega);
 }
 
 double kinetic_energy(const World& world, const Instant& before, double after) {

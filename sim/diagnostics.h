@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/at.h"
 #include "sim/cable/mass.h"
 #include "sim/world.h"
 
@@ -24,6 +25,15 @@ bool check_positions(const Scene& scene, World& world);
 
 /// Energy of gravity and of stretched cables at the present positions (J).
 double potential_energy(const Scene& scene, const World& world);
+
+/// Zero, or a NaN where a velocity of the body's is not finite: one sum tells of many.
+inline double zero_if_finite(const World& world, int body) {
+  const Vec2& v = at(world.velocity, body);
+  return 0.0 * v.x() + 0.0 * v.y() + 0.0 * at(world.angular_velocity, body);
+}
+
+/// Kinetic energy of all bodies at the velocities that they have (J).
+double kinetic_energy(const World& world);
 
 /// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a kick:
 /// what is between them, by the share `after`, is right to second order. Of all bodies, or of one.

@@ -12,6 +12,7 @@
 
 #include "analysis/experiments/population_scenes.h"
 #include "sim/cable/cable.h"
+#include "sim/diagnostics.h"
 #include "sim/mirror.h"
 #include "sim/step.h"
 #include "sim/tangent.h"
@@ -23,18 +24,6 @@ namespace {
 constexpr int frames = 60;  // one second
 constexpr std::array<int, 3> ladder{1, 4, 16};
 constexpr std::array<const char*, 2> kinds{"pinch", "at_steps"};
-
-double kinetic_energy(const Scene& scene, const World& world) {  // J
-  double energy = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    if (body.kind == BodyKind::fixed) continue;
-    const double spin = world.angular_velocity[b];
-    energy += 0.5 * inertia_of(body) * spin * spin;
-    if (can_move(body)) energy += 0.5 * body.mass * world.velocity[b].squaredNorm();
-  }
-  return energy;
-}
 
 void note_spans(const Scene& scene, const World& world, Soundness& sound) {
   for (const CableState& cable : world.cables) {
@@ -231,7 +220,7 @@ Soundness run_scene(Scene scene, const Configuration& configuration, int steps_p
     const Diagnostics& d = world.diagnostics;
     if (i == 0) start = d.energy;
     gain = std::max(gain, d.energy - start);
-    kinetic = std::max(kinetic, kinetic_energy(scene, world));
+    kinetic = std::max(kinetic, kinetic_energy(world));
     sound.gap_violation = std::max(sound.gap_violation, d.largest_gap_violation / thinnest);
     sound.length_error = std::max(sound.length_error, d.cable_length_error);
     note_spans(scene, world, sound);

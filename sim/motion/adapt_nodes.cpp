@@ -303,18 +303,6 @@ void change_nodes(const Scene& scene, World& world, Workspace& work) {
   work.broad_phase.boxes.clear();  // for bodies with other outlines
 }
 
-double energy_of_motion(const World& world) {
-  double energy = 0.0;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const BodyProperties& body = world.bodies[b];
-    if (body.kind == BodyKind::fixed) continue;
-    const double omega = world.angular_velocity[b];
-    energy += 0.5 * inertia_of(body) * omega * omega;
-    if (can_move(body)) energy += 0.5 * body.mass * world.velocity[b].squaredNorm();
-  }
-  return energy;
-}
-
 void follow_chains(const Scene& scene, World& world, const Workspace& work) {
   for (const NodeChain& chain : scene.chains) {
     if (is_still(chain, work)) continue;

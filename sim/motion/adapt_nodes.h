@@ -49,9 +49,6 @@ bool wants_other_nodes(const Scene& scene, const World& world, const Workspace& 
 /// pairs is then to be found anew, and velocities are to meet the new pieces.
 void change_nodes(const Scene& scene, World& world, Workspace& work);
 
-/// Of all bodies (J): what change_nodes and the impact after it lose of it is Diagnostics::node_losses.
-double energy_of_motion(const World& world);
-
 /// Lets out bends that tension straightens, and carries dormant nodes along.
 void follow_chains(const Scene& scene, World& world, const Workspace& work);
 

@@ -156,12 +156,12 @@ void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
     Neighbourhoods& near = work.neighbourhoods;
     if (world.lag > 0.0) catch_up(scene, world, near.parts.items, time, world.lag, work);
     world.lag = 0.0;
-    const double before = energy_of_motion(world);
+    const double before = kinetic_energy(world);
     change_nodes(scene, world, work);
     detect_after_moving(scene, world, work, false, times);
     list_parts(work.parts, near);
     strike_all(scene, world, work, time, false);
-    world.diagnostics.node_losses += before - energy_of_motion(world);
+    world.diagnostics.node_losses += before - kinetic_energy(world);
   }
   follow_chains(scene, world, work);
 }
@@ -215,12 +215,9 @@ double kinetic_energy(const World& world, const Workspace& work, const Movers& m
 
 /// Whether their bodies' velocities are.
 bool are_finite(const World& world, const Parts& all, std::span<const int> parts) {
-  double sum = 0.0;  // zero times what is finite is zero
+  double sum = 0.0;
   for (const int p : parts) {
-    for (const int b : bodies_of(all, at(all.list, p))) {
-      const Vec2& v = at(world.velocity, b);
-      sum += 0.0 * v.x() + 0.0 * v.y() + 0.0 * at(world.angular_velocity, b);
-    }
+    for (const int b : bodies_of(all, at(all.list, p))) sum += zero_if_finite(world, b);
   }
   return sum == 0.0;
 }

@@ -28,8 +28,8 @@ constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an inte
 // it into, and that bodies move so little in that only round-off would be corrected.
 constexpr double shortest = 1e-4;
 constexpr double shortest_corrected = 1e-6;
-constexpr double sound = 1e-6;  // of a part's extent: more than friction that cycles may miss
-constexpr double bent = 0.5;    // most that a way may bend in an interval, as a share of the speed
+constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles
+constexpr double bent = 0.5;  // most that a way may bend in an interval, as a share of the speed
 constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
 constexpr int shake_rounds = 12;        // each gains at least a factor 2 (move_part), mostly 100
 constexpr int most_trials = 60;         // of an interval's length
@@ -234,15 +234,17 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
     again(shake_rounds);
   }
-  const auto unsound = [&trial] { return !trial.met && (trial.settled || trial.missed > sound); };
+  const auto misses = [&trial] {
+    return !trial.met && (trial.settled || trial.missed > most_missed);
+  };
   const double whole = length;
-  for (int halvings = 0; unsound() && halvings < most_halvings; ++halvings) {
+  for (int halvings = 0; misses() && halvings < most_halvings; ++halvings) {
     const double missed = trial.missed;
     length *= 0.5;
     again(shake_rounds);
     // A way that bends misses a quarter then. What misses half contradicts itself, as a motor that
     // turns against a jammed cable does: no interval is short enough.
-    if (unsound() && missed < infinity && trial.missed > 0.4 * missed) {
+    if (misses() && missed < infinity && trial.missed > 0.4 * missed) {
       length = whole;
       break;
     }
@@ -381,7 +383,7 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
   const double missed = work.trial.missed;
   cross(0, false);
   // Of two solutions that do not hold the one that misses less.
-  if (work.trial.missed > missed && work.trial.missed > sound) cross(shake_rounds, false);
+  if (work.trial.missed > missed && work.trial.missed > most_missed) cross(shake_rounds, false);
   return false;
 }
 

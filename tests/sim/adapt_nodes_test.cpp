@@ -47,7 +47,7 @@ Whole measure(const Scene& scene, const World& world) {
     if (!is_dormant(cable)) all.moment += first_moment(cable);
     all.length += cable.pieces * scene.chains[0].piece_length;
   }
-  all.kinetic = energy_of_motion(world);
+  all.kinetic = kinetic_energy(world);
   all.potential = potential_energy(scene, world);
   return all;
 }
@@ -155,7 +155,7 @@ TEST(AdaptNodes, EnergyDoesNotRise) {
         const Diagnostics& d = world.diagnostics;
         if (i == 0) first = d.energy;
         most = std::max(most, d.energy - first);
-        at_play = std::max(at_play, energy_of_motion(world));
+        at_play = std::max(at_play, kinetic_energy(world));
         ASSERT_GE(d.node_losses, losses - 1e-13) << seed;
         losses = d.node_losses;
         ASSERT_LT(d.largest_stretch, 1e-6) << seed;

@@ -2,6 +2,7 @@
 // Small scenes that once went wrong, one a cause.
 
 #include "demos/scenes/scene_json.h"
+#include "sim/diagnostics.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -9,17 +10,6 @@ namespace {
 
 Scene read(const std::string& name) {
   return read_scene_file(PINCHLAB_SOURCE_DIR "/tests/sim/defects/" + name + ".json").scene;
-}
-
-double kinetic_energy(const Scene& scene, const World& world) {  // J
-  double energy = 0.0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const Body& body = scene.bodies[b];
-    const double spin = world.angular_velocity[b];
-    energy += 0.5 * inertia_of(body) * spin * spin;
-    if (can_move(body)) energy += 0.5 * body.mass * world.velocity[b].squaredNorm();
-  }
-  return energy;
 }
 
 /// The largest of each over a run. Energies in J, lengths in m.
@@ -39,7 +29,7 @@ Extremes play(const Scene& scene, World& world, double seconds) {
     const Diagnostics& d = world.diagnostics;
     if (i == 0) start = d.energy;
     most.energy_gain = std::max(most.energy_gain, d.energy - start);
-    most.kinetic = std::max(most.kinetic, kinetic_energy(scene, world));
+    most.kinetic = std::max(most.kinetic, kinetic_energy(world));
     most.stretch = std::max(most.stretch, d.largest_stretch);
     most.gap_violation = std::max(most.gap_violation, d.largest_gap_violation);
     if (::testing::Test::HasFailure()) break;
