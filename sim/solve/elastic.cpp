@@ -44,9 +44,11 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
     row.compliance = row.idle ? 0.0 : 1.0 / damper;
     return;
   }
-  const double damper = 0.5 * flexibility * given.damping * t.kick;  // s^2
-  known -= damper * before;
-  const double scale = b * h * h + damped * h * t.kick + damper;
+  const double damper = flexibility * given.damping * t.kick;  // s^2
+  const double taken = given.damping * t.kick * row.diagonal;
+  const double after = taken > 0.0 ? Drag(taken).after / taken : 0.5;  // its share
+  known -= (1.0 - after) * damper * before;
+  const double scale = b * h * h + damped * h * t.kick + after * damper;
   row.idle = false;
   row.clamped = both_ways;
   row.on = both_ways || !segment.slack;

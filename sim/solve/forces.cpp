@@ -18,16 +18,15 @@ namespace pinchlab {
 
 namespace {
 
-// dv/dt = f/m - c v with the drag on the mean of old and new: (1 + c k/2) v' = (1 - c k/2) v + k
-// f/m.
+// dv/dt = f/m - c v: (1 + after) v' = (1 - before) v + k f/m, see Drag.
 Forcing forcing_of(const Scene& scene, const BodyProperties& body, double k) {
   Forcing f;
   f.moves = can_move(body);
   if (f.moves) f.pull = k * scene.gravity;
   if (body.kind == BodyKind::rail) f.pull = body.rail_axis * body.rail_axis.dot(f.pull);
-  f.linear = 0.5 * k * body.linear_drag;
-  f.angular = 0.5 * k * body.angular_drag;
-  f.turned = f.angular != 0.0 || body.torque != 0.0;
+  f.linear = Drag(k * body.linear_drag);
+  f.angular = Drag(k * body.angular_drag);
+  f.turned = body.angular_drag != 0.0 || body.torque != 0.0;
   if (f.turned) f.spin = k * body.torque / inertia_of(body);
   return f;
 }
@@ -35,8 +34,8 @@ Forcing forcing_of(const Scene& scene, const BodyProperties& body, double k) {
 /// Velocity of a body after a kick by forces alone.
 inline Eigen::Vector3d free_velocity(const Forcing& f, const Vec2& v, double omega) {
   Vec2 free = Vec2::Zero();
-  if (f.moves) free = ((1.0 - f.linear) * v + f.pull) / (1.0 + f.linear);
-  if (f.turned) omega = ((1.0 - f.angular) * omega + f.spin) / (1.0 + f.angular);
+  if (f.moves) free = ((1.0 - f.linear.before) * v + f.pull) / (1.0 + f.linear.after);
+  if (f.turned) omega = ((1.0 - f.angular.before) * omega + f.spin) / (1.0 + f.angular.after);
   return {free.x(), free.y(), omega};
 }
 
@@ -140,23 +139,25 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
 }
 
 /// Mobility and free velocity of a body that carries mass M beside its own,
-///     (M_b + M + k C / 2) v' = (M_b + M - k C / 2) v + k f,   C: drag,
+///     (M_b + M + M_b after) v' = (M_b + M - M_b before) v + k f,   see Drag,
 /// where v' is given in what the body cannot do by itself.
 void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
           int place, PartSystem& s) {
   const Eigen::Vector3d own(body.mass, body.mass, inertia_of(body));
-  const Eigen::Vector3d drag(body.linear_drag, body.linear_drag, body.angular_drag);
+  const Drag linear(k * body.linear_drag), angular(k * body.angular_drag);
   const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
   Eigen::Matrix3d all = at(s.carried, place);
   Eigen::Vector3d force = all * pull + at(s.flow, place);
   all.diagonal() += own;
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
-  const Eigen::Matrix3d half = (0.5 * k * own.cwiseProduct(drag)).asDiagonal();
-  const Eigen::Matrix3d inverse = inverse_for(body, all + half);
+  Eigen::Matrix3d old = all;
+  old.diagonal() -= own.cwiseProduct(Eigen::Vector3d(linear.before, linear.before, angular.before));
+  all.diagonal() += own.cwiseProduct(Eigen::Vector3d(linear.after, linear.after, angular.after));
+  const Eigen::Matrix3d inverse = inverse_for(body, all);
   Eigen::Vector3d& free = at(s.free_velocity, place);
   Eigen::Vector3d given = Eigen::Vector3d::Zero();
   if (body.driven_angular_velocity) given.z() = free.z();
-  free = given + inverse * ((all - half) * v + k * force - (all + half) * given);
+  free = given + inverse * (old * v + k * force - all * given);
   at(s.mobility, place) = {inverse(0, 0), inverse(0, 1), inverse(1, 1),
                            inverse(2, 2), inverse(0, 2), inverse(1, 2)};
 }

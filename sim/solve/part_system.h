@@ -4,6 +4,7 @@
 // so that what stands of it stands whatever other parts do.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "base/at.h"
@@ -26,10 +27,22 @@ struct Mobility {
   }
 };
 
+/// What drag takes in a kick, of the velocities before and after it:
+///     (1 + after) v' = (1 - before) v + ...
+/// With `taken` = c k it is the mean of both (trapezoidal, of second order) as long as that does not turn
+/// the motion round, and else as much of the second as makes an end of the first.
+struct Drag {
+  double before = 0.0, after = 0.0;
+
+  Drag() = default;
+  explicit Drag(double taken)
+      : before(std::min(0.5 * taken, 1.0)), after(std::max(0.5 * taken, taken - 1.0)) {}
+};
+
 /// What forces make of a body's velocity in a kick, whatever that is.
 struct Forcing {
-  Vec2 pull = Vec2::Zero();            // m/s, that gravity adds
-  double linear = 0.0, angular = 0.0;  // half of what drag takes, as a share
+  Vec2 pull = Vec2::Zero();  // m/s, that gravity adds
+  Drag linear, angular;
   double spin = 0.0;                   // rad/s, that a torque adds
   bool moves = false, turned = false;  // the body's centre can; something turns it
   bool has_motor = false;              // what turns it is driven, or follows a table
@@ -154,7 +167,7 @@ struct RowsMade {
 constexpr double within_reach = 1e-11;
 
 struct PartSystem {
-  // Bodies of the part in its order, and the world after them; by apply_forces (step.cpp).
+  // Bodies of the part in its order, and the world after them; by apply_forces (forces.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
   std::vector<char> mobile;                    // impulses can move or turn it
   std::vector<Forcing> forcing;                // what the mobilities' kick adds

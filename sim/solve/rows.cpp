@@ -292,16 +292,19 @@ void begin_middles(PartSystem& s) {
   }
 }
 
-/// The row of the force that clamps the cable of a transitional pinch between two bodies both of which
-/// hold it by friction; or -1.
-int presser_of(const World& world, const SolveScratch& scratch, const Row& row) {
+/// Notes what clamps the cable of a transitional pinch between two bodies both of which hold it by friction: the row
+/// of the force that presses; or, between axles that do not give way and without slip, whatever it takes.
+void clamp_in_pinch(const World& world, const SolveScratch& scratch, Row& row) {
   const CableState& cable = at(world.cables, row.index);
-  const Segment& segment = at(cable.segments, row.item);
-  if (row.idle || row.compliance > 0.0) return -1;
+  if (row.idle || row.compliance > 0.0) return;
+  bool slips = false;
   for (const int link : {row.item, previous_link(cable, row.item)}) {
-    if (friction_in_pinch(world, cable, at(cable.links, link).body) == 0.0) return -1;
+    const double mu = friction_in_pinch(world, cable, at(cable.links, link).body);
+    if (mu == 0.0) return;
+    slips = slips || mu < infinity;
   }
-  return at(scratch.normal_row_of_contact, segment.contact);
+  row.presser = at(scratch.normal_row_of_contact, at(cable.segments, row.item).contact);
+  if (row.presser < 0 && !slips) row.clamped = row.on = true;
 }
 
 /// Lists the rows of a part's segments: between which places, and of what kind.
@@ -387,9 +390,8 @@ double restitution_of(const Scene& scene, const World& world, const Contact& con
 
 Mobility mobility_of(const BodyProperties& body, double kick) {
   Mobility m;
-  // Drag acts on the mean of the velocities before and after the kick (Crank-Nicolson), so what an
-  // impulse adds is divided by 1 + c k / 2.
-  const double linear = 1.0 / (body.mass * (1.0 + 0.5 * kick * body.linear_drag));
+  // Drag takes its share of what an impulse adds.
+  const double linear = 1.0 / (body.mass * (1.0 + Drag(kick * body.linear_drag).after));
   if (body.kind == BodyKind::free) m.xx = m.yy = linear;
   if (body.kind == BodyKind::rail) {
     const Vec2 n = body.rail_axis.normalized();
@@ -398,7 +400,7 @@ Mobility mobility_of(const BodyProperties& body, double kick) {
     m.yy = linear * n.y() * n.y();
   }
   if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
-    m.angular = 1.0 / (inertia_of(body) * (1.0 + 0.5 * kick * body.angular_drag));
+    m.angular = 1.0 / (inertia_of(body) * (1.0 + Drag(kick * body.angular_drag).after));
   }
   return m;
 }
@@ -434,7 +436,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     if (row.kind == RowKind::pinch_middle) {
       hold_middle(interval, row);
       row.slip = at(cable.links, row.item).slip;
-    } else if (part.can_move && segment.pinched && segment.contact >= 0) {
+    } else if (segment.pinched && segment.contact >= 0) {
       s.pressed.push_back(r);
     }
   }
@@ -459,7 +461,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
   s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;
   if (interval.clamps) {
-    for (const int r : s.pressed) at(s.rows, r).presser = presser_of(world, scratch, at(s.rows, r));
+    for (const int r : s.pressed) clamp_in_pinch(world, scratch, at(s.rows, r));
   }
   if (s.middles.empty()) return;
   if (!again) {

@@ -315,9 +315,9 @@ Scene feeding(double of_drum, double of_roller) {
 /// Cable that nothing pulls is pushed through the pinch by what presses on it, and turns the roller by the
 /// friction of whichever body holds it less: a constant force F = mu N on its lever, until both rims are
 /// equally fast.
-class Clamp : public ::testing::TestWithParam<std::tuple<double, double, int>> {};
+class Feed : public ::testing::TestWithParam<std::tuple<double, double, int>> {};
 
-TEST_P(Clamp, PushesSlackCableByFrictionOfThePressingForce) {
+TEST_P(Feed, PushesSlackCableByFrictionOfThePressingForce) {
   const auto [of_drum, of_roller, steps_per_frame] = GetParam();
   Scene scene = feeding(of_drum, of_roller);
   scene.steps_per_frame = steps_per_frame;
@@ -343,7 +343,16 @@ TEST_P(Clamp, PushesSlackCableByFrictionOfThePressingForce) {
   EXPECT_EQ(world.diagnostics.fallbacks, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Friction, Clamp,
+// Between axles nothing has to press.
+TEST(Clamp, PushesSlackCableBetweenAxles) {
+  Scene scene = feeding(infinity, infinity);
+  scene.bodies[1].kind = BodyKind::fixed_axle;
+  World world = make_world(scene, measured());
+  run(scene, world, 240);
+  EXPECT_NEAR(world.angle[1], 4.0 * R / (0.25 + w), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Clamp, Feed,
                          ::testing::Combine(::testing::Values(infinity, 0.5, 0.1),
                                             ::testing::Values(0.3, 0.2),
                                             ::testing::Values(1, 4, 16)));
