@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/at.h"
-#include "sim/cable/mass.h"
 #include "sim/world.h"
 
 namespace pinchlab {

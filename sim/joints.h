@@ -11,8 +11,8 @@
 
 namespace pinchlab {
 
-/// What two points of a joint may not do: be on one body, both on the world, or of a bar or spring in
-/// one place. Attachment::point may lie outside of its body.
+// The two points of a joint must not be on one body, both on the world, or, of a bar or spring, in one place:
+// SceneError, whose place is the joint's name. Attachment::point may lie outside of its body.
 
 /// Keeps the two points at the distance that they start with.
 void add_bar(Scene& scene, const std::string& name, const Attachment& start, const Attachment& end);

@@ -10,6 +10,7 @@
 #include "sim/cable/lay.h"
 #include "sim/compound.h"
 #include "sim/detect/contacts.h"
+#include "sim/detect/detect.h"
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"

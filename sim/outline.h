@@ -9,7 +9,7 @@
 
 namespace pinchlab {
 
-/// Corners of a polygon that can be told apart in a contact (Contact::corner) and checked quickly.
+/// Corners of a polygon that can be told apart in a contact (Contact::point) and checked quickly.
 constexpr int most_corners = 64;
 
 inline bool is_polygon(const BodyProperties& body) {

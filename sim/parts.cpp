@@ -8,7 +8,6 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
-#include "sim/solve/capstan.h"
 #include "sim/trees.h"
 #include "sim/workspace.h"
 

@@ -6,16 +6,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/mass.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Nothing but gravity and elastic cables gives energy to the scene.
 bool is_undriven(const Scene& scene) {
@@ -31,7 +29,7 @@ std::string percent(double share) {
 
 std::string name_of_side(const Scene& scene, int side) {
   return side < 0 ? fmt::format("wall {}", -1 - side)
-                  : fmt::format("body '{}'", scene.bodies[at(side)].name);
+                  : fmt::format("body '{}'", at(scene.bodies, side).name);
 }
 
 }  // namespace
@@ -102,8 +100,8 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
     if (!(depth > 0.0)) continue;
     double size = contact.target;
     if (!(size > 0.0)) {
-      size = scene.bodies[at(contact.a)].radius;
-      if (contact.b >= 0) size = std::min(size, scene.bodies[at(contact.b)].radius);
+      size = at(scene.bodies, contact.a).radius;
+      if (contact.b >= 0) size = std::min(size, at(scene.bodies, contact.b).radius);
     }
     note_value(Promise::squeeze, depth / size, limits_.squeeze, world.step, contact.a,
                contact.b >= 0 ? contact.b : -1 - contact.wall);
@@ -159,19 +157,19 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
       case Promise::strain:
         what =
             fmt::format("cable '{}' was stretched by {} of its length (limit {})",
-                        scene.cables[at(w.item)].name, percent(w.value), percent(limits_.strain));
+                        at(scene.cables, w.item).name, percent(w.value), percent(limits_.strain));
         break;
       case Promise::squeeze:
         what = fmt::format(
             "body '{}' and {} came too near by {} of the cable between them, or of "
             "the smaller radius (limit {})",
-            scene.bodies[at(w.item)].name, name_of_side(scene, w.other), percent(w.value),
+            at(scene.bodies, w.item).name, name_of_side(scene, w.other), percent(w.value),
             percent(limits_.squeeze));
         break;
       case Promise::length:
         what =
             fmt::format("cable '{}' lost or gained {} of its length (limit {})",
-                        scene.cables[at(w.item)].name, percent(w.value), percent(limits_.length));
+                        at(scene.cables, w.item).name, percent(w.value), percent(limits_.length));
         break;
       case Promise::energy:
         what = fmt::format(
@@ -183,7 +181,7 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
         what = fmt::format(
             "cable '{}', whose spans have mass and are straight, would have hung by {} of one's "
             "length (limit {})",
-            scene.cables[at(w.item)].name, percent(w.value), percent(limits_.sag));
+            at(scene.cables, w.item).name, percent(w.value), percent(limits_.sag));
         break;
       default:
         what = "the solver did not settle and took its fallback";

@@ -3,7 +3,6 @@
 // The immutable description of a simulation: what a scene file says, in SI units, checked.
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -154,13 +153,6 @@ struct Wall {
   double contact_friction = 0.5;
   double restitution = 0.0;
 };
-
-/// The point of a wall that is nearest to x (m).
-inline Vec2 nearest_point(const Wall& wall, const Vec2& x) {
-  const Vec2 d = wall.b - wall.a;
-  const double t = std::clamp((x - wall.a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return wall.a + t * d;
-}
 
 /// The part of the plane that a frame shows, m. Its aspect is fitted into the frame's.
 struct View {

@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/detect/broad_phase.h"
+#include "sim/lines.h"
 #include "sim/nodes.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
@@ -31,14 +32,11 @@ std::vector<Vec2> corners_of(const World& world, int body) {
 
 /// Between a line from p to q and a polygon (m); 0 where it runs into it.
 double distance_to(const std::vector<Vec2>& corners, const Vec2& p, const Vec2& q) {
-  const Wall line{p, q};
   double least = std::min(outside_of(corners, p).distance, outside_of(corners, q).distance);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Vec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
-    least = std::min(least, (nearest_point(line, a) - a).norm());
-    const bool crosses = cross(q - p, a - p) * cross(q - p, b - p) < 0.0 &&
-                         cross(b - a, p - a) * cross(b - a, q - a) < 0.0;
-    if (crosses) return 0.0;
+    least = std::min(least, distance_from_line(p, q, a));
+    if (lines_cross(a, b, p, q)) return 0.0;
   }
   return std::max(least, 0.0);
 }
@@ -93,6 +91,16 @@ bool positive(double x) {
   return x > 0.0 && x < infinity;
 }
 
+bool at_least_0(double x) {
+  return x >= 0.0 && x < infinity;
+}
+
+/// What bodies and walls have in common.
+void refuse_impossible_surface(double friction, double restitution, const std::string& place) {
+  refuse(!at_least_0(friction), place, "the contact friction must be a number of at least 0");
+  refuse(!(restitution >= 0.0 && restitution <= 1.0), place, "the restitution must be 0 to 1");
+}
+
 void refuse_impossible_body(const Scene& scene, int b) {
   const Body& body = at(scene.bodies, b);
   const std::string place = pointer("bodies", index(b));
@@ -108,6 +116,14 @@ void refuse_impossible_body(const Scene& scene, int b) {
   refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
   refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
          "position and velocity must be finite");
+  refuse(!std::isfinite(body.angle) || !std::isfinite(body.angular_velocity) ||
+             !std::isfinite(body.driven_angular_velocity.value_or(0.0)) ||
+             !std::isfinite(body.torque),
+         place, "angle, angular velocity and torque must be finite");
+  refuse(!at_least_0(body.linear_drag) || !at_least_0(body.angular_drag), place,
+         "drag must be a number of at least 0");
+  refuse(!(body.cable_friction >= 0.0), place, "the cable friction must be at least 0");
+  refuse_impossible_surface(body.contact_friction, body.restitution, place);
   refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
   for (std::size_t i = 0; i < body.motor.size(); ++i) {
     const MotorPoint& point = body.motor[i];
@@ -116,8 +132,9 @@ void refuse_impossible_body(const Scene& scene, int b) {
                !(i == 0 ? point.time >= 0.0 : point.time > before),
            place, "a motor's table must have finite values at ascending times from 0 on");
   }
-  refuse(body.kind == BodyKind::rail && !(body.rail_axis.norm() > 0.0), place,
-         "the rail's axis must have a direction");
+  constexpr double rounding = 1e-9;
+  refuse(body.kind == BodyKind::rail && !(std::abs(body.rail_axis.norm() - 1.0) <= rounding), place,
+         "the rail's axis must be a unit vector");
 }
 
 void refuse_impossible_cable(const Scene& scene, std::size_t c) {
@@ -125,6 +142,8 @@ void refuse_impossible_cable(const Scene& scene, std::size_t c) {
   const std::string place = pointer("cables", c);
   refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
   refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
+  refuse(!std::isfinite(cable.slack) || (cable.slack < 0.0 && cable.axial_stiffness == infinity),
+         place, "the slack must be at least 0, or below that of an elastic cable");
   refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
          "only an elastic cable creeps");
   const int bodies = static_cast<int>(scene.bodies.size());
@@ -178,7 +197,7 @@ void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& b
     const double gap =
         is_polygon(body)
             ? distance_to(corners_of(world, pair.body), wall.a, wall.b) - body.corner_radius
-            : (nearest_point(wall, body.position) - body.position).norm() - body.radius;
+            : distance_from_line(wall.a, wall.b, body.position) - body.radius;
     if (gap < -allowed) {
       throw SceneError(pointer("bodies", index(pair.body)),
                        fmt::format("body '{}' overlaps wall {} by {}; move it away", body.name,
@@ -197,10 +216,9 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
     const auto tail = index(previous_link(cable, pair.segment));
     if (cable.links[segment_number].body == pair.body || cable.links[tail].body == pair.body)
       continue;
-    const Wall line{segment.tail, segment.head};
-    const double distance = is_polygon(body)
-                                ? distance_to(corners_of(world, pair.body), line.a, line.b)
-                                : (nearest_point(line, body.position) - body.position).norm();
+    const double distance =
+        is_polygon(body) ? distance_to(corners_of(world, pair.body), segment.tail, segment.head)
+                         : distance_from_line(segment.tail, segment.head, body.position);
     const double overlap = rim_radius(body) + cable.half_width - distance;
     if (overlap > allowed) {
       throw SceneError(
@@ -231,6 +249,7 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
 void refuse_impossible_figures(const Scene& scene) {
   refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
          "frames per second and steps per frame must be at least 1");
+  refuse(!scene.gravity.allFinite(), "/gravity_m_s2", "gravity must be finite");
   refuse(!(scene.error >= 0.0), "/error_m", "the error must be a number of at least 0");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     refuse_impossible_body(scene, static_cast<int>(b));
@@ -239,6 +258,8 @@ void refuse_impossible_figures(const Scene& scene) {
   for (std::size_t w = 0; w < scene.walls.size(); ++w) {
     const double length = (scene.walls[w].b - scene.walls[w].a).norm();
     refuse(!positive(length), pointer("walls", w), "the wall must have a length");
+    refuse_impossible_surface(scene.walls[w].contact_friction, scene.walls[w].restitution,
+                              pointer("walls", w));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
 #include "sim/compound.h"
+#include "sim/detect/detect.h"
 #include "sim/detect/pinch.h"
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
@@ -81,9 +82,8 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
   for (Part& part : work.parts.list) {
     if (part.asleep) continue;
     if (!solve_part(scene, world, work, part, watch)) ++d.fallbacks;
-    const PartSystem& s = at(work.systems, part.system);
-    store_solution(work.parts, part, at(work.systems, part.system), work.solve.capstan,
-                   whole_step(world).kick, world);
+    PartSystem& s = at(work.systems, part.system);
+    store_solution(work.parts, part, s, work.solve.capstan, whole_step(world).kick, world);
     if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
       store_middles(s, work.solve, work.sweeps, world);
     }
@@ -101,7 +101,7 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   apply_forces(scene, world, whole_step(world), work);
   watch.lap(Stage::apply_forces);
   solve_parts(scene, world, work, watch);
-  if (!check_finite(scene, world)) return StepStatus::not_finite;
+  if (!check_finite(scene, world)) return StepStatus::failed;
   if (world.configuration.diagnostics) {
     const double after = world.lag / whole_step(world).kick;
     world.diagnostics.energy += kinetic_energy(world, work.before, after);
@@ -132,7 +132,7 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
                                 ? advance(scene, world, work, times)
                                 : advance_at_once(scene, world, work, times);
   if (status != StepStatus::ok) return status;
-  if (!check_positions(scene, world)) return StepStatus::not_finite;
+  if (!check_positions(scene, world)) return StepStatus::failed;
   ++world.step;
   Stopwatch watch(times);
   if (world.configuration.diagnostics) measure_cables(scene, world);

@@ -2,7 +2,6 @@
 #pragma once
 // START HERE: one step of the simulation.
 
-#include "sim/detect/detect.h"
 #include "sim/make_world.h"
 #include "sim/stages.h"
 #include "sim/workspace.h"
@@ -11,7 +10,7 @@ namespace pinchlab {
 
 /// Advances `world` by one step of world.step_length seconds: leapfrog, the first kick half a step
 /// long, constraints solved at the positions that the kick is made at. Smooth motion is second
-/// order in the step. After StepStatus::not_finite the world is not usable and world.failure says
+/// order in the step. After StepStatus::failed the world is not usable and world.failure says
 /// where and when. With `times` each stage is timed.
 ///
 /// `work` may be any Workspace: one that served the step before makes this one faster, and changes

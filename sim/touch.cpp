@@ -5,6 +5,7 @@
 #include <array>
 
 #include "base/at.h"
+#include "sim/lines.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
@@ -76,7 +77,8 @@ struct Apart {
 Apart circles_apart(const Scene& scene, const World& world, const Contact& contact) {
   const Vec2& a = at(world.position, contact.a);
   const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
-                                : nearest_point(at(scene.walls, contact.wall), a);
+                                : nearest_on_line(at(scene.walls, contact.wall).a,
+                                                  at(scene.walls, contact.wall).b, a);
   const double radii = at(world.bodies, contact.a).radius +
                        (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
   Apart apart;

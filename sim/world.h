@@ -4,7 +4,6 @@
 // (that is in a Workspace). Bodies and cables are indexed as in Scene; links and segments come and
 // go.
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -150,7 +149,9 @@ inline double stored_length(const Link& link) {
   return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
 }
 
-enum class StepStatus { ok, not_finite };
+/// What came of a step. It fails where a value is not finite, or where cables bend round more corners, or meet and
+/// leave bodies more often, than anything real: World::failure.
+enum class StepStatus { ok, failed };
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 

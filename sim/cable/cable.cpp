@@ -6,7 +6,6 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
-#include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -271,6 +270,12 @@ void update_segments(World& world, Workspace& work) {
     if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }
+}
+
+bool slides_somewhere(const World& world, const CableState& cable) {
+  return std::any_of(cable.links.begin(), cable.links.end(), [&world](const Link& link) {
+    return link.orientation != 0 && at(world.bodies, link.body).cable_friction < infinity;
+  });
 }
 
 }  // namespace pinchlab

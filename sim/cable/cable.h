@@ -3,7 +3,6 @@
 // Links and segments: geometry and transport, insertion, removal and merging.
 
 #include <algorithm>
-#include <span>
 
 #include "base/at.h"
 #include "sim/world.h"
@@ -151,5 +150,8 @@ double material_at(const CableState& cable, std::size_t i, bool at_head, double 
 
 /// Wraps of all links and rest lengths of all segments of a cable whose tangents are up to date.
 void update_wraps_and_rest_lengths(const World& world, CableState& cable);
+
+/// Whether the cable touches a body that it may slide over.
+bool slides_somewhere(const World& world, const CableState& cable);
 
 }  // namespace pinchlab

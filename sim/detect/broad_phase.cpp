@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/lines.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -124,7 +125,7 @@ void list_wall_pairs(const Scene& scene, const World& world, BroadPhase& broad) 
       const Box& box = at(broad.boxes, body);  // the circle round it is nearer to slanting walls
       const Vec2 centre = 0.5 * (box.low + box.high);
       const double reach = 0.5 * (box.high - box.low).norm();
-      if ((nearest_point(wall, centre) - centre).norm() > reach || !at(world.bodies, body).outlined)
+      if (distance_from_line(wall.a, wall.b, centre) > reach || !at(world.bodies, body).outlined)
         return;
       broad.wall_pairs.push_back({body, static_cast<int>(w)});
     });

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/lines.h"
 #include "sim/outline.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
@@ -155,8 +156,9 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
       continue;
     }
+    const Wall& wall = at(scene.walls, pair.wall);
     const Vec2& x = at(world.position, pair.body);
-    const Vec2 d = nearest_point(at(scene.walls, pair.wall), x) - x;
+    const Vec2 d = nearest_on_line(wall.a, wall.b, x) - x;
     const double radius = at(world.bodies, pair.body).radius;
     const double most = reach(scene, world, speed_of(world, pair.body), radius);
     add_contacts(scene, world, pair.body, -1, pair.wall, d, radius, most);

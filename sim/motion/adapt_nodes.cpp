@@ -9,6 +9,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
 #include "sim/compound.h"
+#include "sim/lines.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 
@@ -84,27 +85,12 @@ bool holds_line(const World& world, const Line& line, int body) {
          line.to.body == mover;
 }
 
-/// m, from the line to a point.
-double distance_from(const Vec2& start, const Vec2& d, const Vec2& point) {
-  const double t = std::clamp((point - start).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (start + t * d - point).norm();
-}
-
-double distance_between(const Vec2& a, const Vec2& d, const Wall& wall) {
-  const Vec2 b = a + d, e = wall.b - wall.a;
-  const double a_side = cross(e, a - wall.a), b_side = cross(e, b - wall.a);
-  const double from_side = cross(d, wall.a - a), to_side = cross(d, wall.b - a);
-  if (a_side * b_side < 0.0 && from_side * to_side < 0.0) return 0.0;
-  return std::min({distance_from(a, d, wall.a), distance_from(a, d, wall.b),
-                   distance_from(wall.a, e, a), distance_from(wall.a, e, b)});
-}
-
 /// Whether a body or wall is no further from the line than `times` what both may move in two steps, with what the
 /// cable may be off it.
 bool is_near_something(const Scene& scene, const World& world, const NodeChain& chain,
                        const Line& line, double times) {
   const Vec2 start = link_centre(world, line.from);
-  const Vec2 d = link_centre(world, line.to) - start;
+  const Vec2 end = link_centre(world, line.to);
   const double h = world.step_length;
   const double speed =
       std::max(end_velocity(world, line.from).norm(), end_velocity(world, line.to).norm()) +
@@ -114,10 +100,11 @@ bool is_near_something(const Scene& scene, const World& world, const NodeChain& 
     const BodyProperties& body = world.bodies[b];
     if (body.node || !body.outlined || holds_line(world, line, static_cast<int>(b))) continue;
     const double reach = own + 2.0 * h * (world.velocity[b].norm() + h * scene.gravity.norm());
-    if (distance_from(start, d, world.position[b]) < body.radius + times * reach) return true;
+    if (distance_from_line(start, end, world.position[b]) < body.radius + times * reach)
+      return true;
   }
   return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
-    return distance_between(start, d, wall) < times * own;
+    return distance_between_lines(start, end, wall.a, wall.b) < times * own;
   });
 }
 

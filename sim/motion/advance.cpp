@@ -170,7 +170,7 @@ StepStatus fail_by_changes(World& world) {
   world.failure = fmt::format(
       "step {} (t = {} s): cables meet and leave bodies without end; move apart what they are in",
       world.step, world.time());
-  return StepStatus::not_finite;
+  return StepStatus::failed;
 }
 
 /// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
@@ -261,7 +261,8 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   return true;
 }
 
-/// Moves every neighbourhood that has not come to the end of the step, while all others wait; likewise.
+/// Moves every neighbourhood that has not come to the end of the step by an interval, while all others wait.
+/// Whether all velocities are finite.
 bool move_one_by_one(const Scene& scene, World& world, Workspace& work, bool begins,
                      const Round& round, Stopwatch& watch) {
   const Neighbourhoods& near = work.neighbourhoods;
@@ -305,7 +306,8 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   return move_one_by_one(scene, world, work, false, {true, false}, watch);
 }
 
-/// The next round: every neighbourhood that has not come to the end of the step moves by an interval; likewise.
+/// The next round: every neighbourhood that has not come to the end of the step moves by an interval. Whether all
+/// velocities are finite.
 bool move_all(const Scene& scene, World& world, Workspace& work, const Round& round,
               Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
@@ -408,7 +410,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   if (world.step == 0) strike_all(scene, world, work, 0.0, true);
   Round round;
   while (is_left(near)) {
-    if (!move_all(scene, world, work, round, watch)) return StepStatus::not_finite;
+    if (!move_all(scene, world, work, round, watch)) return StepStatus::failed;
     ++d.intervals;
     d.total_solves += d.active_set_solves;
     if (changes_of_cables(world) > allowed) return fail_by_changes(world);

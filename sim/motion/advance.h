@@ -33,7 +33,7 @@ namespace pinchlab {
 struct Workspace;
 
 /// Moves the world on by world.step_length, all but World::step, which is the caller's.
-/// StepStatus::not_finite: as step().
+/// StepStatus::failed: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
 /// Velocities of these parts' bodies at the time of their positions (`time`), `lag` after those that the world

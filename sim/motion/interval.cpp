@@ -35,6 +35,14 @@ constexpr int shake_rounds = 12;        // each gains at least a factor 2 (move_
 constexpr int most_trials = 60;         // of an interval's length
 constexpr int most_halvings = 5;        // of an interval that does not converge
 
+/// How an interval is tried.
+struct Attempt {
+  double length;                   // s
+  int most_rounds = shake_rounds;  // of corrections
+  bool begins = false;             // it is the first since begin_interval
+  bool locates = true;  // what happens in it; else constraints bear force as early as it takes
+};
+
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent) return false;
   return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
@@ -120,7 +128,7 @@ double greatest_speed(const World& world, std::span<const int> bodies,
 
 /// Solves and moves a part; whether its lengths and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               int most_rounds, bool begins, Trial& trial, Stopwatch& watch) {
+               const Attempt& attempt, Trial& trial, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   steady_light_bodies(world, work.parts, part, t.kick, s);
@@ -145,12 +153,12 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
     part.slides = !set.capstan.runs.empty() || part.can_slip;
     watch.lap(Stage::solve);
-    place_part(world, work, part, t.length, begins && round == 0);
+    place_part(world, work, part, t.length, attempt.begins && round == 0);
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
     const double missed = add_missed(scene, world, set.capstan, t, s, trial);
-    const bool follows = round < 2 && most_rounds > 0 && !s.carried.empty();
+    const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
     if (follows) follow_flow(work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
     if (round == 1) trial.local_error = std::max(trial.local_error, missed);
@@ -159,7 +167,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     if (meets && !follows) return true;
     // Where states flip it may get worse for a round.
     trial.missed = std::max(trial.missed, missed / s.extent);
-    if (round == most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
+    if (round == attempt.most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
       return false;
     before_last = last;
     last = missed;
@@ -177,13 +185,13 @@ void add(const Trial& one, Trial& all) {
 
 /// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
 void try_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                  double length, bool locate, int most_rounds, bool begins, Stopwatch& watch) {
+                  const Attempt& attempt, Stopwatch& watch) {
   TimeSpan t;
-  t.length = length;
+  t.length = attempt.length;
   t.repair = world.step_length;
   t.lag = movers.lag;
   t.clamps = true;
-  t.kick = movers.lag + 0.5 * length;
+  t.kick = movers.lag + 0.5 * t.length;
   t.start = work.start.time;
   work.trial = Trial{};
   work.trials.resize(work.parts.list.size());
@@ -195,14 +203,14 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     apply_forces(scene, world, t, work.parts, part, s);
     watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
-    t.reach = locate ? s.reach : infinity;
-    trial.met = move_part(scene, world, work, part, t, most_rounds, begins, trial, watch);
+    t.reach = attempt.locates ? s.reach : infinity;
+    trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
     add(trial, work.trial);
-    if (!locate) continue;
+    if (!attempt.locates) continue;
     find_catches(scene, world, work, p);
     find_gone_links(world, work, p);
   }
-  if (locate) find_span_hits(scene, world, work);
+  if (attempt.locates) find_span_hits(scene, world, work);
   for (Happening& event : work.events) {
     if (!event.seen) event.clearance = infinity;
   }
@@ -210,9 +218,9 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
 
 /// Tries an interval from the same start again.
 void try_again(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-               double length, int most_rounds, Stopwatch& watch) {
+               const Attempt& attempt, Stopwatch& watch) {
   go_back(world, work, movers.parts);
-  try_interval(scene, world, work, movers, length, true, most_rounds, false, watch);
+  try_interval(scene, world, work, movers, attempt, watch);
 }
 
 bool errs(const World& world, const Trial& trial) {
@@ -220,14 +228,14 @@ bool errs(const World& world, const Trial& trial) {
   return allowed > 0.0 && trial.met && trial.local_error > allowed;
 }
 
-/// The longest interval of at most `length`, which was just tried, that is exact at its end and errs by no
-/// more than the scene allows, whatever happens in it; likewise.
+/// Moves by the longest interval of at most `length`, which was just tried, that is exact at its end and errs
+/// by no more than the scene allows, whatever happens in it. Returns its length.
 double find_sound_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                            double length, Stopwatch& watch) {
   const Trial& trial = work.trial;
   const auto again = [&](int most_rounds) {
     work.events.clear();
-    try_again(scene, world, work, movers, length, most_rounds, watch);
+    try_again(scene, world, work, movers, {length, most_rounds}, watch);
   };
   const double allowed = share_of_error * world.configuration.error;
   while (errs(world, trial) && length > shortest * world.step_length) {
@@ -257,7 +265,8 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   return length;
 }
 
-/// Shortens the interval that was tried last to the first of its events; likewise.
+/// Shortens the interval that was tried last, of `length`, to the first of its events. Returns its length;
+/// `met`: as for shorten_interval.
 double locate_first_event(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                           double length, bool& met, Stopwatch& watch) {
   double late = length, early = 0.0;
@@ -279,7 +288,7 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
     const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
     if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
     tried = next;
-    try_again(scene, world, work, movers, tried, met ? shake_rounds : 0, watch);
+    try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
     met = work.trial.met && met;
   }
   return tried;
@@ -360,7 +369,7 @@ bool is_sound(const World& world, const Trial& trial) {
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool begins, Stopwatch& watch) {
-  try_interval(scene, world, work, movers, length, true, shake_rounds, begins, watch);
+  try_interval(scene, world, work, movers, {length, shake_rounds, begins}, watch);
   return is_sound(world, work.trial) && work.events.empty();
 }
 
@@ -374,16 +383,20 @@ double shorten_interval(const Scene& scene, World& world, Workspace& work, const
 
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                     double length, Stopwatch& watch) {
-  const auto cross = [&](int most_rounds, bool begins) {
-    if (!begins) go_back(world, work, movers.parts);
-    try_interval(scene, world, work, movers, length, false, most_rounds, begins, watch);
-  };
-  cross(shake_rounds, true);
+  Attempt attempt{length};
+  attempt.begins = true;
+  attempt.locates = false;
+  try_interval(scene, world, work, movers, attempt, watch);
   if (work.trial.met) return true;
+  attempt.begins = false;
   const double missed = work.trial.missed;
-  cross(0, false);
+  attempt.most_rounds = 0;
+  try_again(scene, world, work, movers, attempt, watch);
   // Of two solutions that do not hold the one that misses less.
-  if (work.trial.missed > missed && work.trial.missed > most_missed) cross(shake_rounds, false);
+  if (work.trial.missed > missed && work.trial.missed > most_missed) {
+    attempt.most_rounds = shake_rounds;
+    try_again(scene, world, work, movers, attempt, watch);
+  }
   return false;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/lines.h"
 #include "sim/motion/interval.h"
 #include "sim/trees.h"
 #include "sim/workspace.h"
@@ -33,12 +34,6 @@ Reach reach_of(const Scene& scene, const World& world, const Start& start, const
   return reach;
 }
 
-double distance(const Vec2& x, const Vec2& from, const Vec2& to) {
-  const Vec2 d = to - from;
-  const double share = d.squaredNorm() > 0.0 ? (x - from).dot(d) / d.squaredNorm() : 0.0;
-  return (x - from - std::clamp(share, 0.0, 1.0) * d).norm();
-}
-
 /// Joins the parts of bodies that may reach the span with the part of its cable.
 void join_at_span(const Parts& parts, Neighbourhoods& near, int part, const Reach& tail,
                   const Reach& head, double longest) {
@@ -50,7 +45,7 @@ void join_at_span(const Parts& parts, Neighbourhoods& near, int part, const Reac
   for (; it != near.reaches.end() && it->centre.x() - it->radius <= high; ++it) {
     const int other = at(parts.of_body, it->body);
     if (other == part || find_root(near.root, other) == find_root(near.root, part)) continue;
-    if (distance(it->centre, tail.centre, head.centre) > width + it->radius) continue;
+    if (distance_from_line(tail.centre, head.centre, it->centre) > width + it->radius) continue;
     join(near.root, part, other);
   }
 }

@@ -135,12 +135,6 @@ void smooth(CapstanScratch& s) {
 
 }  // namespace
 
-bool slides_somewhere(const World& world, const CableState& cable) {
-  return std::any_of(cable.links.begin(), cable.links.end(), [&world](const Link& link) {
-    return link.orientation != 0 && at(world.bodies, link.body).cable_friction < infinity;
-  });
-}
-
 void find_runs(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                SolveScratch& scratch) {
   CapstanScratch& s = scratch.capstan;

@@ -61,9 +61,6 @@ struct CapstanScratch {
   std::vector<int> sums_begin, borders;
 };
 
-/// Whether the cable touches a body that it may slide over.
-bool slides_somewhere(const World& world, const CableState& cable);
-
 /// Sliding speed over the wrapped body at a middle link's pinch: that of its run.
 inline double run_speed(const PartSystem& system, const CapstanScratch& capstan, const Row& row) {
   const int run = at(system.frictions, row.friction).run;

@@ -74,28 +74,31 @@ bool stall(const World& world, const Parts& parts, const Part& part, PartSystem&
   return changed;
 }
 
+/// One without a limit.
+Motor& append_motor(const BodyProperties& body, int place, double speed, double before,
+                    PartSystem& s) {
+  Motor& motor = s.motors.emplace_back();
+  motor.place = place;
+  motor.speed = speed;
+  motor.before = before;
+  motor.inertia = inertia_of(body);
+  motor.moves = can_move(body);
+  motor.most = infinity;
+  return motor;
+}
+
 }  // namespace
 
 void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
                PartSystem& s) {
-  Motor& motor = s.motors.emplace_back();
-  motor.place = place;
-  motor.speed = kick > 0.0 || body.torque_limit < infinity ? speed : before;
-  motor.before = before;
-  motor.inertia = inertia_of(body);
-  motor.moves = can_move(body);
-  motor.most = body.torque_limit < infinity ? kick * body.torque_limit : infinity;
+  const bool limited = body.torque_limit < infinity;
+  Motor& motor = append_motor(body, place, kick > 0.0 || limited ? speed : before, before, s);
+  if (limited) motor.most = kick * body.torque_limit;
   find_first_state(motor);
 }
 
 void add_stalled_motor(const BodyProperties& body, int place, double before, PartSystem& s) {
-  Motor& motor = s.motors.emplace_back();
-  motor.place = place;
-  motor.speed = motor.before = before;
-  motor.inertia = inertia_of(body);
-  motor.moves = can_move(body);
-  motor.most = infinity;
-  motor.state = MotorState::stalls;
+  append_motor(body, place, before, before, s).state = MotorState::stalls;
 }
 
 void find_first_state(Motor& motor) {
@@ -134,7 +137,7 @@ bool change_motors(const World& world, const Parts& parts, const Part& part, Par
       const double faster =
           motor.state == MotorState::forward ? turning - motor.speed : motor.speed - turning;
       if (faster > least) next = MotorState::holds;
-    } else if (motor.most < infinity) {
+    } else {
       const double given =
           motor.inertia * (motor.speed - motor.before) - impulse_of_rows(s, motor.place);
       if (std::abs(given) > motor.most * (1.0 + rounding)) {

@@ -148,7 +148,7 @@ TEST(Invariants, NotFiniteStopsWithPlaceAndTime) {
   Workspace work;
   run(scene, world, 10);
   world.velocity[1].x() = std::nan("");
-  EXPECT_EQ(step(scene, world, work), StepStatus::not_finite);
+  EXPECT_EQ(step(scene, world, work), StepStatus::failed);
   EXPECT_NE(world.failure.find("step 10"), std::string::npos) << world.failure;
   EXPECT_NE(world.failure.find("not finite"), std::string::npos) << world.failure;
 }

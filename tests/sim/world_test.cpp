@@ -54,6 +54,21 @@ TEST(MakeWorld, RefusesFiguresThatCannotBe) {
   refused("/bodies/0", "radius", [](Scene& s) { s.bodies[0].radius = 0.0; });
   refused("/bodies/0", "inertia", [](Scene& s) { s.bodies[0].inertia = -0.1; });
   refused("/bodies/0", "finite", [nan](Scene& s) { s.bodies[0].position.x() = nan; });
+  refused("/bodies/0", "finite", [nan](Scene& s) { s.bodies[0].angle = nan; });
+  refused("/bodies/0", "finite", [nan](Scene& s) { s.bodies[0].angular_velocity = nan; });
+  refused("/bodies/0", "finite", [](Scene& s) { s.bodies[0].driven_angular_velocity = infinity; });
+  refused("/bodies/0", "finite", [nan](Scene& s) { s.bodies[0].torque = nan; });
+  refused("/bodies/0", "drag", [](Scene& s) { s.bodies[0].linear_drag = -0.1; });
+  refused("/bodies/0", "drag", [](Scene& s) { s.bodies[0].angular_drag = infinity; });
+  refused("/bodies/0", "cable friction", [nan](Scene& s) { s.bodies[0].cable_friction = nan; });
+  refused("/bodies/0", "contact friction", [](Scene& s) { s.bodies[0].contact_friction = -1.0; });
+  refused("/bodies/0", "restitution", [](Scene& s) { s.bodies[0].restitution = 2.0; });
+  refused("/bodies/0", "unit vector", [](Scene& s) {
+    s.bodies[0].kind = BodyKind::rail;
+    s.bodies[0].rail_axis = {0.0, 2.0};
+  });
+  refused("/gravity_m_s2", "finite", [nan](Scene& s) { s.gravity.x() = nan; });
+  refused("/cables/0", "slack", [](Scene& s) { s.cables[0].slack = -0.1; });
   refused("/cables/0", "half width", [](Scene& s) { s.cables[0].half_width = 0.0; });
   refused("/cables/0", "not in the scene", [](Scene& s) { s.cables[0].wraps[0].body = 1; });
   refused("/cables/0", "not in the scene", [](Scene& s) { s.cables[0].end.body = 7; });
