@@ -427,9 +427,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
     // feed back as speed: there they only pull.
     if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
-    const Cable& given = at(scene.cables, row.index);
-    if (given.axial_stiffness < infinity && !segment.pinched) {
-      make_elastic(world, given, segment, interval, s, r);
+    if (cable.elastic && !segment.pinched) {
+      make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {
       hold_middle(interval, row);
