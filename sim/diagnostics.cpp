@@ -41,14 +41,6 @@ bool check_finite(const Scene& scene, World& world) {
   return true;
 }
 
-namespace {
-
-/// A cable that a polygon winds up without end costs more with each turn: this is what makes a step last
-/// milliseconds.
-constexpr std::size_t most_corners_met = 20'000;
-
-}  // namespace
-
 bool check_positions(const Scene& scene, World& world) {
   double sum = 0.0;  // as above
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
@@ -58,16 +50,6 @@ bool check_positions(const Scene& scene, World& world) {
   std::size_t c = 0;
   while (c < world.cables.size() && world.cables[c].finite) ++c;
   const bool finite = bodies && c == world.cables.size();
-  for (std::size_t i = 0; i < world.cables.size(); ++i) {
-    const std::vector<Link>& links = world.cables[i].links;
-    if (links.size() <= most_corners_met) continue;  // of discs and corners
-    const auto met = std::count_if(links.begin(), links.end(),
-                                   [](const Link& link) { return link.corner >= 0; });
-    if (static_cast<std::size_t>(met) <= most_corners_met) continue;
-    world.failure = fmt::format("step {} (t = {} s): cable '{}' bends round more than {} corners",
-                                world.step, world.time(), scene.cables[i].name, most_corners_met);
-    return false;
-  }
   if (finite) return true;
   std::string what = "a position";
   for (std::size_t b = 0; !bodies && b < world.bodies.size(); ++b) {
@@ -78,6 +60,23 @@ bool check_positions(const Scene& scene, World& world) {
   world.failure = fmt::format("step {} (t = {} s): {} is not finite; method {}", world.step,
                               world.time(), what, to_string(world.configuration.method));
   return false;
+}
+
+bool check_corners(const Scene& scene, World& world) {
+  // A cable that a polygon winds up without end costs more with each turn: this is what makes a step last
+  // milliseconds.
+  constexpr std::size_t most_corners_met = 20'000;
+  for (std::size_t i = 0; i < world.cables.size(); ++i) {
+    const std::vector<Link>& links = world.cables[i].links;
+    if (links.size() <= most_corners_met) continue;  // of discs and corners
+    const auto met = std::count_if(links.begin(), links.end(),
+                                   [](const Link& link) { return link.corner >= 0; });
+    if (static_cast<std::size_t>(met) <= most_corners_met) continue;
+    world.failure = fmt::format("step {} (t = {} s): cable '{}' bends round more than {} corners",
+                                world.step, world.time(), scene.cables[i].name, most_corners_met);
+    return false;
+  }
+  return true;
 }
 
 double potential_energy(const Scene& scene, const World& world) {

@@ -18,9 +18,11 @@ void note_instant(const World& world, Instant& instant);
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
 
-/// The same of positions, angles, and spans' lengths and tensions; and that no cable
-/// bends round absurdly many corners.
+/// The same of positions, angles, and spans' lengths and tensions.
 bool check_positions(const Scene& scene, World& world);
+
+/// The same, where links have come, of how many corners a cable bends round: not absurdly many.
+bool check_corners(const Scene& scene, World& world);
 
 /// Energy of gravity and of stretched cables at the present positions (J).
 double potential_energy(const Scene& scene, const World& world);

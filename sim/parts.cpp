@@ -21,7 +21,7 @@ constexpr double rest_time = 0.5;
 /// The pairs in contact and the changes of all cables; false if they are those of the last time, as
 /// contacts are that were kept.
 bool structure_changed(const World& world, bool contacts_kept, Parts& parts) {
-  const int changes = changes_of_cables(world);
+  const int changes = world.changes;
   bool same = changes == parts.changes && parts.structure.size() == 2 * world.contacts.size();
   for (std::size_t i = 0; same && !contacts_kept && i < world.contacts.size(); ++i) {
     same = parts.structure[2 * i] == world.contacts[i].a &&
@@ -128,6 +128,7 @@ int number_parts(const World& world, Parts& parts) {
 void describe(const World& world, Parts& parts, Part& part) {
   for (const int c : cables_of(parts, part)) {
     part.dormant = part.dormant || is_dormant(at(world.cables, c));
+    part.creeps = part.creeps || !at(world.cables, c).rims.empty();
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
   }
   for (int k = part.bodies_begin; k < part.bodies_end; ++k) {

@@ -21,6 +21,7 @@ struct Part {
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
   double lightest = infinity;                // kg, of the bodies that can do more than turn
   bool can_move = false;                     // a body of it can do more than turn
+  bool creeps = false;                       // a cable of it does
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool dormant = false;                      // pieces of cable that are part of others

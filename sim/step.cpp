@@ -128,11 +128,13 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
     note_instant(world, work.before);
     world.diagnostics.energy = potential_energy(scene, world);
   }
+  const int changes = world.changes;
   const StepStatus status = locates_events(world.configuration)
                                 ? advance(scene, world, work, times)
                                 : advance_at_once(scene, world, work, times);
   if (status != StepStatus::ok) return status;
   if (!check_positions(scene, world)) return StepStatus::failed;
+  if (world.changes != changes && !check_corners(scene, world)) return StepStatus::failed;
   ++world.step;
   Stopwatch watch(times);
   if (world.configuration.diagnostics) measure_cables(scene, world);

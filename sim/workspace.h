@@ -64,6 +64,7 @@ struct StepStart {
   Start start;
   std::vector<int> first_link;  // of Workspace
   std::vector<CableState> cables;
+  int changes = 0;  // World::changes
   std::vector<Contact> contacts;
   std::vector<int> still_steps;
   Diagnostics diagnostics;

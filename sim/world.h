@@ -97,8 +97,8 @@ struct Segment {
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
 };
 
-struct CableState {
-  // What every step reads.
+struct alignas(64) CableState {
+  // What every step reads, in two lines of the cache.
   std::vector<Link> links;
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
                                   // from the last link to the first when closed
@@ -120,12 +120,15 @@ struct CableState {
   double half_width = 0.0;  // m
   double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
   std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
-  double least_gap = 0.0;   // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
-                            // Method::pinch_no_contact
-  double grip = 1.0;        // factor on the friction of its pinches
-  double bend = 0.0;        // N m a rad, between it and `bends_with`
-  // Of a chain whose number of nodes adapts (held.h), by adapt_nodes:
-  int pieces = 1;            // the finest that it is made of; 0: dormant, part of another
+  int pieces = 1;           // of a chain whose number of nodes adapts (held.h), by adapt_nodes: the
+                            // finest that it is made of; 0: dormant, part of another
+  bool elastic = false;     // of finite stiffness
+  // What few steps read.
+  double least_gap = 0.0;  // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
+                           // Method::pinch_no_contact
+  double grip = 1.0;       // factor on the friction of its pinches
+  double bend = 0.0;       // N m a rad, between it and `bends_with`
+  // Of a chain whose number of nodes adapts, by adapt_nodes:
   double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
   Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that it holds
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
@@ -198,6 +201,7 @@ struct World {
                                          // note_rest
   std::vector<Contact> contacts;         // sorted by (a, b, wall); by find_contacts, forces and
                                          // states by store_solution
+  int changes = 0;                       // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite
 

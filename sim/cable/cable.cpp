@@ -235,7 +235,7 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
   }
   bool moved = false;
   const std::size_t first = first_segment(cable), count = cable.segments.size();
-  const bool fills = cable.fills;
+  const bool fills = cable.fills, still_stands = known && !fills;
   bool all_still = !fills && cable.rims.empty();
   const Link* from = &cable.links[tail_link(cable, first)];
   for (std::size_t i = first; i < count; ++i) {
@@ -247,10 +247,10 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
       segment.moved = false;
       segment.was_pinched = segment.pinched;
     }
-    all_still = all_still && from->still && to->still;
-    const bool stands = known && from->still && to->still && !fills;
-    if (!stands && (fills || link_centre(world, *from) != segment.tail_centre ||
-                    link_centre(world, *to) != segment.head_centre)) {
+    const bool still = from->still && to->still;
+    all_still = all_still && still;
+    if (!(still && still_stands) && (fills || link_centre(world, *from) != segment.tail_centre ||
+                                     link_centre(world, *to) != segment.head_centre)) {
       update_tangent(world, cable, i);
     }
     moved = moved || segment.moved;

@@ -31,11 +31,10 @@ inline double body_angle(const World& world, const Link& link) {
   return link.body >= 0 ? at(world.angle, link.body) : 0.0;
 }
 
-/// Links inserted and removed so far, of all cables.
-inline int changes_of_cables(const World& world) {
-  int changes = 0;
-  for (const CableState& cable : world.cables) changes += cable.changes;
-  return changes;
+/// Notes that links of a cable have been inserted or removed.
+inline void count_changes(World& world, CableState& cable, int count) {
+  cable.changes += count;
+  world.changes += count;
 }
 
 /// First segment that exists: 1 in an open cable, 0 in a closed one.

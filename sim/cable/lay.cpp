@@ -293,6 +293,7 @@ CableState lay_cable(const Scene& scene, const World& world, double allowed, std
   cable.bends_with = given.bends_with;
   cable.bend = given.bend;
   cable.joint = given.joint;
+  cable.elastic = given.axial_stiffness < infinity;
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);
   lay_wraps(scene, course);

@@ -35,7 +35,7 @@ void take_over(CableState& cable, int link, int later) {
 
 }  // namespace
 
-void remove_link(const World& world, CableState& cable, int link) {
+void remove_link(World& world, CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
   // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now, and how
   // the cable slipped there is over.
@@ -48,7 +48,7 @@ void remove_link(const World& world, CableState& cable, int link) {
   const bool merge = before != after && one.body == other.body && one.corner == other.corner &&
                      one.orientation == other.orientation && one.orientation != 0;
   const bool of_corner = !merge && at(cable.links, link).corner >= 0;
-  ++cable.changes;
+  count_changes(world, cable, 1);
   // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
   // computed anew from the link before. In a merge the earlier link on the body stays.
   const auto erase = [&cable](int i) {
@@ -124,7 +124,7 @@ Link rolling_link(const BodyProperties& properties, int body, int corner, int or
   return link;
 }
 
-void insert_link(const World& world, CableState& cable, std::size_t segment, int body, int corner,
+void insert_link(World& world, CableState& cable, std::size_t segment, int body, int corner,
                  int orientation) {
   // A link put into the segment that closes a loop comes last, so that indices stay where they are.
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
@@ -154,7 +154,7 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   // Both parts get the same strain: rest lengths in the ratio of the lengths. The material to share
   // is what lies between the neighbours' new tangents: they have turned, by much where the body is
   // near.
-  ++cable.changes;
+  count_changes(world, cable, 1);
   if (const int way = way_of_layers(cable, position); way != 0) {
     begin_layers(world, cable, position, way);
   }
@@ -176,7 +176,7 @@ void insert_link(const World& world, CableState& cable, std::size_t segment, int
   if (!cable.rims.empty()) lay_down(world, cable);
 }
 
-void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches) {
+void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> pinches) {
   std::vector<Link> links;
   std::vector<Segment> segments;
   std::vector<Rim> rims;
@@ -220,7 +220,7 @@ void insert_pinches(const World& world, CableState& cable, std::span<const NewPi
   cable.links.swap(links);
   cable.segments.swap(segments);
   cable.rims.swap(rims);
-  cable.changes += static_cast<int>(pinches.size());
+  count_changes(world, cable, static_cast<int>(pinches.size()));
   for (const std::size_t s : added) {
     update_tangent(world, cable, s);
     cable.segments[s].previous_tail = cable.segments[s].tail;

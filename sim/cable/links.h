@@ -21,12 +21,12 @@ bool needed(const CableState& cable, std::size_t i);
 bool remove_links(World& world, Workspace& work);
 
 /// Takes link i out of the cable. If its neighbours lie on one body they become one link.
-void remove_link(const World& world, CableState& cable, int link);
+void remove_link(World& world, CableState& cable, int link);
 
 /// Puts a rolling link on `body`, or on that corner of it, into free segment i, between its tail and
 /// head links, and shares the segment's material so that both parts are stretched alike (thesis:
 /// AddJoints); a part that then lies along a polygon gets as much as it is long.
-void insert_link(const World& world, CableState& cable, std::size_t segment, int body, int corner,
+void insert_link(World& world, CableState& cable, std::size_t segment, int body, int corner,
                  int orientation);
 
 /// The circle on which a cable rolls round a body, or round that corner of it: all of a new link
@@ -43,6 +43,6 @@ struct NewPinch {
 
 /// Splits links by middle links on the bodies that press them: i, middle, i + 2 (thesis 4.2.2). The
 /// pinches are sorted by link and arc.
-void insert_pinches(const World& world, CableState& cable, std::span<const NewPinch> pinches);
+void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> pinches);
 
 }  // namespace pinchlab

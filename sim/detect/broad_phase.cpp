@@ -256,7 +256,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
 
 void find_span_pairs(const World& world, Workspace& work) {
   BroadPhase& broad = work.broad_phase;
-  const int changes = changes_of_cables(world);
+  const int changes = world.changes;
   if (!broad.bodies_changed && broad.changes == changes &&
       (!work.spans_moved || spans_in_boxes(world, work.parts, broad))) {
     return;

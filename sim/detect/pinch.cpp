@@ -198,7 +198,7 @@ bool is_kept(const Parts& parts, const Contact& contact) {
 /// they were configured last. What has moved elsewhere does not matter to them.
 void find_standing_cables(const World& world, const Parts& parts, ContactScratch& scratch) {
   scratch.stands.assign(world.cables.size(), false);
-  if (parts.list.empty() || scratch.configured_changes != changes_of_cables(world)) return;
+  if (parts.list.empty() || scratch.configured_changes != world.changes) return;
   scratch.stirred.assign(parts.list.size(), false);
   for (const Contact& contact : world.contacts) {
     if (is_kept(parts, contact)) continue;
@@ -256,8 +256,8 @@ void configure_pinches(World& world, Workspace& work) {
   if (world.configuration.method == Method::cable) return;
   if (world.contacts.empty() && work.contacts.old_contacts.empty()) return;
   ContactScratch& scratch = work.contacts;
-  scratch.pinches_kept = scratch.contacts_kept && !work.spans_moved &&
-                         scratch.configured_changes == changes_of_cables(world);
+  scratch.pinches_kept =
+      scratch.contacts_kept && !work.spans_moved && scratch.configured_changes == world.changes;
   if (scratch.pinches_kept) return;
   find_standing_cables(world, work.parts, scratch);
   if (work.neighbourhoods.divided) find_waiting_cables(work.parts, scratch);
@@ -298,7 +298,7 @@ void configure_pinches(World& world, Workspace& work) {
     });
     insert_pinches(world, cable, found);
   }
-  scratch.configured_changes = changes_of_cables(world);
+  scratch.configured_changes = world.changes;
 }
 
 namespace {

@@ -180,7 +180,7 @@ void turn_all(World& world, const NodeChain& chain, int first, const Vec2& to) {
 void settle_piece(World& world, const NodeChain& chain, int first) {
   settle_held(world, chain, first);
   CableState& cable = at(world.cables, piece_of(chain, first));
-  ++cable.changes;
+  count_changes(world, cable, 1);
   update_cable(world, cable, true, false);
   cable.segments[1].slack = false;
   cable.let_out = 0.0;

@@ -180,7 +180,9 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   const std::span<const int> parts = parts_of(work.neighbourhoods, n);
   Diagnostics& d = world.diagnostics;
   for (const int p : parts) {
-    for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
+    const Part& part = at(work.parts.list, p);
+    if (!part.creeps) continue;
+    for (const int c : cables_of(work.parts, part)) {
       if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
     }
   }
@@ -362,7 +364,7 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
   Stopwatch watch(times);
   list_parts(work.parts, near);
   empty_pinches(world, work.parts);
-  const int now = changes_of_cables(world);
+  const int now = world.changes;
   bool hastens = false;
   if (!near.divided) {
     hastens =
@@ -378,7 +380,7 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
   if (!hastens) return now;
   detect_after_moving(scene, world, work, false, times);
   list_parts(work.parts, near);
-  return changes_of_cables(world);
+  return world.changes;
 }
 
 }  // namespace
@@ -401,7 +403,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   Diagnostics& d = world.diagnostics;
   d.active_set_solves = 0;
   const std::int64_t fallbacks = d.fallbacks;
-  int changes = changes_of_cables(world);
+  int changes = world.changes;
   const std::int64_t allowed =
       changes + most_changes + most_changes_a_body * static_cast<std::int64_t>(world.bodies.size());
   const Neighbourhoods& near = work.neighbourhoods;
@@ -413,14 +415,14 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     if (!move_all(scene, world, work, round, watch)) return StepStatus::failed;
     ++d.intervals;
     d.total_solves += d.active_set_solves;
-    if (changes_of_cables(world) > allowed) return fail_by_changes(world);
+    if (world.changes > allowed) return fail_by_changes(world);
     if (!near.crossed) changes = settle(scene, world, work, changes, times);
     watch = Stopwatch(times);
     round.first = near.crossed;
     round.may_divide = false;
     if (!near.crossed) continue;
     take_back(world, work);
-    changes = changes_of_cables(world);
+    changes = world.changes;
   }
   world.lag = near.list.front().lag;
   if (!scene.chains.empty()) {

@@ -86,11 +86,12 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
     const bool middle = row.kind == RowKind::pinch_middle;
+    if (middle && !row.on) continue;
     const bool violated = row.clearance < -t.made_up || (middle && row.clearance > t.made_up);
     if (violated && !middle && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
       trial.violated = true;
     }
-    if (!row.on && (middle || (group >= 0 && !shares))) continue;
+    if (!row.on && group >= 0 && !shares) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
@@ -100,8 +101,8 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
       // The stretch over the interval's end is the real one.
       const double straight = row_speed(s, r) - row.bias;
       const double curvature = (missed + left - row.clearance) / t.length - straight;
-      missed = (curvature - row.curvature) * t.length;
-      row.curvature = curvature;
+      missed = (curvature - s.bodies[r].curvature) * t.length;
+      s.bodies[r].curvature = curvature;
     }
     // Without tension no segment of a group is held to its length.
     const bool bears = row.on && !(shares && row.impulse == 0.0);

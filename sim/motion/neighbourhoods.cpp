@@ -133,6 +133,7 @@ void keep_start(const World& world, Workspace& work) {
   kept.start = work.start;
   kept.first_link = work.first_link;
   kept.cables = world.cables;
+  kept.changes = world.changes;
   kept.contacts = world.contacts;
   kept.still_steps = world.still_steps;
   kept.diagnostics = world.diagnostics;
@@ -141,6 +142,7 @@ void keep_start(const World& world, Workspace& work) {
 void take_back(World& world, Workspace& work) {
   StepStart& kept = work.step_start;
   world.cables = kept.cables;
+  world.changes = kept.changes;
   world.contacts = kept.contacts;
   world.still_steps = kept.still_steps;
   world.diagnostics = kept.diagnostics;

@@ -15,10 +15,6 @@ namespace pinchlab {
 
 namespace {
 
-bool is_friction(const Row& row) {
-  return row.friction >= 0;
-}
-
 /// Friction rows bear force only where their contact does. A pinch without slip may push its bodies
 /// apart while it holds and let them together while it does not: infinite friction times no force.
 /// Then it holds.
@@ -103,20 +99,9 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
   }
 }
 
-/// Whether a row may contradict the solution at all: if none does, nobody needs to know how much of
-/// it would be round-off.
-inline bool is_suspicious(const PartSystem& s, const Row& row) {
-  if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
-  if (row.clamped) return false;
-  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
-}
-
 /// Which states the solution contradicts.
 void check(const PartSystem& s, SolveScratch& set) {
   set.flips.clear();
-  set.suspicious = !set.capstan.runs.empty() ||
-                   std::any_of(s.rows.begin(), s.rows.end(),
-                               [&s](const Row& row) { return is_suspicious(s, row); });
   if (!set.suspicious) return;
   const Tolerances tolerance = tolerances(s, set);
   const bool slides = !set.capstan.runs.empty();

@@ -15,7 +15,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   const double stiffness = given.axial_stiffness;
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
-  const RowBodies& bodies = at(s.bodies, number);
+  RowBodies& bodies = at(s.bodies, number);
   const double h = t.length > 0.0 ? t.length : world.step_length;
   const double flexibility = std::max(segment.rest_length, 0.0) / stiffness;  // m/N
   const bool sweeps =
@@ -53,7 +53,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   row.clamped = both_ways;
   row.on = both_ways || !segment.slack;
   row.compliance = flexibility / scale;
-  row.curvature = -creep;  // and what else there is of it is found at the interval's end
+  bodies.curvature = -creep;  // and what else there is of it is found at the interval's end
   row.bias = known / scale - creep;
 }
 

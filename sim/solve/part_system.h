@@ -76,6 +76,7 @@ enum class RowKind : std::int8_t {
 struct RowBodies {
   int a = 0, b = 0;
   Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = ja;  // m/s of row a m/s, or rad/s, of body
+  double curvature = 0.0;  // m/s, elastic: of the bias, by which C changes otherwise than by J v
 };
 
 /// What an impulse on a row does to its bodies. It has their places as well, so that whoever applies
@@ -107,7 +108,6 @@ struct Row {
   double compliance = 0.0;  // 1/kg
   double diagonal = 0.0;    // 1/kg, J * mobility * J^T
   double impulse = 0.0;     // N s
-  double curvature = 0.0;   // m/s, elastic: of `bias`, by which C changes otherwise than by J v
   double speed = 0.0;       // w + compliance p, m/s, after the solve
 };
 
@@ -219,6 +219,18 @@ struct PartSystem {
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
 };
+
+inline bool is_friction(const Row& row) {
+  return row.friction >= 0;
+}
+
+/// Whether a row's state may contradict the solution at all: where that of none may, nobody needs to know
+/// how much of it would be round-off.
+inline bool is_suspicious(const PartSystem& s, const Row& row) {
+  if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
+  if (row.clamped) return false;
+  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
+}
 
 /// Leaves nothing that the system was made for; its storage stays.
 inline void forget(PartSystem& s) {

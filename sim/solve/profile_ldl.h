@@ -11,7 +11,7 @@ namespace pinchlab {
 
 /// L D L^T factors without pivoting inside the matrix' profile (George & Liu 1981, ch. 4): row u is
 /// kept from its first entry to the diagonal. The work is the sum of the squared widths: linear for
-/// a cable, whose matrix is tridiagonal.
+/// a cable, whose matrix is tridiagonal; then it goes by a shorter way to the same bits.
 ///
 /// A pivot below `dependence` times the diagonal's scale means that the row repeats earlier ones;
 /// its unknown is left at zero (a basic solution) and counted.
@@ -24,12 +24,14 @@ class ProfileLdl {
     first_.clear();
     offset_.clear();
     used_ = 0;
+    narrow_ = true;
   }
 
   /// Appends row u = size(), of zeros, whose first entry stands in column `first` <= u. The row's
   /// entry in column v is the result's [v], until the next call.
   double* append(int first) {
     const int u = size();
+    narrow_ = narrow_ && first + 1 >= u;
     first_.push_back(first);
     offset_.push_back(static_cast<int>(used_) - first);
     const std::size_t begin = used_;
@@ -54,11 +56,16 @@ class ProfileLdl {
   void solve(std::vector<double>& x) const;
 
  private:
+  int factor_narrow(const std::vector<double>& scale, double ridge);
+  void solve_narrow(std::vector<double>& x) const;
+
   std::vector<int> first_;
   std::vector<int> offset_;         // A(u,v) is entries_[offset_[u] + v]; likewise L in factors_
   std::size_t used_ = 0;            // of entries_
+  bool narrow_ = true;              // no row reaches back beyond the one before: tridiagonal
   std::vector<double> entries_;     // rows of the matrix
-  std::vector<double> factors_;     // rows of L, unit diagonal not stored, then the pivot's place
+  std::vector<double> factors_;     // rows of L, unit diagonal not stored, then the pivot's place;
+                                    // of a narrow matrix L(u, u - 1) of each u, or 0
   std::vector<double> reciprocal_;  // of the pivots (0: dependent)
 };
 

@@ -71,11 +71,12 @@ void set_segment_bodies(const World& world, const Link& from, const Link& to,
 
 /// What the row has left before it bears force, and what its speed must therefore be.
 inline void set_clearance(double clearance, const TimeSpan& interval, Row& row) {
+  const bool far = clearance > interval.reach;
   row.clearance = clearance;
-  row.idle = clearance > interval.reach || (interval.held_only && !row.on);
+  row.idle = far || (interval.held_only && !row.on);
   row.on = row.on && !row.idle;
   // What is left within reach is round-off, which a short interval must not make a speed of.
-  const bool free = clearance > interval.reach || interval.reach == infinity;
+  const bool free = far || interval.reach == infinity;
   const double time = clearance > 0.0 && free ? interval.length : interval.repair;
   row.bias = interval.length > 0.0 && clearance >= -interval.made_up ? clearance / time : 0.0;
 }
@@ -87,6 +88,15 @@ double clearance_left(const Segment& segment, bool plain) {
   return rest - segment.length;
 }
 
+/// A middle body's row is never idle: what material has gone astray in its pinch, either way, is made up for
+/// in time, or stays.
+inline void hold_middle(double clearance, const TimeSpan& interval, Row& row) {
+  row.clearance = clearance;
+  row.idle = false;
+  const bool made_up = interval.length > 0.0 && std::abs(clearance) <= interval.made_up;
+  row.bias = made_up ? clearance / interval.repair : 0.0;
+}
+
 /// All of a segment's row but its bodies, as it is before a solve.
 inline void set_segment_values(const Segment& segment, bool plain, const TimeSpan& interval,
                                Row& row) {
@@ -96,10 +106,14 @@ inline void set_segment_values(const Segment& segment, bool plain, const TimeSpa
   row.flipped = 0;
   row.friction = -1;
   row.presser = -1;
-  row.curvature = 0.0;
   row.clamped = false;
-  set_clearance(clearance_left(segment, plain), interval, row);
   row.compliance = 0.0;
+  const double clearance = clearance_left(segment, plain);
+  if (row.kind == RowKind::pinch_middle) {
+    hold_middle(clearance, interval, row);
+  } else {
+    set_clearance(clearance, interval, row);
+  }
 }
 
 /// A rod's row is never slack and has nothing to spare.
@@ -108,14 +122,6 @@ void hold_both_ways(const TimeSpan& interval, Row& row) {
   row.idle = false;
   const double time = interval.repair;
   row.bias = interval.length > 0.0 ? row.clearance / time : 0.0;
-}
-
-/// A middle body's row is never slack either: what material has gone astray in its pinch, either way, is
-/// made up for in time, or stays.
-void hold_middle(const TimeSpan& interval, Row& row) {
-  row.idle = false;
-  const bool made_up = interval.length > 0.0 && std::abs(row.clearance) <= interval.made_up;
-  row.bias = made_up ? row.clearance / interval.repair : 0.0;
 }
 
 /// Plain cable joints know no pinch: where the tangent has vanished, the segment joins the
@@ -429,12 +435,10 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
     // feed back as speed: there they only pull.
     if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
-    const Cable& given = at(scene.cables, row.index);
-    if (given.axial_stiffness < infinity && !segment.pinched) {
-      make_elastic(world, given, segment, interval, s, r);
+    if (cable.elastic && !segment.pinched) {
+      make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {
-      hold_middle(interval, row);
       row.slip = at(cable.links, row.item).slip;
     } else if (segment.pinched && segment.contact >= 0) {
       s.pressed.push_back(r);

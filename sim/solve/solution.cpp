@@ -14,15 +14,23 @@ namespace pinchlab {
 
 namespace {
 
-/// What idles within `reach` (m) of bearing force, as an elastic segment does at an instant, stays what it was.
-void store_segment_row(const Row& row, double kick, double reach, World& world) {
+/// The state of the cable on the middle body of a pinch.
+void store_middle(const PartSystem& s, const CapstanScratch& capstan, const Row& row, Link& link) {
+  const bool sticks = row.on && row.slip == Slip::stick;
+  link.slip = row.slip;
+  link.slip_speed = sticks ? 0.0 : row.speed + run_speed(s, capstan, row);
+}
+
+/// What idles within reach of bearing force, as an elastic segment does at an instant, stays what it was.
+void store_segment_row(const PartSystem& s, const CapstanScratch& capstan, const Row& row,
+                       double kick, World& world) {
   CableState& cable = at(world.cables, row.index);
   Segment& segment = at(cable.segments, row.item);
   if (kick > 0.0) segment.tension = row.impulse / kick;
-  if (row.kind == RowKind::segment) {
-    if (!row.idle || row.clearance > reach) segment.slack = !row.on;
-  } else {
-    at(cable.links, row.item).slip = row.slip;
+  if (row.kind == RowKind::pinch_middle) {
+    store_middle(s, capstan, row, at(cable.links, row.item));
+  } else if (!row.idle || row.clearance > s.reach) {
+    segment.slack = !row.on;
   }
 }
 
@@ -64,16 +72,9 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   carry(world, carried_of(parts, part));
   share_among_repeated(s);
   const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_contact_row));
-  for (const Row& row : segments) store_segment_row(row, kick, s.reach, world);
+  for (const Row& row : segments) store_segment_row(s, capstan, row, kick, world);
   for (const Row& row : rows.subspan(segments.size())) store_contact_row(row, kick, world);
   for (const Run& run : capstan.runs) store_run(s, run, world);
-  for (const Friction& friction : s.frictions) {
-    const Row& row = at(s.rows, friction.row);
-    if (row.kind != RowKind::pinch_middle) continue;
-    const bool sticks = row.on && row.slip == Slip::stick;
-    at(at(world.cables, row.index).links, row.item).slip_speed =
-        sticks ? 0.0 : row.speed + run_speed(s, capstan, row);
-  }
 }
 
 }  // namespace pinchlab

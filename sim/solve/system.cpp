@@ -457,12 +457,15 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     missing = find_missing(s, set);
     if (missing <= rounding) break;
   }
+  bool suspicious = false;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     const int unknown = set.unknown_of_row[r];
     row.impulse = unknown >= 0 ? at(set.solution, unknown) : 0.0;
     row.speed = unknown >= 0 ? 0.0 : row_speed(s, r);
+    suspicious = suspicious || is_suspicious(s, row);
   }
+  set.suspicious = suspicious;
   return missing <= std::max(rounding, little * first);
 }
 
@@ -474,6 +477,7 @@ void correct_solution(PartSystem& s, SolveScratch& set) {
 
 void solve_for_states(PartSystem& s, SolveScratch& set) {
   set.direct = false;
+  set.suspicious = true;
   if (!set.capstan.runs.empty()) make_groups(s, set);
   number_unknowns(s, set);
   if (!set.symmetric) {

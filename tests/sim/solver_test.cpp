@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Dense>
 
+#include "sim/solve/profile_ldl.h"
 #include "sim/solve/profile_lu.h"
 #include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
@@ -50,6 +51,32 @@ TEST(ProfileLu, FindsRepeatedRows) {
   EXPECT_EQ(x[2], 0.0);
   EXPECT_NEAR(2 * x[0] + x[1], 5.0, 1e-14);
   EXPECT_NEAR(x[0] + 3 * x[1], 5.0, 1e-14);
+}
+
+// One profile that is wider by a zero keeps a tridiagonal matrix off its shorter way: rows that nothing
+// couples, and one that repeats another, too.
+TEST(ProfileLdl, ATridiagonalMatrixHasTheBitsOfAWiderOne) {
+  constexpr int n = 40, repeated = 21;
+  Random random(1);
+  ProfileLdl narrow, wide;
+  narrow.clear();
+  wide.clear();
+  std::vector<double> scale(n), x(n);
+  for (int u = 0; u < n; ++u) {
+    const bool alike = u == repeated || u == repeated - 1;
+    const int first = u == 0 || u % 7 == 6 ? u : u - 1;
+    scale[index(u)] = alike ? 1.0 : random.uniform(2.0, 4.0);
+    x[index(u)] = random.uniform(-1.0, 1.0);
+    double* entries = narrow.append(first);
+    double* wider = wide.append(u == n - 1 ? u - 2 : first);
+    if (first < u) entries[u - 1] = wider[u - 1] = alike ? 1.0 : random.uniform(-1.0, 1.0);
+  }
+  std::vector<double> y = x;
+  EXPECT_EQ(narrow.factor(scale, 0.0), 1);
+  EXPECT_EQ(wide.factor(scale, 0.0), 1);
+  narrow.solve(x);
+  wide.solve(y);
+  EXPECT_EQ(x, y);
 }
 
 TEST(Solver, AnUnusedFeatureIsNotOnTheStepsPath) {
