@@ -22,6 +22,7 @@ struct Part {
   double lightest = infinity;                // kg, of the bodies that can do more than turn
   bool can_move = false;                     // a body of it can do more than turn
   bool may_slide = false;                    // a cable of it touches a body of finite friction
+  bool has_sleeves = false;                  // a cable with mass that may slip on bodies
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool dormant = false;                      // pieces of cable that are part of others
   bool kept = false;                         // asleep, and was so in the step before

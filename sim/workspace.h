@@ -46,7 +46,8 @@ struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<double> material;  // of the links of cables that can slide, cable after cable
+  std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
+                                       // m, and m/s
   std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
 };
 
