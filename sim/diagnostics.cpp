@@ -138,7 +138,8 @@ double kinetic_energy(const World& world, double after, Sleeve sleeve) {
   };
   Eigen::Vector3d now = sleeve.velocity;
   if (index(sleeve.first) >= links.size() || !is_it(at(links, sleeve.first))) {
-    sleeve.first = static_cast<int>(std::find_if(links.begin(), links.end(), is_it) - links.begin());
+    sleeve.first =
+        static_cast<int>(std::find_if(links.begin(), links.end(), is_it) - links.begin());
   }
   if (index(sleeve.first) < links.size()) now = velocity_of(world, sleeve);
   const Eigen::Vector3d v = (1.0 - after) * sleeve.velocity + after * now;

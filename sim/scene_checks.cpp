@@ -232,9 +232,8 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
 
 void refuse_slip_of_mass(const Scene& scene, const Configuration& configuration) {
   if (configuration.solver == Solver::direct && configuration.pinch_rows == PinchRows::one) return;
-  const auto slips = std::find_if(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
-    return body.cable_friction < infinity;
-  });
+  const auto slips = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const Body& body) { return body.cable_friction < infinity; });
   if (slips == scene.bodies.end()) return;
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     if (scene.cables[c].mass_per_metre == 0.0) continue;

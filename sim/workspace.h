@@ -48,7 +48,7 @@ struct Start {
   std::vector<double> angle, angular_velocity;
   std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
                                        // m, and m/s
-  std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
+  std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 
 /// What came of trying an interval.

@@ -83,8 +83,8 @@ int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable,
   for (std::size_t k = 0; k < sleeves.size(); ++k) {
     const Sleeve& s = sleeves[k];
     if (s.cable != cable) continue;
-    const bool within = s.first <= s.last ? s.first <= link && link <= s.last
-                                          : link >= s.first || link <= s.last;
+    const bool within =
+        s.first <= s.last ? s.first <= link && link <= s.last : link >= s.first || link <= s.last;
     if (within) return static_cast<int>(k);
   }
   return -1;

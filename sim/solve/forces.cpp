@@ -342,8 +342,7 @@ void follow_flow(const Start& start, const Parts& parts, const Part& part, const
     s.flow_velocity[i] = before + after * (s.velocity[i] - before);
   }
   for (const SleevePlace& one : s.sleeves) {
-    at(s.flow_velocity, one.place) =
-        one.before + after * (at(s.velocity, one.place) - one.before);
+    at(s.flow_velocity, one.place) = one.before + after * (at(s.velocity, one.place) - one.before);
   }
   s.flow_before.swap(s.flow);
   s.flow.resize(s.mobility.size());

@@ -152,27 +152,27 @@ struct Motor {
 
 /// What friction on a sleeve is at most, one way, as a sum of the rows' impulses and of what is known: rubbing.h.
 struct RubLaw {
-  double in = 0.0, out = 0.0;         // of the tensions before and after it
-  Vec2 carried = Vec2::Zero();        // kg, of the velocity that its centre gains
+  double in = 0.0, out = 0.0;          // of the tensions before and after it
+  Vec2 carried = Vec2::Zero();         // kg, of the velocity that its centre gains
   int terms_begin = 0, terms_end = 0;  // of PartSystem::rub_terms: of pinches on the way
 };
 
 /// A sleeve as a body of the part, and how it rubs.
 struct SleevePlace {
   Sleeve sleeve;
-  int place = 0, body = 0;              // of the sleeve and the disc
-  int cable_place = 0;                  // in the part's cables
-  double share = 0.0;                   // kg, of the disc's mass
-  int span_in = -1, span_out = -1;      // of PartSystem::masses
-  int row_in = -1, row_out = -1;        // of the segments before and after it
-  int rub = -1;                         // row; -1: it does not
+  int place = 0, body = 0;                           // of the sleeve and the disc
+  int cable_place = 0;                               // in the part's cables
+  double share = 0.0;                                // kg, of the disc's mass
+  int span_in = -1, span_out = -1;                   // of PartSystem::masses
+  int row_in = -1, row_out = -1;                     // of the segments before and after it
+  int rub = -1;                                      // row; -1: it does not
   Eigen::Vector3d before = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s: before the kick
   double flow_in = 0.0, flow_out = 0.0;  // N, by what tensions are more than rows' forces, less
                                          // what goes into the bend
   RubLaw forward, backward;
-  double known = 0.0;                   // N s, of the impulse where it slips: what is no unknown
-  bool dropped = false;                 // bears nothing in this solve
-  bool frozen = false;                  // keeps its state for this step
+  double known = 0.0;    // N s, of the impulse where it slips: what is no unknown
+  bool dropped = false;  // bears nothing in this solve
+  bool frozen = false;   // keeps its state for this step
 };
 
 /// What rows were made for: while it is the same, so are their bodies.

@@ -25,10 +25,9 @@ double radius_of(const World& world, const Sleeve& sleeve) {
 void share_masses(const World& world, PartSystem& s) {
   for (SleevePlace& one : s.sleeves) {
     const BodyProperties& body = at(world.bodies, one.sleeve.body);
-    const auto on_it =
-        std::count_if(s.sleeves.begin(), s.sleeves.end(), [&one](const SleevePlace& other) {
-          return other.sleeve.body == one.sleeve.body;
-        });
+    const auto on_it = std::count_if(
+        s.sleeves.begin(), s.sleeves.end(),
+        [&one](const SleevePlace& other) { return other.sleeve.body == one.sleeve.body; });
     one.share = can_move(body) ? 0.5 * body.mass / static_cast<double>(on_it) : 0.0;
   }
 }
@@ -113,13 +112,13 @@ int row_of_segment(const PartSystem& s, const SleevePlace& one, int segment) {
 
 /// X after some of the way, in terms of that before it and of what else there is.
 struct Way {
-  double in = 1.0;           // of X before
-  double faster = 0.0;       // kg, of w'
+  double in = 1.0;            // of X before
+  double faster = 0.0;        // kg, of w'
   Vec2 moved = Vec2::Zero();  // kg, of b
   // The same of the whole without friction:
-  double mass = 0.0;         // kg, of w'
+  double mass = 0.0;          // kg, of w'
   Vec2 first = Vec2::Zero();  // kg, of b
-  double exponent = 0.0;     // of `in`
+  double exponent = 0.0;      // of `in`
 };
 
 constexpr double largest_exponent = 40.0;  // as in friction.cpp
@@ -129,10 +128,10 @@ void pass_arc(const CableState& cable, const Link& link, const Vec2& e_in, const
               double mu, RubLaw& law, Way& way, std::vector<Term>& terms) {
   const double angle = std::max(link.wrap, 0.0);
   const double o = link.orientation, mass = cable.density * link.radius;  // kg a rad
-  const double m = angle > 0.0 ? std::copysign(std::min(std::abs(mu),
-                                                        (largest_exponent - way.exponent) / angle),
-                                               mu)
-                               : mu;
+  const double m =
+      angle > 0.0
+          ? std::copysign(std::min(std::abs(mu), (largest_exponent - way.exponent) / angle), mu)
+          : mu;
   const double k = std::exp(m * angle);
   way.exponent += std::abs(m) * angle;
   way.in *= k;
@@ -257,8 +256,8 @@ void make_sleeve_rows(const Scene& scene, const World& world, const TimeSpan& in
     Row& row = at(s.rows, one.rub);
     row.slip = at(at(world.cables, one.sleeve.cable).links, one.sleeve.first).slip;
     one.row_in = row_of_segment(s, one, one.sleeve.first);
-    one.row_out = row_of_segment(
-        s, one, next_link(at(world.cables, one.sleeve.cable), one.sleeve.last));
+    one.row_out =
+        row_of_segment(s, one, next_link(at(world.cables, one.sleeve.cable), one.sleeve.last));
     find_law(world, scratch, one, 1, s, one.forward);
     find_law(world, scratch, one, -1, s, one.backward);
   }
@@ -278,9 +277,8 @@ void express_rubbing(PartSystem& s, SolveScratch& set) {
     if (coefficient == 0.0) return;
     for (int k = set.impulse_begin[index(row)]; k < set.impulse_end[index(row)]; ++k) {
       const Term term = set.impulse_terms[index(k)];
-      const auto same = std::find_if(sum.begin(), sum.end(), [&term](const Term& other) {
-        return other.index == term.index;
-      });
+      const auto same = std::find_if(
+          sum.begin(), sum.end(), [&term](const Term& other) { return other.index == term.index; });
       if (same == sum.end()) {
         sum.push_back({term.index, coefficient * term.coefficient});
       } else {
@@ -314,9 +312,9 @@ void express_rubbing(PartSystem& s, SolveScratch& set) {
       set.impulse_terms.push_back({term.index, term.coefficient / own});
     }
     set.impulse_end[index(one.rub)] = static_cast<int>(set.impulse_terms.size());
-    one.known = -(known_friction(s, one, law) +
-                  law.carried.dot(at(s.free_velocity, one.body).head<2>())) /
-                own;
+    one.known =
+        -(known_friction(s, one, law) + law.carried.dot(at(s.free_velocity, one.body).head<2>())) /
+        own;
   }
 }
 
@@ -341,9 +339,7 @@ void check_rubbing(const PartSystem& s, SolveScratch& set, double speed_toleranc
     if (one.rub < 0 || one.dropped || one.frozen) continue;
     const Row& row = at(s.rows, one.rub);
     const Bounds bounds = bounds_of(s, one);
-    const auto flip = [&](bool on, Slip slip) {
-      set.flips.push_back({one.rub, false, on, slip});
-    };
+    const auto flip = [&](bool on, Slip slip) { set.flips.push_back({one.rub, false, on, slip}); };
     if (!row.on) {  // nothing presses
       const bool forward = row.speed > speed_tolerance, backward = row.speed < -speed_tolerance;
       const double most = std::max(forward ? 0.0 : bounds.most, backward ? 0.0 : -bounds.least);

@@ -66,7 +66,8 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   share_among_repeated(s);
   const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_sleeve_row));
   for (const Row& row : segments) store_segment_row(row, kick, s.reach, world);
-  for (const Row& row : rows.subspan(index(s.first_contact_row))) store_contact_row(row, kick, world);
+  for (const Row& row : rows.subspan(index(s.first_contact_row)))
+    store_contact_row(row, kick, world);
   for (const Run& run : capstan.runs) store_run(s, run, world);
   if (!s.sleeves.empty()) store_rubbing(s, world);
   for (const Friction& friction : s.frictions) {
