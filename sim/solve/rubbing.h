@@ -6,10 +6,11 @@
 //
 // An element R dth of the rope, which moves at w over the rim about a centre with the acceleration a,
 // is pressed by N dth and rubbed by mu N dth against the way that it slips. With t its direction, n that to
-// the centre and b = a - g (Johnson, "Contact Mechanics", 8.3, has the law of belts at speed)
+// the centre and b = a - g (Bechtel et al., "The stretching and slipping of belts and fibers on pulleys",
+// J. Appl. Mech. 67, 2000, for belts without weight)
 //     N = X - rho R b.n,     X = T - rho w^2,
 //     dX/dth = rho R w' + rho R b.t +- mu N,
-// with T' = T - rho w^2 as long as w' is one along the rim. Over an arc th, with m = +-mu, k = e^(m th)
+// since w is one along the rim. Over an arc th, with m = +-mu, k = e^(m th)
 //     X_out = k X_in + rho R w' (k - 1) / m + rho R b.V,
 //     V = integral of e^(m (th - s)) (t - m n) ds,
 // and the spans' halves m_i, m_o, which move with it, add m_i (w' + b.e_i) to the tension before, and take
@@ -18,10 +19,10 @@
 // so that w' is known by f: eliminated, f is linear in the tensions, in what presses pinches on the way and in
 // the centre's velocity. Slipping, friction is that f; sticking, it is no more than that either way.
 //
-// The force of a span's row is its tension less what flows from one half of it to the other: a cut
-// through the span is no place of the rope. Sleeves feel, and so the law does, the row's force with
-// flow_tensions (mass.h); where the rope comes to rest, moves on or turns with the whole scene, the tension is
-// that and (w^2 - v^2) rho / 2 more, v being the centre's velocity: X is it less (w^2 + v^2) rho / 2.
+// The force of a span's row is not its tension: what flows from one half of the span to the other takes
+// momentum along. A sleeve's turning feels the row's force with flow_tensions (mass.h) and the half's own
+// inertia; at the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more, where v is the centre's velocity
+// (from the momentum of the rope beyond; test MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
 //
 // Where f comes out below zero, the rope does not press on the rim: then there is no friction. It does not
 // lift off.
