@@ -343,6 +343,8 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
     Row& row = s.rows[r];
     row.speed = row_speed(s, r);
     if (!is_friction(row)) row.on = row.clamped || row.impulse > 0.0;
+    if (row.kind != RowKind::sleeve_rub) continue;
+    row.slip = row.speed > 0.0 ? Slip::forward : row.speed < 0.0 ? Slip::backward : Slip::stick;
   }
 }
 
