@@ -136,10 +136,43 @@ double kinetic_energy(const World& world, const Instant& before, double after, i
   return energy + kinetic_energy(world.bodies[b], v, omega);
 }
 
+namespace {
+
+/// Links may have come and gone since: one of the cable's on the same body stands for the sleeve, or, where
+/// there is none any more, its motion before.
+double kinetic_energy(const World& world, double after, Sleeve sleeve) {
+  const std::vector<Link>& links = at(world.cables, sleeve.cable).links;
+  const auto is_it = [&sleeve](const Link& link) {
+    return link.body == sleeve.body && link.orientation != 0 && !link.pinch_middle;
+  };
+  Eigen::Vector3d now = sleeve.velocity;
+  if (index(sleeve.first) >= links.size() || !is_it(at(links, sleeve.first))) {
+    sleeve.first =
+        static_cast<int>(std::find_if(links.begin(), links.end(), is_it) - links.begin());
+  }
+  if (index(sleeve.first) < links.size()) now = velocity_of(world, sleeve);
+  const Eigen::Vector3d v = (1.0 - after) * sleeve.velocity + after * now;
+  return 0.5 * v.dot(sleeve.mass * v);
+}
+
+}  // namespace
+
 double kinetic_energy(const World& world, const Instant& before, double after) {
   double energy = 0.0;
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
     energy += kinetic_energy(world, before, after, b);
+  }
+  for (const Sleeve& sleeve : before.sleeves) {
+    energy += kinetic_energy(world, after, sleeve);
+  }
+  return energy;
+}
+
+double kinetic_energy_of_sleeves(const World& world, const Instant& before, double after,
+                                 int cable) {
+  double energy = 0.0;
+  for (const Sleeve& sleeve : before.sleeves) {
+    if (sleeve.cable == cable) energy += kinetic_energy(world, after, sleeve);
   }
   return energy;
 }
@@ -147,7 +180,7 @@ double kinetic_energy(const World& world, const Instant& before, double after) {
 void note_instant(const World& world, Instant& instant) {
   instant.velocity = world.velocity;
   instant.turning = world.angular_velocity;
-  find_carried(world, instant.carried);
+  find_carried(world, instant.carried, instant.sleeves);
 }
 
 void measure_cables(const Scene& scene, World& world) {

@@ -11,6 +11,7 @@ struct Instant {
   std::vector<Vec2> velocity;            // m/s
   std::vector<double> turning;           // rad/s
   std::vector<Eigen::Matrix3d> carried;  // by find_carried
+  std::vector<Sleeve> sleeves;           // likewise
 };
 
 void note_instant(const World& world, Instant& instant);
@@ -37,9 +38,12 @@ inline double zero_if_finite(const World& world, int body) {
 double kinetic_energy(const World& world);
 
 /// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a kick:
-/// what is between them, by the share `after`, is right to second order. Of all bodies, or of one.
+/// what is between them, by the share `after`, is right to second order. Of all that moves, of one body, or of
+/// a cable's sleeves.
 double kinetic_energy(const World& world, const Instant& before, double after);
 double kinetic_energy(const World& world, const Instant& before, double after, int body);
+double kinetic_energy_of_sleeves(const World& world, const Instant& before, double after,
+                                 int cable);
 
 /// Stretch, gaps and cable lengths at the present positions.
 void measure_cables(const Scene& scene, World& world);

@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/lay.h"
+#include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/detect/contacts.h"
 #include "sim/detect/detect.h"
@@ -89,6 +90,7 @@ World make_world(const Scene& scene, Configuration configuration) {
     throw std::invalid_argument("configuration: error must be at least 0");
   }
   refuse_impossible_figures(scene);
+  refuse_slip_of_mass(scene, configuration);
   World world = bodies_of_scene(scene);
   Workspace work;
   // A scene is judged by the full model, whatever it is run with.
@@ -114,6 +116,7 @@ World make_world(const Scene& scene, Configuration configuration) {
     work = {};  // nothing is known of the new contacts
     detect(scene, world, work);
   }
+  begin_slip(scene, world);
   find_first_tensions(scene, world);
   return world;
 }

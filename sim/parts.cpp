@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/trees.h"
 #include "sim/workspace.h"
@@ -130,6 +131,7 @@ void describe(const World& world, Parts& parts, Part& part) {
     part.dormant = part.dormant || is_dormant(at(world.cables, c));
     part.creeps = part.creeps || !at(world.cables, c).rims.empty();
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
+    part.has_sleeves = part.has_sleeves || has_sleeves(world, at(world.cables, c));
   }
   for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
     const int b = at(parts.bodies, k);

@@ -63,7 +63,7 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
   refuse(!body.inertia && body.carrier < 0, "a polygon needs its inertia (make_polygon)");
 }
 
-/// What slides along a cable has no mass of its own to slide with: cable/mass.h.
+/// Sleeves (cable/sleeve.h) are of discs, about their centres.
 void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::string& place) {
   if (cable.mass_per_metre == 0.0) return;
   const auto refuse = [&place](bool wrong, const char* message) {
@@ -76,10 +76,12 @@ void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::s
   refuse(cable.creep, "a cable with mass cannot creep");
   for (const Body& body : scene.bodies) {
     if (body.cable_friction == infinity) continue;
+    if (body.corners.empty() && body.carrier < 0) continue;
     throw SceneError(place,
-                     fmt::format("a cable with mass cannot slip, and could on body '{}'; leave "
-                                 "out the body's cable_friction, or the cable's mass",
-                                 body.name));
+                     fmt::format("a cable with mass slips on discs only, and could on body '{}', "
+                                 "which is {}; leave out the body's cable_friction, or the "
+                                 "cable's mass",
+                                 body.name, body.carrier < 0 ? "a polygon" : "a shape of another"));
   }
 }
 
@@ -243,6 +245,21 @@ void refuse_squeezed_wraps(const Scene& scene, const World& world) {
               "move them apart",
               b.name, a.name, in_mm(contact.gap), in_mm(contact.target)));
     }
+  }
+}
+
+void refuse_slip_of_mass(const Scene& scene, const Configuration& configuration) {
+  if (configuration.solver == Solver::direct && configuration.pinch_rows == PinchRows::one) return;
+  const auto slips = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                  [](const Body& body) { return body.cable_friction < infinity; });
+  if (slips == scene.bodies.end()) return;
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    if (scene.cables[c].mass_per_metre == 0.0) continue;
+    throw SceneError(pointer("cables", c),
+                     fmt::format("a cable with mass slips by the direct solver with one row a "
+                                 "pinch only, and could on body '{}'; choose that, or leave out "
+                                 "the body's cable_friction or the cable's mass",
+                                 slips->name));
   }
 }
 

@@ -87,7 +87,7 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
     if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
       store_middles(s, work.solve, work.sweeps, world);
     }
-    part.slides = !work.solve.capstan.runs.empty() || part.can_slip;
+    part.slides = !work.solve.capstan.runs.empty() || part.can_slip || !s.sleeves.empty();
     d.active_set_solves = std::max(d.active_set_solves, work.solve.solves);
     note_rest(scene, work.parts, part, world);
     watch.lap(Stage::solve);

@@ -46,8 +46,9 @@ struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
   std::vector<double> angle, angular_velocity;
-  std::vector<double> material;  // of the links of cables that can slide, cable after cable
-  std::int64_t fallbacks = 0;    // Diagnostics::fallbacks
+  std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
+                                       // m, and m/s
+  std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 
 /// What came of trying an interval.

@@ -98,6 +98,15 @@ std::vector<Ladder> climb_all(bool quick, Progress& progress) {
   const Vec2 fallen = atwood.bodies[1].position - Vec2(0.0, 0.625 * (std::cosh(k) - 1.0));
   ladders.push_back(
       climb("Atwood's machine with a heavy rope", rope_atwood, 1.0, &fallen, 0, rungs));
+  const Scene smooth = rope_over_peg(0.0, 1);
+  const double rate = std::sqrt(0.8 * smooth.gravity.norm() / 1.8);  // 1/s
+  const Vec2 slid = smooth.bodies[1].position - Vec2(0.0, 0.1 * (std::cosh(0.8 * rate) - 1.0));
+  ladders.push_back(climb(
+      "a heavy rope slides off a smooth peg", [](int n) { return rope_over_peg(0.0, n); }, 0.8,
+      &slid, 0, rungs));
+  ladders.push_back(climb(
+      "a heavy rope slides off a rough peg", [](int n) { return rope_over_peg(0.02, n); }, 0.8,
+      nullptr, finest, rungs));
   ladders.push_back(
       climb("a tackle with a heavy rope swings", heavy_tackle, 0.4, nullptr, finest, rungs));
   progress.done(1.0);

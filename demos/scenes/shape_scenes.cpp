@@ -177,6 +177,20 @@ Scene rope_atwood(int steps_per_frame) {
   return scene;
 }
 
+Scene rope_over_peg(double mu, int steps_per_frame) {
+  constexpr double radius = 0.2, half_width = 0.01;  // m, of the rope on the peg
+  const double span = 0.5 * (4.0 - radius * std::numbers::pi);
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("left", BodyKind::free, -radius, 0.1 - span, 0.05, 0.1));
+  scene.bodies.push_back(body("right", BodyKind::free, radius, -0.1 - span, 0.05, 0.1));
+  scene.bodies.push_back(body("peg", BodyKind::fixed, 0.0, 0.0, radius - half_width));
+  scene.bodies[2].cable_friction = mu;
+  scene.cables.push_back(cable(on(0), {{2, -1, 0}}, on(1), half_width));
+  scene.cables[0].mass_per_metre = 0.4;
+  return scene;
+}
+
 Scene heavy_tackle(int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

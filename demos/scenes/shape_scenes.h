@@ -54,6 +54,10 @@ Scene belt_drive(double radius, double tension, double difference, int steps_per
 /// x = 0.625 m (cosh k t - 1), k^2 = 0.8 kg/m g / 4.35 kg.
 Scene rope_atwood(int steps_per_frame);
 
+/// A rope of 1.6 kg that slips on a standing peg, 0.2 m longer on the right, with 0.1 kg at either end; with
+/// cable friction `mu` between it and the peg.
+Scene rope_over_peg(double mu, int steps_per_frame);
+
 /// A block, body 0, in the bight of a rope of 0.8 kg/m, which runs on over a pulley to a weight, body 1. From
 /// rest both swing.
 Scene heavy_tackle(int steps_per_frame);

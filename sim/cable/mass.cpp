@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/cable/mass.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/links.h"
+#include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
 
@@ -73,11 +75,6 @@ MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
   return arc;
 }
 
-/// kg, of either end.
-double end_mass(const MassedSpan& span) {
-  return 0.5 * span.density * span.material;
-}
-
 /// rad/s of a span's direction.
 double turning_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b) {
   if (span.a == span.b) return v_a.z();
@@ -105,9 +102,8 @@ void add(std::span<Eigen::Matrix3d> to, const MassedArc& arc) {
   add(at(to, arc.body), arc.mass, arc.first, arc.second);
 }
 
-void add_flow_forces(const MassedSpan& span, std::span<const Vector3d> v, std::span<Vector3d> to) {
-  const Vector3d &v_a = at(v, span.a), &v_b = at(v, span.b);
-  Vector3d &f_a = at(to, span.a), &f_b = at(to, span.b);
+void add_flow_forces(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b,
+                     Vector3d& f_a, Vector3d& f_b) {
   const Vec2 u_a = at_place(v_a, span.z_a), u_b = at_place(v_b, span.z_b);
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
@@ -142,6 +138,40 @@ void add_flow_forces(const MassedSpan& span, std::span<const Vector3d> v, std::s
   }
 }
 
+using Ways = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
+
+void add_way(const Vector3d& way, Ways& ways) {
+  ways.conservativeResize(3, ways.cols() + 1);
+  ways.rightCols<1>() = way;
+}
+
+void add_ways_of_centre(const BodyProperties& body, Ways& ways) {
+  if (body.kind == BodyKind::free) {
+    add_way(Vector3d::UnitX(), ways);
+    add_way(Vector3d::UnitY(), ways);
+  } else if (body.kind == BodyKind::rail) {
+    const Vec2 along = body.rail_axis.normalized();
+    add_way({along.x(), along.y(), 0.0}, ways);
+  }
+}
+
+/// What the body can do: move, move along its rail, turn.
+Ways ways_of(const BodyProperties& body) {
+  Ways ways(3, 0);
+  add_ways_of_centre(body, ways);
+  if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    add_way(Vector3d::UnitZ(), ways);
+  }
+  return ways;
+}
+
+Eigen::Matrix3d inverse_on(const Ways& ways, const Eigen::Matrix3d& matrix) {
+  if (ways.cols() == 0) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> there =
+      ways.transpose() * matrix * ways;
+  return ways * there.inverse() * ways.transpose();
+}
+
 /// Changes the body's velocity as if a mass with velocity u had joined it at z, where its own mass, `carried`
 /// with it, already has that mass.
 void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass, const Vec2& z,
@@ -157,17 +187,86 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass
   omega += change.z();
 }
 
-Vec2 velocity_at(const World& world, int body, const Vec2& z) {
+/// Changes velocities as take_up does, where the mass has joined sleeve `at_sleeve` of the body (-1: the
+/// body itself) and all of `sleeves` are counted with what is on theirs.
+void take_up(World& world, int body, const Eigen::Matrix3d& carried,
+             const std::vector<Sleeve>& sleeves, int at_sleeve, double mass, const Vec2& z,
+             const Vec2& u) {
+  std::vector<int> on_body;
+  for (std::size_t k = 0; k < sleeves.size(); ++k) {
+    if (sleeves[k].body == body) on_body.push_back(static_cast<int>(k));
+  }
+  const BodyProperties& properties = at(world.bodies, body);
+  if (on_body.empty()) {
+    if (is_mobile(properties)) take_up(world, body, carried, mass, z, u);
+    return;
+  }
+  // Of the velocities (x, y, angle; angles of sleeves) those that what holds the body leaves free.
+  const auto count = static_cast<Eigen::Index>(3 + on_body.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
+  Eigen::Matrix3d own = carried;
+  add(own, properties.mass, Vec2::Zero(), inertia_of(properties));
+  all.topLeftCorner<3, 3>() = own;
+  Eigen::MatrixXd place = Eigen::MatrixXd::Zero(2, count);
+  place.leftCols<2>().setIdentity();
+  if (at_sleeve < 0) place.col(2) = z;
+  for (std::size_t k = 0; k < on_body.size(); ++k) {
+    const Eigen::Matrix3d& m = at(sleeves, on_body[k]).mass;
+    const auto turning = static_cast<Eigen::Index>(3 + k);
+    all.topLeftCorner<2, 2>() += m.topLeftCorner<2, 2>();
+    all.block<2, 1>(0, turning) += m.topRightCorner<2, 1>();
+    all.block<1, 2>(turning, 0) += m.bottomLeftCorner<1, 2>();
+    all(turning, turning) += m(2, 2);
+    if (on_body[k] == at_sleeve) place.col(turning) = z;
+  }
+  const auto body_ways = ways_of(properties);
+  Eigen::MatrixXd ways = Eigen::MatrixXd::Zero(count, body_ways.cols() + count - 3);
+  ways.topLeftCorner(3, body_ways.cols()) = body_ways;
+  ways.bottomRightCorner(count - 3, count - 3).setIdentity();
+  Vec2& v = at(world.velocity, body);
+  double& omega = at(world.angular_velocity, body);
+  const double turning = at_sleeve < 0 ? omega : at(sleeves, at_sleeve).velocity.z();
+  const Eigen::VectorXd impulse = place.transpose() * (mass * (u - v - turning * z));
+  const Eigen::MatrixXd there = ways.transpose() * all * ways;
+  const Eigen::VectorXd change = ways * there.ldlt().solve(ways.transpose() * impulse);
+  v += change.head<2>();
+  omega += change.z();
+  for (std::size_t k = 0; k < on_body.size(); ++k) {
+    const Sleeve& sleeve = at(sleeves, on_body[k]);
+    CableState& cable = at(world.cables, sleeve.cable);
+    const Link& link = at(cable.links, sleeve.first);
+    const double faster = change(static_cast<Eigen::Index>(3 + k)) - change.z();
+    set_slip(cable, sleeve, link.slip, link.slip_speed + faster * link.signed_radius());
+  }
+}
+
+/// Of the place z of what lies at a link of the cable.
+Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z) {
+  const int body = mover_or_world(world, at(cable.links, link));
   if (index(body) == world.bodies.size()) return Vec2::Zero();
-  return at(world.velocity, body) + at(world.angular_velocity, body) * z;
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  return at(world.velocity, body) + turning_at(world, number, link) * z;
 }
 
 }  // namespace
 
-void add_masses(const World& world, const CableState& cable, CableMasses& to) {
+void add_masses(const World& world, int number, const std::vector<Sleeve>& sleeves,
+                CableMasses& to) {
+  const CableState& cable = at(world.cables, number);
+  const auto put = [&](int& body, int link) {
+    const int sleeve = sleeves.empty() ? -1 : sleeve_at(world, sleeves, number, link);
+    if (sleeve >= 0) body = -1 - sleeve;
+  };
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
-    if (i >= first_segment(cable)) to.spans.push_back(span_of(world, cable, i));
-    if (cable.links[i].orientation != 0) to.arcs.push_back(arc_of(world, cable, i));
+    const int link = static_cast<int>(i);
+    if (i >= first_segment(cable)) {
+      to.spans.push_back(span_of(world, cable, i));
+      put(to.spans.back().a, previous_link(cable, link));
+      put(to.spans.back().b, link);
+    }
+    if (cable.links[i].orientation == 0) continue;
+    to.arcs.push_back(arc_of(world, cable, i));
+    put(to.arcs.back().body, link);
   }
 }
 
@@ -176,27 +275,66 @@ void add_carried(const CableMasses& masses, std::span<Eigen::Matrix3d> to) {
   for (const MassedArc& arc : masses.arcs) add(to, arc);
 }
 
-void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried) {
+void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
+                  std::vector<Sleeve>& sleeves) {
   carried.clear();
-  for (const CableState& cable : world.cables) {
+  sleeves.clear();
+  for (int c = 0; index(c) < world.cables.size(); ++c) {
+    const CableState& cable = at(world.cables, c);
     if (!is_massed(cable)) continue;
     carried.resize(world.bodies.size() + 1, Eigen::Matrix3d::Zero());
+    const std::size_t first = sleeves.size();
+    list_sleeves(world, c, sleeves);
+    const auto mass_at = [&](int body, int link) -> Eigen::Matrix3d& {
+      const int sleeve = first == sleeves.size() ? -1 : sleeve_at(world, sleeves, c, link);
+      return sleeve >= 0 ? at(sleeves, sleeve).mass : at(carried, body);
+    };
     for (std::size_t i = 0; i < cable.links.size(); ++i) {
-      if (i >= first_segment(cable)) add(carried, span_of(world, cable, i));
-      if (cable.links[i].orientation != 0) add(carried, arc_of(world, cable, i));
+      const int link = static_cast<int>(i);
+      if (i >= first_segment(cable)) {
+        const MassedSpan span = span_of(world, cable, i);
+        const double mass = end_mass(span);
+        const int before = previous_link(cable, link);
+        add(mass_at(span.a, before), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
+        add(mass_at(span.b, link), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
+      }
+      if (cable.links[i].orientation == 0) continue;
+      const MassedArc arc = arc_of(world, cable, i);
+      add(mass_at(arc.body, link), arc.mass, arc.first, arc.second);
+    }
+    for (std::size_t k = first; k < sleeves.size(); ++k) {
+      sleeves[k].mass += least_mass(world, sleeves[k], sleeves[k].mass);
+      sleeves[k].velocity = velocity_of(world, sleeves[k]);
     }
   }
+}
+
+Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen::Matrix3d& mass) {
+  constexpr double share = 1e-9;  // of the cable's
+  const CableState& cable = at(world.cables, sleeve.cable);
+  const double radius = at(cable.links, sleeve.first).radius;
+  const double lacking = std::max(0.0, share * cable.density * cable.length - mass(0, 0));
+  return Vector3d(lacking, lacking, lacking * radius * radius).asDiagonal();
 }
 
 void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> velocities,
                       std::span<Vector3d> to) {
   std::fill(to.begin(), to.end(), Vector3d::Zero());
-  for (const MassedSpan& span : masses.spans) add_flow_forces(span, velocities, to);
+  for (const MassedSpan& span : masses.spans) {
+    add_flow_forces(span, at(velocities, span.a), at(velocities, span.b), at(to, span.a),
+                    at(to, span.b));
+  }
   for (const MassedArc& arc : masses.arcs) {  // it turns about a circle that turns about the body
     const double square = at(velocities, arc.body).z() * at(velocities, arc.body).z();
     at(to, arc.body) += square * Vector3d(arc.mass * arc.centre.x(), arc.mass * arc.centre.y(),
                                           arc.centre.dot(arc.first));
   }
+}
+
+Vec2 flow_tensions(const MassedSpan& span, std::span<const Vector3d> velocities) {
+  Vector3d f_a = Vector3d::Zero(), f_b = f_a;
+  add_flow_forces(span, at(velocities, span.a), at(velocities, span.b), f_a, f_b);
+  return {span.p_a != 0.0 ? f_a.z() / span.p_a : 0.0, span.p_b != 0.0 ? -f_b.z() / span.p_b : 0.0};
 }
 
 double potential_energy(const World& world, const CableState& cable, const Vec2& gravity) {
@@ -215,23 +353,14 @@ double potential_energy(const World& world, const CableState& cable, const Vec2&
 }
 
 Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& matrix) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> ways(3, 0);
-  const auto add_way = [&ways](const Vector3d& way) {
-    ways.conservativeResize(3, ways.cols() + 1);
-    ways.rightCols<1>() = way;
-  };
-  if (body.kind == BodyKind::free) {
-    add_way(Vector3d::UnitX());
-    add_way(Vector3d::UnitY());
-  } else if (body.kind == BodyKind::rail) {
-    const Vec2 along = body.rail_axis.normalized();
-    add_way({along.x(), along.y(), 0.0});
-  }
-  if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) add_way(Vector3d::UnitZ());
-  if (ways.cols() == 0) return Eigen::Matrix3d::Zero();
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> there =
-      ways.transpose() * matrix * ways;
-  return ways * there.inverse() * ways.transpose();
+  return inverse_on(ways_of(body), matrix);
+}
+
+Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix) {
+  Ways ways(3, 0);
+  add_ways_of_centre(body, ways);
+  add_way(Vector3d::UnitZ(), ways);
+  return inverse_on(ways, matrix);
 }
 
 void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
@@ -240,22 +369,27 @@ void meet_body(World& world, CableState& cable, std::size_t segment, int body, i
     insert_link(world, cable, segment, body, corner, orientation);
     return;
   }
+  const int number = static_cast<int>(&cable - world.cables.data());
   const MassedSpan before = span_of(world, cable, segment);
-  const Vec2 u_a = velocity_at(world, before.a, before.z_a);
-  const Vec2 u_b = velocity_at(world, before.b, before.z_b);
+  const int head = static_cast<int>(segment);
+  const Vec2 u_a = velocity_at(world, cable, previous_link(cable, head), before.z_a);
+  const Vec2 u_b = velocity_at(world, cable, head, before.z_b);
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
   insert_link(world, cable, segment, body, corner, orientation);
   const int mover = mover_of(world, body);
-  if (!is_mobile(at(world.bodies, mover))) return;
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const int sleeve = sleeve_at(world, sleeves, number, static_cast<int>(position));
+  if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
   const MassedSpan first = span_of(world, cable, position);
   const MassedSpan second = span_of(world, cable, segment == 0 ? 0 : position + 1);
   const double both = first.material + second.material;
   if (!(both > 0.0)) return;
   // Each neighbour has given up its share of the part that it is no longer at.
   const Vec2 u = (second.material * u_a + first.material * u_b) / both;
-  std::vector<Eigen::Matrix3d> carried;
-  find_carried(world, carried);
-  take_up(world, mover, at(carried, mover), 0.5 * cable.density * both, first.z_b, u);
+  take_up(world, mover, at(carried, mover), sleeves, sleeve, 0.5 * cable.density * both, first.z_b,
+          u);
 }
 
 void leave_body(World& world, CableState& cable, int link) {
@@ -263,18 +397,28 @@ void leave_body(World& world, CableState& cable, int link) {
     remove_link(world, cable, link);
     return;
   }
+  const int number = static_cast<int>(&cable - world.cables.data());
   const MassedSpan first = span_of(world, cable, index(link));
   const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
-  const Vec2 u = velocity_at(world, first.b, first.z_b);
+  const Vec2 u = velocity_at(world, cable, link, first.z_b);
+  const auto links = static_cast<int>(cable.links.size());
   remove_link(world, cable, link);
+  const auto left_over = static_cast<int>(cable.links.size());
+  const bool merged = left_over + 2 == links;  // its neighbours have become one
+  const bool first_gone = merged && link == links - 1;
+  const int after = link % left_over;
+  const int before = first_gone ? left_over - 1 : previous_link(cable, after);
   std::vector<Eigen::Matrix3d> carried;
-  find_carried(world, carried);
-  const auto give = [&](int to, const Vec2& z, double material) {
-    if (index(to) == world.bodies.size() || !is_mobile(at(world.bodies, to))) return;
-    take_up(world, to, at(carried, to), 0.5 * cable.density * material, z, u);
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const auto give = [&](int to, int at_link, const Vec2& z, double material) {
+    if (index(to) == world.bodies.size()) return;
+    const int sleeve = sleeve_at(world, sleeves, number, at_link);
+    take_up(world, to, at(carried, to), sleeves, sleeve, 0.5 * cable.density * material, z, u);
   };
-  give(first.a, first.z_a, second.material);
-  give(second.b, second.z_b, first.material);
+  give(first.a, before, first.z_a, second.material);
+  if (!sleeves.empty()) find_carried(world, carried, sleeves);  // with new velocities
+  give(second.b, merged ? before : after, second.z_b, first.material);
 }
 
 }  // namespace pinchlab

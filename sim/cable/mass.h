@@ -14,12 +14,14 @@
 #include <span>
 #include <vector>
 
+#include "sim/cable/sleeve.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
-/// A straight piece between two links. Of its ends a and b: body that it moves with, or the number of
-/// bodies for the world, whose centre is its origin; p and centre of the link's circle, see Link.
+/// A straight piece between two links. Of its ends a and b: body that it moves with, the number of
+/// bodies for the world, whose centre is its origin, or -1 - k for sleeve k (sleeve.h); p and centre of
+/// the link's circle, see Link.
 struct MassedSpan {
   int a = 0, b = 0;
   double p_a = 0.0, p_b = 0.0;                        // m
@@ -34,7 +36,7 @@ struct MassedSpan {
 
 /// What lies on a rim.
 struct MassedArc {
-  int body = 0;
+  int body = 0;                // or sleeve, likewise
   Vec2 centre = Vec2::Zero();  // m, of the circle from the body's centre
   double mass = 0.0;           // kg
   Vec2 first = Vec2::Zero();   // kg m, integral of z
@@ -51,19 +53,33 @@ inline bool is_massed(const CableState& cable) {
   return cable.density > 0.0;
 }
 
-/// Adds a cable's masses, its geometry being up to date.
-void add_masses(const World& world, const CableState& cable, CableMasses& to);
+/// kg, at either end.
+inline double end_mass(const MassedSpan& span) {
+  return 0.5 * span.density * span.material;
+}
+
+/// Adds a cable's masses, its geometry being up to date. `sleeves`: of this cable and others.
+void add_masses(const World& world, int cable, const std::vector<Sleeve>& sleeves, CableMasses& to);
 
 /// Adds them to the masses of bodies, for (x, y, angle): kg, kg m, kg m^2. Bodies are one after another as in the
 /// spans, and the world after the last.
 void add_carried(const CableMasses& masses, std::span<Eigen::Matrix3d> to);
 
-/// The same of all cables of the world; empty where none has mass.
-void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried);
+/// The same of all cables of the world, and its sleeves with their masses; empty where none has mass.
+void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
+                  std::vector<Sleeve>& sleeves);
+
+/// What a sleeve has at least. Where both spans beside a new one are pinched it has no mass of its own:
+/// as little as this does not show, and keeps its motion determined.
+Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen::Matrix3d& mass);
 
 /// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`.
 void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
                       std::span<Eigen::Vector3d> to);
+
+/// What this is to the turning of the sleeves at either end, as a tension of the span (N): at a, at b. Places
+/// are of `velocities`.
+Vec2 flow_tensions(const MassedSpan& span, std::span<const Eigen::Vector3d> velocities);
 
 /// Of a cable's weight (J).
 double potential_energy(const World& world, const CableState& cable, const Vec2& gravity);
@@ -71,8 +87,11 @@ double potential_energy(const World& world, const CableState& cable, const Vec2&
 /// Inverse of a matrix for (x, y, angle) on what the body can do: move, move along its rail, turn.
 Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& matrix);
 
-/// insert_link and remove_link of a cable that may have mass: a body that it meets, and those that it is
-/// left to, take up the momentum of their new share, which they and no others bear.
+/// The same on what a sleeve on the body can do: it turns whatever holds the body.
+Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix);
+
+/// insert_link and remove_link of a cable that may have mass: a body that it meets, or its sleeve there, and
+/// those that it is left to, take up the momentum of their new share, which they and no others bear.
 void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
                int orientation);
 void leave_body(World& world, CableState& cable, int link);

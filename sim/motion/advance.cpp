@@ -23,6 +23,7 @@
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
+#include "sim/solve/rubbing.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -64,6 +65,7 @@ void catch_up(const Scene& scene, World& world, std::span<const int> parts, doub
       at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
     }
     carry(world, carried_of(work.parts, part));
+    if (!s.sleeves.empty()) store_rubbing(s, world);
   }
 }
 
@@ -210,6 +212,10 @@ double kinetic_energy(const World& world, const Workspace& work, const Movers& m
   for (const int p : movers.parts) {
     for (const int body : bodies_of(work.parts, at(work.parts.list, p))) {
       energy += kinetic_energy(world, work.before, after, body);
+    }
+    if (work.before.sleeves.empty()) continue;
+    for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
+      energy += kinetic_energy_of_sleeves(world, work.before, after, c);
     }
   }
   return energy;

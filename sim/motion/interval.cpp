@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
@@ -44,7 +45,7 @@ struct Attempt {
 };
 
 bool is_exact_row(const Row& row) {
-  if (row.kind == RowKind::tangent) return false;
+  if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
   return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
 }
 
@@ -152,7 +153,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
-    part.slides = !set.capstan.runs.empty() || part.can_slip;
+    part.slides = !set.capstan.runs.empty() || part.can_slip || !s.sleeves.empty();
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, attempt.begins && round == 0);
     watch.lap(Stage::move_bodies);
@@ -315,6 +316,7 @@ void go_back(World& world, Workspace& work, std::span<const int> parts) {
       if (const int first = at(work.first_link, c); first >= 0) {
         for (std::size_t i = 0; i < cable.links.size(); ++i) {
           cable.links[i].material = start.material[index(first) + i];
+          if (is_massed(cable)) cable.links[i].slip_speed = start.slip[index(first) + i];
         }
       }
       update_cable(world, cable, false, is_known(work));
@@ -327,6 +329,7 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
   start.time = time;
   start.fallbacks = world.diagnostics.fallbacks;
   start.material.clear();
+  start.slip.clear();
   work.events.clear();
   if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
   for (const int p : movers.parts) {
@@ -335,7 +338,10 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
     for (const int c : cables_of(work.parts, part)) {
       at(work.first_link, c) = slides ? static_cast<int>(start.material.size()) : -1;
       if (!slides) continue;
-      for (const Link& link : at(world.cables, c).links) start.material.push_back(link.material);
+      for (const Link& link : at(world.cables, c).links) {
+        start.material.push_back(link.material);
+        start.slip.push_back(link.slip_speed);
+      }
     }
   }
   if (!work.neighbourhoods.divided) {

@@ -10,6 +10,7 @@
 #include "sim/motion/clearance.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/rows.h"
+#include "sim/solve/rubbing.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -29,7 +30,7 @@ Violation violation(const Scene& scene, const World& world, const PartSystem& s)
   Violation v;
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
-    if (row.compliance > 0.0) continue;
+    if (is_of_sleeve(row) || row.compliance > 0.0) continue;
     const double clearance = clearance_of(scene, world, row);
     double& most = row.kind == RowKind::normal ? v.gaps : v.lengths;
     most = std::max(most, row.clamped ? std::abs(clearance) : -clearance);
@@ -51,6 +52,15 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
     for (int i = run.first_link;; i = next_link(cable, i)) {
       if (!at(cable.links, i).pinch_middle) at(cable.links, i).material -= share * run.speed;
       if (i == run.last_link) break;
+    }
+  }
+  for (std::size_t k = 0; k < s.sleeves.size(); ++k) {
+    const Sleeve& sleeve = s.sleeves[k].sleeve;
+    CableState& cable = at(world.cables, sleeve.cable);
+    const double way = share * slip_speed_of(s, s.velocity, world, k);
+    for (int i = sleeve.first;; i = next_link(cable, i)) {
+      if (!at(cable.links, i).pinch_middle) at(cable.links, i).material -= way;
+      if (i == sleeve.last) break;
     }
   }
   for (const int c : cables_of(work.parts, part))
@@ -139,6 +149,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     const Violation before = violation(scene, world, s);
     if (before.most() <= s.reach) break;
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
+    for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
     work.solve.smooth = true;
     solve_direct(world, work.parts, part, s, work.solve);
     work.solve.smooth = false;

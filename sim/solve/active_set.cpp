@@ -8,6 +8,7 @@
 #include "base/at.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/ordering.h"
+#include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
 #include "sim/solve/system.h"
 
@@ -102,10 +103,12 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
 /// Which states the solution contradicts.
 void check(const PartSystem& s, SolveScratch& set) {
   set.flips.clear();
+  set.suspicious = set.suspicious || !s.sleeves.empty();
   if (!set.suspicious) return;
   const Tolerances tolerance = tolerances(s, set);
   const bool slides = !set.capstan.runs.empty();
   if (slides) check_runs(s, set, tolerance.speed, tolerance.impulse);
+  if (!s.sleeves.empty()) check_rubbing(s, set, tolerance.speed, tolerance.impulse);
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
     const int number = static_cast<int>(r);
@@ -160,7 +163,10 @@ void apply(PartSystem& s, SolveScratch& set, const Flip& flip) {
   Row& row = at(s.rows, flip.row);
   if (row.kind == RowKind::normal && flip.on && row.flipped > 0) row.returned = true;
   row.flipped = set.solves;
-  if (is_friction(row)) {
+  if (row.kind == RowKind::sleeve_rub) {
+    row.on = flip.on;
+    row.slip = flip.slip;
+  } else if (is_friction(row)) {
     row.slip = flip.slip;
     if (flip.slip != Slip::stick) at(s.frictions, row.friction).slid = flip.slip;
   } else {
@@ -217,6 +223,7 @@ void stick_friction(PartSystem& s, CapstanScratch& capstan) {
   for (Run& run : capstan.runs) {
     if (!run.frictionless) run.slip = Slip::stick;
   }
+  stick_rubbing(s);
 }
 
 /// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
@@ -233,6 +240,7 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
     run.slip = Slip::stick;
     run.frozen = true;
   }
+  freeze_rubbing(s);
 }
 
 /// Flips states until the solution contradicts none; whether it came to that.
@@ -258,6 +266,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
     if (solves == before_dropping) drop_friction(s);
     bound_friction(s, set.capstan);
     clamp_pinches(s);
+    if (!s.sleeves.empty()) drop_rubbing(s);
     solve_for_states(s, set);
     set.solves = solves;
     check(s, set);
@@ -305,6 +314,10 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
         const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
         most = friction.dropped ? 0.0 : most_friction(friction.bound, force);
         least = -most;
+      } else if (row.kind == RowKind::sleeve_rub) {
+        const Bounds bounds = bounds_of_rubbing(s, row);
+        least = bounds.least;
+        most = bounds.most;
       }
       const double before = row.impulse;
       const double w = row_speed(s, r) + row.compliance * before;
@@ -316,6 +329,8 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
     Row& row = s.rows[r];
     row.speed = row_speed(s, r);
     if (!is_friction(row)) row.on = row.clamped || row.impulse > 0.0;
+    if (row.kind != RowKind::sleeve_rub) continue;
+    row.slip = row.speed > 0.0 ? Slip::forward : row.speed < 0.0 ? Slip::backward : Slip::stick;
   }
 }
 

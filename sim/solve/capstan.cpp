@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/parts.h"
 #include "sim/solve/solve_scratch.h"
 
@@ -151,7 +152,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
   for (std::size_t place = 0; place < cables.size(); ++place) {
     const int c = cables[place];
     const CableState& cable = at(world.cables, c);
-    if (!slides_somewhere(world, cable)) continue;
+    if (is_massed(cable) || !slides_somewhere(world, cable)) continue;
     const int* row_of_segment = system.row_of_segment.data() + system.segment_begin[place];
     const auto row_of = [row_of_segment](int segment) { return row_of_segment[segment]; };
     const int count = static_cast<int>(cable.links.size());

@@ -11,6 +11,7 @@
 #include "sim/compound.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
+#include "sim/solve/rubbing.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 
@@ -57,6 +58,10 @@ void make_system(const Scene& scene, const World& world, std::span<const int> bo
     f.has_motor = body.driven_angular_velocity || !at(scene.bodies, b).motor.empty();
     if (f.moves) continue;
     s.extent_of_still = std::max(s.extent_of_still, at(world.position, b).cwiseAbs().maxCoeff());
+  }
+  for (std::size_t k = 0; k < s.sleeves.size(); ++k) {
+    s.mobility.emplace_back();
+    s.mobile.push_back(true);
   }
   s.mobility.emplace_back();  // nothing moves the world
   s.mobile.push_back(false);
@@ -108,13 +113,25 @@ void drive_body(const Scene& scene, const World& world, const TimeSpan& t, int b
 
 /// The part's velocities as its rows see them: before a kick, with the world's after the last.
 void list_velocities(const World& world, std::span<const int> bodies,
+                     std::span<const SleevePlace> sleeves,
                      std::vector<Eigen::Vector3d>& velocities) {
   velocities.clear();
   for (const int b : bodies) {
     const Vec2& v = at(world.velocity, b);
     velocities.emplace_back(v.x(), v.y(), at(world.angular_velocity, b));
   }
+  for (const SleevePlace& one : sleeves) velocities.push_back(velocity_of(world, one.sleeve));
   velocities.emplace_back(Eigen::Vector3d::Zero());
+}
+
+/// Which of the spans of a cable, the first of which is `begin`, are beside its sleeves.
+void note_spans_of_sleeves(const CableState& cable, int number, int begin, PartSystem& s) {
+  const int first = begin - static_cast<int>(first_segment(cable));
+  for (SleevePlace& one : s.sleeves) {
+    if (one.sleeve.cable != number) continue;
+    one.span_in = first + one.sleeve.first;
+    one.span_out = first + next_link(cable, one.sleeve.last);
+  }
 }
 
 /// Measures what the part's bodies carry of cables with mass.
@@ -122,9 +139,16 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
   s.masses.spans.clear();
   s.masses.arcs.clear();
   for (const int c : cables_of(parts, part)) {
-    if (is_massed(at(world.cables, c))) add_masses(world, at(world.cables, c), s.masses);
+    if (!is_massed(at(world.cables, c))) continue;
+    const std::size_t begin = s.masses.spans.size();
+    add_masses(world, c, s.listed_sleeves, s.masses);
+    note_spans_of_sleeves(at(world.cables, c), c, static_cast<int>(begin), s);
   }
   const auto place = [&](int& body) {
+    if (body < 0) {
+      body = at(s.sleeves, -1 - body).place;
+      return;
+    }
     const bool is_world = index(body) == world.bodies.size();
     const int local = is_world ? -1 : at(parts.local, body);
     body = local >= 0 ? local : s.ground();
@@ -136,19 +160,24 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
   for (MassedArc& arc : s.masses.arcs) place(arc.body);
   s.carried.assign(s.mobility.size(), Eigen::Matrix3d::Zero());
   add_carried(s.masses, s.carried);
+  for (const SleevePlace& one : s.sleeves) {
+    Eigen::Matrix3d& mass = at(s.carried, one.place);
+    mass += least_mass(world, one.sleeve, mass);
+  }
 }
 
 /// Mobility and free velocity of a body that carries mass M beside its own,
 ///     (M_b + M + M_b after) v' = (M_b + M - M_b before) v + k f,   see Drag,
-/// where v' is given in what the body cannot do by itself.
+/// where v' is given in what the body cannot do by itself. `kept`: the share of its own mass that its sleeves
+/// do not have.
 void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
-          int place, PartSystem& s) {
+          double kept, int place, PartSystem& s) {
   const Eigen::Vector3d own(body.mass, body.mass, inertia_of(body));
   const Drag linear(k * body.linear_drag), angular(k * body.angular_drag);
   const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
   Eigen::Matrix3d all = at(s.carried, place);
   Eigen::Vector3d force = all * pull + at(s.flow, place);
-  all.diagonal() += own;
+  all.diagonal() += Eigen::Vector3d(kept * own.x(), kept * own.y(), own.z());
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
   Eigen::Matrix3d old = all;
   old.diagonal() -= own.cwiseProduct(Eigen::Vector3d(linear.before, linear.before, angular.before));
@@ -162,6 +191,30 @@ void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d
                            inverse(2, 2), inverse(0, 2), inverse(1, 2)};
 }
 
+/// The same of a sleeve.
+void load_sleeve(const BodyProperties& body, const Vec2& gravity, double k, const SleevePlace& one,
+                 PartSystem& s) {
+  const Eigen::Vector3d& v = at(s.velocity, one.place);
+  const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
+  Eigen::Matrix3d all = at(s.carried, one.place);
+  const Eigen::Vector3d force = all * pull + at(s.flow, one.place);
+  all.diagonal() += Eigen::Vector3d(one.share, one.share, 0.0);
+  const Eigen::Matrix3d inverse = inverse_for_sleeve(body, all);
+  at(s.free_velocity, one.place) = v + k * (inverse * force);
+  at(s.mobility, one.place) = {inverse(0, 0), inverse(0, 1), inverse(1, 1),
+                               inverse(2, 2), inverse(0, 2), inverse(1, 2)};
+}
+
+/// The share of its own mass that a body keeps to itself.
+double kept_share(const BodyProperties& body, int place, const PartSystem& s) {
+  if (!can_move(body)) return 1.0;
+  double kept = body.mass;
+  for (const SleevePlace& one : s.sleeves) {
+    if (one.body == place) kept -= one.share;
+  }
+  return kept / body.mass;
+}
+
 /// What a force at an end of a cable does to the body that holds it, in a kick of k seconds.
 void pull(const World& world, const Parts& parts, const Link& end, const Vec2& force, double k,
           PartSystem& s) {
@@ -170,7 +223,8 @@ void pull(const World& world, const Parts& parts, const Link& end, const Vec2& f
   const Vec2 arm = link_centre(world, end) - at(world.position, mover_of(world, end.body));
   const Eigen::Vector3d impulse(k * force.x(), k * force.y(), k * cross(arm, force));
   Mobility mobility = at(s.mobility, place);
-  if (s.carried.empty() || at(s.carried, place)(0, 0) == 0.0) {
+  const bool loaded = !s.carried.empty() && at(s.carried, place)(0, 0) > 0.0;
+  if (!loaded && kept_share(at(world.bodies, mover_of(world, end.body)), place, s) == 1.0) {
     // Its own: that of the step before may be a light body's still (light_bodies.h).
     const Mobility own = mobility_of(at(world.bodies, mover_of(world, end.body)), k);
     mobility.xx = own.xx;
@@ -201,19 +255,24 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
                  const TimeSpan& t, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
   measure_masses(world, parts, part, s);
-  list_velocities(world, bodies, s.velocity);
+  list_velocities(world, bodies, s.sleeves, s.velocity);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, s.velocity, s.flow);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& given = at(scene.bodies, bodies[i]);
     const BodyProperties& body = at(world.bodies, bodies[i]);
-    if (s.carried[i](0, 0) == 0.0) {
+    const double kept = s.sleeves.empty() ? 1.0 : kept_share(body, static_cast<int>(i), s);
+    if (s.carried[i](0, 0) == 0.0 && kept == 1.0) {
       s.mobility[i] = mobility_of(body, t.kick);  // it may have carried some before
       continue;
     }
     const int place = static_cast<int>(i);
     load(given.motor.empty() ? body : driven_now(given, t, body), scene.gravity, s.velocity[i],
-         t.kick, place, s);
+         t.kick, kept, place, s);
+  }
+  note_flow(s, s.velocity);
+  for (const SleevePlace& one : s.sleeves) {
+    load_sleeve(at(world.bodies, one.sleeve.body), scene.gravity, t.kick, one, s);
   }
   for (Motor& motor : s.motors) {
     const Eigen::Matrix3d& carried = at(s.carried, motor.place);
@@ -231,6 +290,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
                   const Part& part, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
   s.mobility_changed = false;
+  if (part.has_sleeves || !s.sleeves.empty()) find_sleeves(world, parts, part, s);
   if (s.mobility.empty() || s.mobility_kick != t.kick) make_system(scene, world, bodies, t.kick, s);
   s.extent = s.extent_of_still;
   s.motors.clear();
@@ -282,10 +342,14 @@ void follow_flow(const Start& start, const Parts& parts, const Part& part, const
     const Eigen::Vector3d before(v.x(), v.y(), at(start.angular_velocity, bodies[i]));
     s.flow_velocity[i] = before + after * (s.velocity[i] - before);
   }
+  for (const SleevePlace& one : s.sleeves) {
+    at(s.flow_velocity, one.place) = one.before + after * (at(s.velocity, one.place) - one.before);
+  }
   s.flow_before.swap(s.flow);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, s.flow_velocity, s.flow);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  note_flow(s, s.flow_velocity);
+  for (std::size_t i = 0; i < bodies.size() + s.sleeves.size(); ++i) {
     const Eigen::Vector3d change = t.kick * (s.mobility[i] * (s.flow[i] - s.flow_before[i]));
     s.free_velocity[i] += change;
     s.velocity[i] += change;

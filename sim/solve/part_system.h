@@ -12,6 +12,7 @@
 #include "sim/contact.h"
 #include "sim/scene.h"
 #include "sim/solve/profile_ldl.h"
+#include "sim/solve/terms.h"
 
 namespace pinchlab {
 
@@ -68,6 +69,8 @@ enum class RowKind : std::int8_t {
                  // or with PinchRows::three two of kind `segment`
   normal,        // contact force, >= 0
   tangent,       // Coulomb friction of bare surfaces, |.| <= mu * normal
+  sleeve_hold,   // keeps a sleeve's centre at its disc's
+  sleeve_rub,    // friction between the two: rubbing.h
 };
 
 /// The two bodies of a row, as places in the part's arrays, and what it sees of their velocities
@@ -110,6 +113,11 @@ struct Row {
   double impulse = 0.0;     // N s
   double speed = 0.0;       // w + compliance p, m/s, after the solve
 };
+
+/// Of neither a segment nor a contact.
+inline bool is_of_sleeve(const Row& row) {
+  return row.kind == RowKind::sleeve_hold || row.kind == RowKind::sleeve_rub;
+}
 
 /// What bounds the impulse of a friction row, a contact's tangent or the middle body of a pinch:
 /// friction.h.
@@ -155,6 +163,31 @@ struct Motor {
   MotorState state = MotorState::holds;
 };
 
+/// What friction on a sleeve is at most, one way, as a sum of the rows' impulses and of what is known: rubbing.h.
+struct RubLaw {
+  double in = 0.0, out = 0.0;          // of the tensions before and after it
+  Vec2 carried = Vec2::Zero();         // kg, of the velocity that its centre gains
+  int terms_begin = 0, terms_end = 0;  // of PartSystem::rub_terms: of pinches on the way
+};
+
+/// A sleeve as a body of the part, and how it rubs.
+struct SleevePlace {
+  Sleeve sleeve;
+  int place = 0, body = 0;                           // of the sleeve and the disc
+  int cable_place = 0;                               // in the part's cables
+  double share = 0.0;                                // kg, of the disc's mass
+  int span_in = -1, span_out = -1;                   // of PartSystem::masses
+  int row_in = -1, row_out = -1;                     // of the segments before and after it
+  int rub = -1;                                      // row; -1: it does not
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s: before the kick
+  double flow_in = 0.0, flow_out = 0.0;  // N, by what tensions are more than rows' forces, less
+                                         // what goes into the bend
+  RubLaw forward, backward;
+  double known = 0.0;    // N s, of the impulse where it slips: what is no unknown
+  bool dropped = false;  // bears nothing in this solve
+  bool frozen = false;   // keeps its state for this step
+};
+
 /// What rows were made for: while it is the same, so are their bodies.
 struct RowsMade {
   int changes = -1;   // of the part's cables
@@ -188,6 +221,7 @@ struct PartSystem {
   std::vector<Row> rows;
   std::vector<Friction> frictions;
   int first_contact_row = 0;
+  int first_sleeve_row = 0;     // of those before the contacts'
   std::vector<int> middles;     // rows of kind pinch_middle
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
   RowsMade made;                // what they are for
@@ -213,6 +247,11 @@ struct PartSystem {
   std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
   std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
   std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
+  std::vector<SleevePlace> sleeves;            // bodies between the part's own and the world
+  std::vector<Sleeve> listed_sleeves;          // storage of find_sleeves
+  std::vector<Term> rub_terms;                 // of rows
+  double rub_kick = 0.0;                       // s, that the rows are for,
+  Vec2 rub_fall = Vec2::Zero();                // m/s, and what gravity adds in it
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   std::vector<int> row_of_segment;             // cable after cable; -1: none
   std::vector<int> segment_begin;              // of the part's cables, in row_of_segment
@@ -252,6 +291,7 @@ inline void forget_flips(PartSystem& s) {
     friction.dropped = friction.frozen = false;
     friction.slid = Slip::stick;
   }
+  for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = sleeve.frozen = false;
 }
 
 inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

@@ -51,6 +51,7 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   if (!makes_energy(s, set)) return settled;
   forget_flips(s);
   for (Friction& friction : s.frictions) friction.dropped = true;
+  for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
   Part held = part;
   held.may_slide = false;
   const bool held_settled = solve_direct(world, parts, held, s, set);

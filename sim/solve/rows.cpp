@@ -10,6 +10,7 @@
 #include "sim/parts.h"
 #include "sim/solve/elastic.h"
 #include "sim/solve/friction.h"
+#include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -32,6 +33,12 @@ void weigh(PartSystem& s, int r) {
 int place_of(const Parts& parts, const PartSystem& system, int body) {
   const int local = body >= 0 ? at(parts.local, body) : -1;
   return local >= 0 ? local : system.ground();
+}
+
+/// The sleeve's that the link of a cable is part of, or else `body`.
+int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link, int body) {
+  const int sleeve = sleeve_at(world, s.listed_sleeves, cable, link);
+  return sleeve >= 0 ? at(s.sleeves, sleeve).place : body;
 }
 
 bool has_fixed_lever(const World& world, const Link& link) {
@@ -335,6 +342,10 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
       if (from.pinch_middle && !three) continue;
       if (from.body == to.body && (wound_end(from, to) || is_side(from, to))) continue;
       int a = place_of(parts, s, from.body), b = place_of(parts, s, to.body);
+      if (!s.sleeves.empty()) {
+        a = place_of_sleeve(world, s, c, previous_link(cable, i), a);
+        b = place_of_sleeve(world, s, c, i, b);
+      }
       if (a == b) a = b = s.ground();  // between two points of one body nothing changes
       const int number = append_row(s, a, b);
       s.row_of_segment[begin + index(i)] = number;
@@ -347,6 +358,7 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
       s.middles.push_back(number);
     }
   }
+  append_sleeve_rows(world, s);
   s.first_contact_row = static_cast<int>(s.rows.size());
 }
 
@@ -416,7 +428,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
   const bool plain = world.configuration.method == Method::cable;
   const bool exact = locates_events(world.configuration);
   begin_segment_rows(world, parts, part, interval.kick, s);
-  for (int r = 0; r < s.first_contact_row; ++r) {
+  for (int r = 0; r < s.first_sleeve_row; ++r) {
     Row& row = at(s.rows, r);
     RowBodies& bodies = at(s.bodies, r);
     const CableState& cable = at(world.cables, row.index);
@@ -464,6 +476,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   }
   s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
   s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;
+  if (!s.sleeves.empty()) make_sleeve_rows(scene, world, interval, s, scratch);
   if (interval.clamps) {
     for (const int r : s.pressed) clamp_in_pinch(world, scratch, at(s.rows, r));
   }

@@ -9,6 +9,7 @@
 #include "sim/parts.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/friction.h"
+#include "sim/solve/rubbing.h"
 
 namespace pinchlab {
 
@@ -47,7 +48,8 @@ void store_contact_row(const Row& row, double kick, World& world) {
 
 /// A run's state on all of its links; a run that bears nothing and does not move sticks.
 void store_run(const PartSystem& s, const Run& run, World& world) {
-  const bool bears = at(s.rows, run.row_in).impulse > 0.0 || at(s.rows, run.row_out).impulse > 0.0;
+  const bool bears =
+      at(s.rows, run.row_in).impulse != 0.0 || at(s.rows, run.row_out).impulse != 0.0;
   const Slip slip = !bears && run.speed == 0.0 ? Slip::stick : run.slip;
   CableState& cable = at(world.cables, run.cable);
   for (int i = run.first_link;; i = next_link(cable, i)) {
@@ -71,10 +73,13 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   }
   carry(world, carried_of(parts, part));
   share_among_repeated(s);
-  const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_contact_row));
+  const std::span<const Row> rows(s.rows), segments = rows.first(index(s.first_sleeve_row));
   for (const Row& row : segments) store_segment_row(s, capstan, row, kick, world);
-  for (const Row& row : rows.subspan(segments.size())) store_contact_row(row, kick, world);
+  for (const Row& row : rows.subspan(index(s.first_contact_row))) {
+    store_contact_row(row, kick, world);
+  }
   for (const Run& run : capstan.runs) store_run(s, run, world);
+  if (!s.sleeves.empty()) store_rubbing(s, world);
 }
 
 }  // namespace pinchlab

@@ -68,6 +68,7 @@ struct SolveScratch {
   std::vector<RowEnd> ends;   // two an unknown: what it does to its row's bodies
   std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
   ProfileLu lu;
+  std::vector<Term> rubbing;  // of unknowns: an impulse while it is expressed
   std::vector<Flip> flips;
   OrderScratch ordering;
 };

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/solve/capstan.h"
+#include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
 
 namespace pinchlab {
@@ -322,6 +323,7 @@ void set_impulses(PartSystem& s, const SolveScratch& set) {
     }
     s.rows[r].impulse = p;
   }
+  if (!set.symmetric) add_known_rubbing(s);
   apply_impulses(s);
 }
 
@@ -382,6 +384,7 @@ double start(PartSystem& s, SolveScratch& set) {
     return largest;
   }
   for (Row& row : s.rows) row.impulse = 0.0;
+  if (!s.sleeves.empty()) set_impulses(s, set);
   return find_residuals(s, set);
 }
 
@@ -482,6 +485,7 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
   number_unknowns(s, set);
   if (!set.symmetric) {
     express(s, set);
+    if (!s.sleeves.empty()) express_rubbing(s, set);
     gather_body_terms(s, set);
   }
   const int repeated = factor(s, set, 0.0);

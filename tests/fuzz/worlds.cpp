@@ -199,7 +199,7 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
-/// Cables with mass over bodies, which then let nothing slip; and those that hang bend. No bytes: none.
+/// Cables with mass over bodies, of which discs alone let them slip; and those that hang bend. No bytes: none.
 void add_heavy_cables(json& scene, Choices& choices) {
   bool any = false;
   for (json& cable : scene["cables"]) {
@@ -217,7 +217,7 @@ void add_heavy_cables(json& scene, Choices& choices) {
   }
   if (!any) return;
   for (json& body : scene["bodies"]) {
-    body.erase("cable_friction");
+    if (body.contains("corners_m") || choices.one_in(2)) body.erase("cable_friction");
     if (!body.contains("shapes")) continue;
     for (json& shape : body["shapes"]) shape.erase("cable_friction");
   }

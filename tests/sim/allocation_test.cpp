@@ -54,6 +54,20 @@ TEST(Allocation, NoneOnceWarmWithSlippingCables) {
   EXPECT_EQ(allocations_of_warm_steps(load_chain(21, 3.0, 2.0, 1.0, 0.05)), 0);
 }
 
+// A heavy rope that slips on a block that it carries, and on a pulley.
+TEST(Allocation, NoneOnceWarmWithSleeves) {
+  for (const double mu : {0.0, 0.1, 10.0}) {
+    Scene scene = build::heavy_tackle(4);
+    scene.bodies[0].cable_friction = scene.bodies[2].cable_friction = mu;
+    World world = make_world(scene, Method::pinch);
+    Workspace work;
+    for (int i = 0; i < 40; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    const long before = allocations;
+    for (int i = 0; i < 40; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    EXPECT_EQ(allocations - before, 0) << mu;
+  }
+}
+
 TEST(Allocation, NoneOnceWarmWithPinches) {
   Scene scene;
   scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 5.0));

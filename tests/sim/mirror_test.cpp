@@ -103,6 +103,7 @@ INSTANTIATE_TEST_SUITE_P(, Mirror,
                                            Population{"Elastic", random_elastic, 60},
                                            Population{"Linkages", linkage, 60},
                                            Population{"Ropes", falling_on_rope, 60},
+                                           Population{"SlippingRopes", slipping_rope, 60},
                                            Population{"Adapting", random_hanging, 20}),
                          [](const auto& of) { return of.param.name; });
 

@@ -135,4 +135,16 @@ inline Scene falling_on_rope(unsigned seed) {
   return scene;
 }
 
+/// The same rope, which slips on some of the pulleys and discs, without friction or with.
+inline Scene slipping_rope(unsigned seed) {
+  Scene scene = falling_on_rope(seed);
+  Random random(seed + 1000);
+  for (Body& b : scene.bodies) {
+    const int what = random.below(4);
+    if (b.name.starts_with("weight") || what == 1) continue;
+    b.cable_friction = what == 0 ? 0.0 : random.uniform(0.02, 0.5);
+  }
+  return scene;
+}
+
 }  // namespace pinchlab::testing

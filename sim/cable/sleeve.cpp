@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/sleeve.h"
+
+#include <algorithm>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+bool lies_loose(const World& world, const Link& link) {
+  return link.orientation != 0 && !link.pinch_middle &&
+         at(world.bodies, link.body).cable_friction < infinity;
+}
+
+/// The last link of what begins with `first`: beyond each pinch it goes on.
+int last_part(const CableState& cable, int first) {
+  int last = first;
+  for (std::size_t seen = 0; seen < cable.links.size(); ++seen) {
+    const int after = next_link(cable, last);
+    if (after < 0 || !at(cable.links, after).pinch_middle) break;
+    last = next_link(cable, after);
+  }
+  return last;
+}
+
+bool is_fast(const CableState& cable, int first, int last) {
+  const int before = previous_link(cable, first), after = next_link(cable, last);
+  return (before >= 0 && wound_end(at(cable.links, before), at(cable.links, first))) ||
+         (after >= 0 && wound_end(at(cable.links, last), at(cable.links, after)));
+}
+
+/// Calls `visit(first, last)` for each sleeve of a cable.
+template <class Visit>
+void each_sleeve(const World& world, const CableState& cable, Visit visit) {
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    const int before = previous_link(cable, i);
+    if (!lies_loose(world, at(cable.links, i))) continue;
+    if (before >= 0 && at(cable.links, before).pinch_middle) continue;  // it goes on from there
+    const int last = last_part(cable, i);
+    if (!is_fast(cable, i, last)) visit(i, last);
+  }
+}
+
+/// m/s at which a segment between links that do not slip gets longer than its material.
+double stretching(const World& world, const CableState& cable, int segment) {
+  const Vec2& e = at(cable.segments, segment).direction;
+  const auto along = [&](const Link& link) {
+    if (link.body < 0) return 0.0;
+    const Vec2 z = left(Vec2(link_centre(world, link) - at(world.position, link.body))) +
+                   link.signed_radius() * e;
+    return e.dot(at(world.velocity, link.body) + at(world.angular_velocity, link.body) * z);
+  };
+  return along(at(cable.links, segment)) - along(at(cable.links, previous_link(cable, segment)));
+}
+
+}  // namespace
+
+bool has_sleeves(const World& world, const CableState& cable) {
+  bool any = false;
+  if (is_massed(cable)) each_sleeve(world, cable, [&any](int, int) { any = true; });
+  return any;
+}
+
+void list_sleeves(const World& world, int number, std::vector<Sleeve>& to) {
+  const CableState& cable = at(world.cables, number);
+  if (!is_massed(cable)) return;
+  each_sleeve(world, cable, [&](int first, int last) {
+    Sleeve& sleeve = to.emplace_back();
+    sleeve.cable = number;
+    sleeve.first = first;
+    sleeve.last = last;
+    sleeve.body = at(cable.links, first).body;
+  });
+}
+
+int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable, int link) {
+  if (!lies_loose(world, at(at(world.cables, cable).links, link))) return -1;
+  for (std::size_t k = 0; k < sleeves.size(); ++k) {
+    const Sleeve& s = sleeves[k];
+    if (s.cable != cable) continue;
+    const bool within =
+        s.first <= s.last ? s.first <= link && link <= s.last : link >= s.first || link <= s.last;
+    if (within) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+double turning_at(const World& world, int cable, int number) {
+  const Link& link = at(at(world.cables, cable).links, number);
+  if (link.body < 0) return 0.0;
+  const double turning = at(world.angular_velocity, link.body);
+  return lies_loose(world, link) ? turning + link.slip_speed / link.signed_radius() : turning;
+}
+
+Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve) {
+  const Vec2& v = at(world.velocity, sleeve.body);
+  return {v.x(), v.y(), turning_at(world, sleeve.cable, sleeve.first)};
+}
+
+void set_slip(CableState& cable, const Sleeve& sleeve, Slip slip, double speed) {
+  for (int i = sleeve.first;; i = next_link(cable, i)) {
+    Link& link = at(cable.links, i);
+    if (!link.pinch_middle) {
+      link.slip = slip;
+      link.slip_speed = speed;
+    }
+    if (i == sleeve.last) return;
+  }
+}
+
+void begin_slip(const Scene& scene, World& world) {
+  std::vector<Sleeve> sleeves;
+  for (int c = 0; index(c) < world.cables.size(); ++c) {
+    CableState& cable = at(world.cables, c);
+    if (!is_massed(cable) || at(scene.cables, c).slack > 0.0) continue;
+    sleeves.clear();
+    list_sleeves(world, c, sleeves);
+    if (sleeves.empty()) continue;
+    // From a link that the cable does not slip at; where it slips everywhere, the first sleeve turns along.
+    int last = cable.closed ? -1 : 0;
+    for (int i = 0; cable.closed && last < 0 && index(i) < cable.links.size(); ++i) {
+      const bool slips = sleeve_at(world, sleeves, c, i) >= 0;
+      if (!slips && !at(cable.links, i).pinch_middle) last = i;
+    }
+    std::size_t first = 0;
+    while (last >= 0 && first < sleeves.size() && sleeves[first].first < last) ++first;
+    const std::size_t known = last < 0 ? 1 : 0;
+    if (last < 0) last = sleeves[0].last;
+    double speed = 0.0;
+    for (std::size_t k = known; k < sleeves.size(); ++k) {
+      const Sleeve& sleeve = sleeves[(first + k) % sleeves.size()];
+      for (int i = next_link(cable, last); i != sleeve.first; i = next_link(cable, i)) {
+        if (!at(cable.links, i).pinch_middle) speed = 0.0;
+      }
+      speed -= stretching(world, cable, sleeve.first);
+      set_slip(cable, sleeve, Slip::stick, speed);
+      last = sleeve.last;
+    }
+  }
+}
+
+}  // namespace pinchlab

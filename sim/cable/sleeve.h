@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Cables with mass that may slip on bodies (mass.h; bodies with a finite cable friction). What lies on such
+// a disc, with half of either span beside it, turns about the disc's centre as a sleeve on it would:
+// it moves along with the centre, and has an angular velocity of its own,
+//     omega_s = omega + s / p,       s: slip speed, p: signed radius of the cable's centre line,
+// so that its mass is inertia to the cable's own motion, and none to the disc's turning. What passes
+// between the two is friction alone: solve/rubbing.h.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// All links of a cable on one disc in succession: one, or the parts into which pinches divide it.
+struct Sleeve {
+  int cable = 0, first = 0, last = 0;  // links; of a closed cable `last` may be before `first`
+  int body = 0;
+  // As it moves, and its mass, where these have been asked for.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s
+  Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();      // kg, kg m, kg m^2, for (x, y, angle)
+};
+
+/// Whether any part of the cable is a sleeve.
+bool has_sleeves(const World& world, const CableState& cable);
+
+/// Appends a cable's sleeves, in its order. What is wound up on the body that holds the cable's end is fast.
+void list_sleeves(const World& world, int cable, std::vector<Sleeve>& to);
+
+/// The place in `sleeves` of the one that link `link` of the cable is part of, or -1.
+int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable, int link);
+
+/// rad/s, of what lies at the link: of the sleeve, or of the body.
+double turning_at(const World& world, int cable, int link);
+
+/// Velocity of a sleeve, with that of its centre.
+Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve);
+
+/// Lets a sleeve slip at `speed` (m/s of material over the disc's surface, forward positive).
+void set_slip(CableState& cable, const Sleeve& sleeve, Slip slip, double speed);
+
+/// A scene says how bodies move at its start: cables that are not slack move along as they must, from their
+/// first link on.
+void begin_slip(const Scene& scene, World& world);
+
+}  // namespace pinchlab

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cables with mass that slip on the bodies that they run over.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "demos/scenes/shape_scenes.h"
+#include "sim/cable/mass.h"
+#include "sim/diagnostics.h"
+#include "sim/make_world.h"
+#include "sim/outline.h"
+#include "sim/scene_error.h"
+#include "tests/sim/random_scene.h"
+#include "tests/sim/same_state.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double rope_radius = 0.2, rope_density = 0.8;  // m, of the centre line on the peg; kg/m
+
+/// Two weights on a rope over a peg: the left one hangs by `left` m of rope, the right one by `right`.
+Scene rope_over_peg(int steps, double mu, double left, double right, double m_left, double m_right,
+                    BodyKind kind = BodyKind::fixed) {
+  Scene scene;
+  scene.steps_per_frame = steps;
+  scene.bodies.push_back(body("left", BodyKind::free, -rope_radius, -left, 0.05, m_left));
+  scene.bodies.push_back(body("right", BodyKind::free, rope_radius, -right, 0.05, m_right));
+  scene.bodies.push_back(body("peg", kind, 0.0, 0.0, rope_radius - 0.01));
+  scene.bodies[2].cable_friction = mu;
+  scene.cables.push_back(cable(on(0), {{2, -1, 0}}, on(1), 0.01));
+  scene.cables[0].mass_per_metre = rope_density;
+  return scene;
+}
+
+// x'' = k^2 x, for x = half the difference of the ends: (rho L + m1 + m2) x'' = 2 rho g x. What is left is
+// leapfrog's own error, as of the rope of Mass.ARopeOverAPulleyFallsAsItsWeightMovesOver.
+TEST(MassSlip, ARopeSlidesOffASmoothPeg) {
+  for (const BodyKind kind : {BodyKind::fixed, BodyKind::fixed_axle}) {
+    for (const int steps : {1, 2, 4, 8, 16}) {
+      const double m = 1e-6, l = 2.0 + pi * rope_radius;
+      const Scene scene = rope_over_peg(steps, 0.0, 0.9, 1.1, m, m, kind);
+      World world = make_world(scene, measured());
+      const double k = std::sqrt(2.0 * rope_density * g / (rope_density * l + 2.0 * m));
+      run(scene, world, 30 * steps);
+      const double t = world.time(), kh = k / (60.0 * steps);
+      const double own = 0.1 * std::sinh(k * t) * k * t * kh * kh / 24.0;
+      const double fallen = -1.0 - world.position[1].y();
+      EXPECT_NEAR(fallen, 0.1 * std::cosh(k * t) - own, 0.01 * own + 1e-8) << steps;
+      EXPECT_EQ(world.angle[2], 0.0);
+    }
+  }
+}
+
+/// Independent of the solver: acceleration of the rope over the peg, from its elements on the rim. Slips to
+/// the right at w, with a of span on the left and b on the right.
+struct PegRope {
+  double mu, m_left, m_right, rho = rope_density, radius = rope_radius;
+
+  double acceleration(double a, double b, double w) const {
+    // T_right = k T_left + c0 + c1 w' over half a turn, by Simpson's rule.
+    constexpr int count = 2000;
+    const double k = std::exp(mu * pi);
+    double c0 = 0.0, c1 = 0.0;
+    for (int i = 0; i <= count; ++i) {
+      const double th = pi * i / count, weight = (i == 0 || i == count ? 1.0 : i % 2 ? 4.0 : 2.0);
+      const double share = weight * pi / count / 3.0 * std::exp(mu * (pi - th));
+      // Up on the left, over the top, down on the right: direction (sin th, cos th), to the centre
+      // (cos th, -sin th).
+      const double along = rho * radius * g * std::cos(th),
+                   pressing = rho * radius * g * std::sin(th);
+      c0 += share * (along + mu * (pressing - rho * w * w));
+      c1 += share * rho * radius;
+    }
+    // (m_r + rho b) (g - w') = k (m_l + rho a) (g + w') + c0 + c1 w'
+    const double right = m_right + rho * b, left = m_left + rho * a;
+    return (right * g - k * left * g - c0) / (right + k * left + c1);
+  }
+
+  /// How far it has slid after t, from rest: by the method of Runge and Kutta.
+  double slid(double a, double b, double t) const {
+    constexpr int count = 400;
+    const double h = t / count;
+    double x = 0.0, w = 0.0;
+    for (int i = 0; i < count; ++i) {
+      const auto f = [&](double y, double v) { return acceleration(a - y, b + y, v); };
+      const double k1 = f(x, w), k2 = f(x + 0.5 * h * w, w + 0.5 * h * k1);
+      const double v3 = w + 0.5 * h * k2, k3 = f(x + 0.5 * h * (w + 0.5 * h * k1), v3);
+      const double k4 = f(x + h * v3, w + h * k3);
+      x += h * w + h * h / 6.0 * (k1 + k2 + k3);
+      w += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+    return x;
+  }
+};
+
+TEST(MassSlip, ARopeRubsOnAPegAsItsElementsDo) {
+  for (const double mu : {0.0, 0.05, 0.2}) {
+    const double m_left = 0.3, m_right = 4.0;
+    const PegRope reference{mu, m_left, m_right};
+    double error = 0.0;
+    for (const int steps : {1, 2, 4, 8, 16}) {
+      const Scene scene = rope_over_peg(steps, mu, 0.9, 0.4, m_left, m_right);
+      World world = make_world(scene, measured());
+      run(scene, world, 20 * steps);
+      const double slid = -0.4 - world.position[1].y(),
+                   exact = reference.slid(0.9, 0.4, world.time());
+      const double now = std::abs(slid - exact);
+      if (error > 0.0) {
+        EXPECT_GT(error / now, 3.9) << mu;
+      }
+      error = now;
+    }
+    EXPECT_LT(error, 1e-7);
+  }
+}
+
+/// A bob of 0.5 kg on a rope that a drum winds up as it swings: the rope lies over it, with a weight
+/// beyond.
+Scene swinging_over_drum(int steps, double mu) {
+  Scene scene;
+  scene.steps_per_frame = steps;
+  scene.bodies.push_back(body("bob", BodyKind::free, 1.0, -0.6, 0.05, 0.5));
+  scene.bodies.push_back(body("weight", BodyKind::free, -0.3, -0.8, 0.05, 0.9));
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.19));
+  scene.bodies[2].inertia = 0.2;
+  scene.bodies[2].cable_friction = mu;
+  scene.cables.push_back(cable(on(1), {{2, -1, 0}}, on(0), 0.01));
+  scene.cables[0].mass_per_metre = 0.5;
+  return scene;
+}
+
+/// A block that a rope carries, over a pulley to a weight: the block's sleeve moves.
+Scene slipping_tackle(int steps, double mu) {
+  Scene scene = build::heavy_tackle(steps);
+  scene.bodies[0].cable_friction = scene.bodies[2].cable_friction = mu;
+  return scene;
+}
+
+struct Course {
+  std::vector<double> end;             // of all bodies: m, m, rad
+  double energy = 0.0;                 // J, its largest change since the second step's start
+  double gained = 0.0, at_play = 0.0;  // J, since the start
+  double gap = 0.0, stretch = 0.0;     // m
+};
+
+Course run_measured(const Scene& scene, double seconds) {
+  Course course;
+  World world = make_world(scene, measured());
+  Workspace work;
+  double first = 0.0, start = 0.0;
+  for (int i = 0; i < seconds * 60 * scene.steps_per_frame; ++i) {
+    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    if (!world.failure.empty()) break;
+    const Diagnostics& d = world.diagnostics;
+    if (i == 0) start = d.energy;
+    if (i < 2) first = d.energy;
+    course.energy = std::max(course.energy, std::abs(d.energy - first));
+    course.gained = std::max(course.gained, d.energy - start);
+    course.gap = std::max(course.gap, d.largest_gap_violation);
+    course.stretch = std::max(course.stretch, d.largest_stretch);
+    course.at_play = std::max(course.at_play, start - potential_energy(scene, world));
+  }
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    course.end.insert(course.end.end(),
+                      {world.position[b].x(), world.position[b].y(), world.angle[b]});
+  }
+  return course;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+// With friction that it never comes to the end of, the rope moves as one that cannot slip.
+TEST(MassSlip, WhatSticksMovesAsIfItCouldNotSlip) {
+  for (const auto make : {swinging_over_drum, slipping_tackle}) {
+    const Course fast = run_measured(make(4, infinity), 0.5);
+    const Course sticking = run_measured(make(4, 30.0), 0.5);
+    EXPECT_LT(largest_difference(fast.end, sticking.end), 1e-10);
+  }
+}
+
+// Motion, and energy where there is no friction, against a much shorter step and against the start.
+TEST(MassSlip, SwingsOnSecondOrder) {
+  for (const auto make : {swinging_over_drum, slipping_tackle}) {
+    for (const double mu : {0.0, 0.1}) {
+      const Course exact = run_measured(make(128, mu), 0.4);
+      double first = 0.0, last = 0.0, energy = 0.0;
+      for (const int steps : {2, 4, 8, 16}) {
+        const Course course = run_measured(make(steps, mu), 0.4);
+        last = largest_difference(course.end, exact.end);
+        if (steps == 2) first = last;
+        if (mu == 0.0 && energy > 0.0) {
+          EXPECT_GT(energy / course.energy, 3.8) << steps;
+        }
+        energy = course.energy;
+        EXPECT_LT(course.gained, 1.5e-4 / (steps * steps)) << steps;
+      }
+      EXPECT_GT(first / last, 50.0) << mu;  // of 64
+      EXPECT_LT(last, 2e-6);
+    }
+  }
+}
+
+// A drum that turns fast drags a belt round, and a second one that the belt turns along on a rail, which gravity
+// pulls away from the first. With T the tension at the tangents of drum 2, strand 1 going to the first:
+//     (I / R^2 + rho pi R) w' = T1 - T2,   T1 + T2 = (m + rho pi R) g + 2 rho w^2.
+TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
+  constexpr double mu = 0.25, rho = 0.7, radius = 0.15, apart = 1.1, mass = 2.0, inertia = 0.02;
+  const auto faster = [](double w) {
+    constexpr int count = 2000;
+    const double k = std::exp(-mu * pi);
+    double c0 = 0.0, c1 = 0.0;  // X_out = k X_in + c0 + c1 w'
+    for (int i = 0; i <= count; ++i) {
+      const double th = pi * i / count, weight = (i == 0 || i == count ? 1.0 : i % 2 ? 4.0 : 2.0);
+      const double share = weight * pi / count / 3.0 * std::exp(-mu * (pi - th));
+      // Gravity is along x: direction (-cos th, ..), to the centre (sin th, ..).
+      c0 += share * rho * radius * (g * std::cos(th) - mu * g * std::sin(th));
+      c1 += share * rho * radius;
+    }
+    // X1 + rho d (g + w') k ... solved for w' with T1 = (sum + m' w') / 2, T2 = (sum - m' w') / 2
+    const double sum = (mass + rho * pi * radius) * g + 2.0 * rho * w * w;
+    const double m = inertia / (radius * radius) + rho * pi * radius, d = rho * apart;
+    // (sum - m w') / 2 + d (g - w') - rho w^2 = k ((sum + m w') / 2 + d (g + w') - rho w^2) + c0 + c1 w'
+    const double left = 0.5 * sum + d * g - rho * w * w, right = k * left + c0;
+    return (left - right) / (0.5 * m + d + k * (0.5 * m + d) + c1);
+  };
+  for (const int steps : {4, 16}) {
+    Scene scene;
+    scene.steps_per_frame = steps;
+    scene.gravity = {g, 0.0};
+    scene.bodies.push_back(body("driver", BodyKind::fixed_axle, 0.0, 0.0, radius - 0.01));
+    scene.bodies.push_back(body("driven", BodyKind::rail, apart, 0.0, radius - 0.01, mass));
+    scene.bodies[0].cable_friction = mu;
+    scene.bodies[0].driven_angular_velocity = 200.0;
+    scene.bodies[1].rail_axis = {1.0, 0.0};
+    scene.bodies[1].inertia = inertia;
+    Cable belt = cable({}, {{0, 1, 0}, {1, 1, 0}}, {}, 0.01);
+    belt.closed = true;
+    belt.mass_per_metre = rho;
+    scene.cables.push_back(belt);
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 60 * steps);
+    double w = 0.0, x = 0.0;
+    constexpr int count = 1000;
+    for (int i = 0; i < count; ++i) {
+      const double h = 1.0 / count, k1 = faster(w), k2 = faster(w + 0.5 * h * k1);
+      x += h * w + 0.5 * h * h * k1;
+      w += h * k2;
+    }
+    EXPECT_NEAR(world.angle[1], x / radius, 1e-8 * x / radius);
+  }
+}
+
+// With the scene as a whole in uniform motion the rope moves as without: over a heavy peg, from which springs
+// pull the weights away.
+TEST(MassSlip, MovesAlongWithItsFrame) {
+  const Vec2 speed(3.0, -2.0);
+  for (const double mu : {0.0, 0.15, infinity}) {
+    std::vector<double> end;
+    for (const bool moves : {false, true}) {
+      Scene scene = rope_over_peg(8, mu, 0.9, 0.4, 0.3, 1.0, BodyKind::free);
+      scene.gravity = Vec2::Zero();
+      scene.bodies[2].mass = scene.bodies[2].inertia.emplace(1e9);
+      for (const int end_of : {0, 1}) {
+        const double x = end_of == 0 ? -rope_radius - 0.3 : rope_radius;
+        scene.cables.push_back(cable({2, {x, -3.0}}, {}, on(end_of), 0.01));
+        scene.cables.back().axial_stiffness = end_of == 0 ? 10.0 : 40.0;
+        scene.cables.back().slack = -1.0;
+      }
+      for (Body& b : scene.bodies) {
+        if (moves) b.velocity += speed;
+      }
+      World world = make_world(scene, Method::pinch);
+      run(scene, world, 160);
+      for (std::size_t b = 0; b < 3; ++b) {
+        const Vec2 x = world.position[b] - (moves ? world.time() : 0.0) * speed;
+        end.insert(end.end(), {x.x(), x.y(), world.angle[b]});
+      }
+      if (mu < infinity) {
+        EXPECT_GT(std::abs(world.cables[0].links[1].slip_speed), 0.1);
+      }
+    }
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(end[i], end[i + 9], 5e-8) << mu;
+  }
+}
+
+// A disc without friction that falls on a rope takes up what moves across it only: the rope moves on.
+TEST(MassSlip, ASmoothDiscDoesNotStopTheRopeThatItMeets) {
+  Scene scene;
+  scene.bodies.push_back(body("light", BodyKind::free, -0.5, -0.7, 0.05));
+  scene.bodies.push_back(body("heavy", BodyKind::free, 0.5, -0.7, 0.05, 1.5));
+  for (int i = 0; i < 2; ++i) {
+    const double x = i == 0 ? -0.4 : 0.4;
+    scene.bodies.push_back(body("peg" + std::to_string(i), BodyKind::fixed, x, 0.0, 0.09));
+  }
+  scene.bodies.push_back(body("disc", BodyKind::free, 0.0, 0.3, 0.09, 0.01));
+  for (Body& b : scene.bodies) b.cable_friction = 0.0;
+  scene.cables.push_back(cable(on(0), {{2, -1, 0}, {3, -1, 0}}, on(1), 0.01));
+  scene.cables[0].mass_per_metre = 1.5;
+  World world = make_world(scene, Method::pinch);
+  double before = 0.0;
+  for (int i = 0; i < 120 && world.cables[0].links.size() == 4; ++i) {
+    before = -world.velocity[1].y();
+    run(scene, world, 1);
+  }
+  ASSERT_EQ(world.cables[0].links.size(), 5U);
+  EXPECT_GT(before, 0.1);
+  EXPECT_NEAR(-world.velocity[1].y(), before, 0.03);
+  EXPECT_NEAR(world.cables[0].links[2].slip_speed, before, 0.03);
+}
+
+// What the energy rises by is what leapfrog swings by.
+TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
+  int ran = 0, more = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    for (const int steps : {1, 4, 16}) {
+      Scene scene = slipping_rope(seed);
+      scene.steps_per_frame = steps;
+      if (scene.cables[0].axial_stiffness < infinity) scene.frames_per_second = 120;
+      const Course course = run_measured(scene, 1.5);
+      if (scene.cables[0].axial_stiffness < infinity) continue;
+      const double w = scene.cables[0].half_width, share = course.gained / course.at_play;
+      EXPECT_LE(share, 1e-2 / (steps * steps)) << "seed " << seed << ", " << steps;
+      if (share > 2e-4 / (steps * steps)) ++more;
+      EXPECT_LE(course.gap, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
+      EXPECT_LE(course.stretch, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
+      ++ran;
+    }
+  }
+  EXPECT_GT(ran, 600);
+  EXPECT_LE(more, 3);
+}
+
+// Rollers fall on pulleys and pinch the rope, over which it slips.
+TEST(RandomMassSlip, PinchesHold) {
+  int fallbacks = 0;
+  for (unsigned seed = 0; seed < 25; ++seed) {
+    Scene scene = random_scene(static_cast<int>(seed));
+    scene.steps_per_frame = 4;
+    Random random(seed + 5000);
+    for (Cable& c : scene.cables) c.mass_per_metre = std::pow(10.0, random.uniform(-2.0, 0.5));
+    for (Body& b : scene.bodies) {
+      const int what = random.below(5);
+      if (what == 1)
+        b.cable_friction = infinity;
+      else
+        b.cable_friction = what == 0 ? 0.0 : random.uniform(0.02, 0.8);
+    }
+    World world = make_world(scene, measured());
+    Workspace work;
+    const double w = scene.cables[0].half_width;
+    double start = 0.0, gained = 0.0, at_play = 0.0;
+    for (int i = 0; i < 480; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      const Diagnostics& d = world.diagnostics;
+      if (i == 0) start = d.energy;
+      gained = std::max(gained, d.energy - start);
+      at_play = std::max(at_play, start - potential_energy(scene, world));
+      ASSERT_LE(std::max(d.largest_gap_violation, d.largest_stretch), 1e-6 * w) << seed;
+    }
+    EXPECT_LE(gained, 1e-3 * at_play) << seed;
+    fallbacks += static_cast<int>(world.diagnostics.fallbacks);
+  }
+  EXPECT_LE(fallbacks, 10);
+}
+
+TEST(RandomMassSlip, AClearedWorkspaceChangesNoBit) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    EXPECT_TRUE(is_all_state(slipping_rope(seed), Method::pinch, 200)) << seed;
+  }
+}
+
+TEST(MassSlip, RefusesWhatItCannot) {
+  const auto refusal = [](auto change, const Configuration& configuration) -> std::string {
+    Scene scene = slipping_tackle(4, 0.2);
+    change(scene);
+    try {
+      make_world(scene, configuration);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto as_is = [](Scene&) {};
+  EXPECT_EQ(refusal(as_is, Method::pinch), "");
+  EXPECT_EQ(refusal(as_is, Method::cable), "");
+  EXPECT_NE(refusal(as_is, thesis_configuration()).find("direct solver"), std::string::npos);
+  EXPECT_NE(
+      refusal(
+          [](Scene& s) {
+            make_polygon(s.bodies[2], {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}, 0.02);
+            s.bodies[2].inertia = 0.1;
+          },
+          Method::pinch)
+          .find("'pulley', which is a polygon"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
