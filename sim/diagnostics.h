@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/at.h"
+#include "sim/cable/sleeve.h"
 #include "sim/world.h"
 
 namespace pinchlab {
