@@ -2,6 +2,7 @@
 // A warm step allocates nothing. (The sanitizers bring allocators of their own, so they skip this.)
 
 #include "demos/scenes/shape_scenes.h"
+#include "sim/workspace.h"
 #include "tests/sim/scenes.h"
 
 #ifndef __SANITIZE_ADDRESS__
@@ -89,6 +90,26 @@ TEST(Allocation, NoneOnceWarmWithNodesThatAdapt) {
   for (int i = 0; i < 500; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(world.diagnostics.node_changes, changes + 50);
+}
+
+// Each ball rebounds at times of its own, so that most steps are divided part by part, as often as
+// events fall into them.
+TEST(Allocation, NoneOnceWarmWithStepsThatAreDivided) {
+  Scene scene = balls(30, height_of_ball, 1.0);
+  add_pendulum(scene, 50.0);
+  World world = make_world(scene, Method::pinch);
+  Workspace work;
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+  int divided = 0;
+  const std::int64_t events = world.diagnostics.events;
+  for (int i = 0; i < 600; ++i) {
+    const long before = allocations;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    ASSERT_EQ(allocations - before, 0) << "step " << world.step;
+    if (work.neighbourhoods.list.size() > 1) ++divided;
+  }
+  EXPECT_GT(divided, 100);
+  EXPECT_GT(world.diagnostics.events, events + 300);
 }
 
 }  // namespace

@@ -11,23 +11,6 @@
 namespace pinchlab::testing {
 namespace {
 
-double height_of_ball(int i) {  // m, of its lowest point at time 0
-  return 0.5 + 0.4 * std::fmod(0.6180339887 * i, 1.0);
-}
-
-/// Balls side by side that fall on one floor and rebound by 0.8.
-Scene balls(int count, double (*height)(int)) {
-  Scene scene;
-  for (int i = 0; i < count; ++i) {
-    Body ball = body(fmt::format("ball {}", i), BodyKind::free, i, 0.1 + height(i), 0.1, 1.0);
-    ball.restitution = 0.8;
-    scene.bodies.push_back(ball);
-  }
-  scene.walls.push_back({Vec2(-1.0, 0.0), Vec2(count + 1.0, 0.0), 0.5, 0.0});
-  scene.steps_per_frame = 1;
-  return scene;
-}
-
 TEST(Neighbourhoods, BallsBounceAsIfEachWereAlone) {
   constexpr int count = 120;  // five times as many as may rebound in a step of one of them
   const Scene scene = balls(count, height_of_ball);
@@ -108,13 +91,6 @@ TEST(Neighbourhoods, ThoseThatMeetAfterAllAreTakenBack) {
   EXPECT_NEAR(world.position[2].x(), 0.3 + v2 * (t - second_hit), 1e-9);
   EXPECT_NEAR(world.position[3].y(), 0.02 + 10.0 * (t - 0.005), 1e-9);
   EXPECT_NEAR(world.velocity[2].x(), v2, 1e-9);
-}
-
-/// A pendulum on a peg at x, and a ball above.
-void add_pendulum(Scene& scene, double x) {
-  scene.bodies.push_back(body(fmt::format("bob {}", x), BodyKind::free, x + 1.0, 0.0, 0.1, 1.0));
-  Cable rope = cable(at(x, 0.0), {}, on(static_cast<int>(scene.bodies.size()) - 1));
-  scene.cables.push_back(rope);
 }
 
 std::vector<int> neighbourhoods_of_bodies(const Scene& scene) {

@@ -35,4 +35,28 @@ inline void run(const Scene& scene, World& world, int steps) {
   }
 }
 
+inline double height_of_ball(int i) {  // m, of its lowest point at time 0
+  return 0.5 + 0.4 * std::fmod(0.6180339887 * i, 1.0);
+}
+
+/// Balls side by side that fall on one floor and rebound by `restitution`.
+inline Scene balls(int count, double (*height)(int), double restitution = 0.8) {
+  Scene scene;
+  for (int i = 0; i < count; ++i) {
+    Body ball = body(fmt::format("ball {}", i), BodyKind::free, i, 0.1 + height(i), 0.1, 1.0);
+    ball.restitution = restitution;
+    scene.bodies.push_back(ball);
+  }
+  scene.walls.push_back({Vec2(-1.0, 0.0), Vec2(count + 1.0, 0.0), 0.5, 0.0});
+  scene.steps_per_frame = 1;
+  return scene;
+}
+
+/// A pendulum of 1 m, held out level, on a peg at x.
+inline void add_pendulum(Scene& scene, double x) {
+  scene.bodies.push_back(body(fmt::format("bob {}", x), BodyKind::free, x + 1.0, 0.0, 0.1, 1.0));
+  Cable rope = cable(at(x, 0.0), {}, on(static_cast<int>(scene.bodies.size()) - 1));
+  scene.cables.push_back(rope);
+}
+
 }  // namespace pinchlab::testing
