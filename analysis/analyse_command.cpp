@@ -97,6 +97,8 @@ constexpr const char* footer =
     "participant, demonstration, choice and, if known, group, side, position, reaction_time_s, "
     "kind,\n"
     "or as a CSV table of counts with the columns demonstration, pinch, cable.\n"
+    "preference (-3, left by far, to 3; 0 with the choice `tie`), as `study export --csv` writes "
+    "it,\n"
     "With a column `level` (graded stimuli) and `correct` (0 or 1; a count beside `trials`) or "
     "`choice`\n"
     "psychometric functions are fitted: thresholds and slopes with intervals.\n"
