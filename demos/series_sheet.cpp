@@ -48,13 +48,16 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       throw std::invalid_argument(fmt::format("a sheet of {} pictures is too large; at most {}",
                                               frames.size() * columns, most_pictures));
     }
+    if (options.out.extension() == ".png") {
+      check_sheet_size(frames.size() * columns, options, "take fewer times or a smaller --size");
+    }
     if (!std::ranges::is_sorted(frames)) {
       throw std::invalid_argument("--time must go forward on the sheet of a series");
     }
     sheet.resize(frames.size() * columns);
     const Scenery scenery = for_file(stimulus.source.path, [&] {
       return set_scenery(scene, stimulus.source.look, options.theme.theme,
-                         time_limit(stimulus.source, options.time_limit));
+                         rehearsal_limit(stimulus.source, options.time_limit));
     });
     Player player(stimulus.source, scene, stimulus.plan.methods[0]);
     player.give_up_after(options.time_limit);

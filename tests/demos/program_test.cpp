@@ -86,6 +86,12 @@ TEST(Program, BadUsageIsTwoAndSaysSoOnStandardError) {
       {"simulate", "--out", "-"},
       {"simulate", "01-small.json", "--out", "a.csv", "--method", "plain"},
       {"simulate", "01-small.json", "--out", "a.csv", "--segments", "a.csv"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--segments", "./a.csv"},
+      {"simulate", "01-small.json", "--out", "-", "--segments", "-"},
+      {"simulate", "01-small.json", "--out", "../" + folder.filename().string() + "/01-small.json"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--segments", "01-small.json"},
+      {"study", "plan", "--participants", "1", "--seed", "1", "--csv", "p", "--json", "./p"},
+      {"study", "plan", "--participants", "1", "--seed", "1", "--csv", "-", "--json", "-"},
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "-1"},
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "nan"},
       {"simulate", "01-small.json", "--out", "a.csv", "--until", "inf"},
@@ -185,6 +191,79 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
   EXPECT_FALSE(fs::exists(folder / "x.csv.partial"));
 }
 
+// Whoever gives an option expects something of it.
+TEST(Program, AnalyseRefusesOptionsThatItDoesNotRead) {
+  const fs::path folder = scratch_folder();
+  std::ofstream(folder / "counts.csv") << "demonstration,pinch,cable\na,7,3\n";
+  std::ofstream(folder / "answers.csv")
+      << "participant,demonstration,choice\np,a,pinch\nq,a,cable\n";
+  std::ofstream(folder / "several.csv")
+      << "left,right,left_wins,right_wins\na,b,7,3\nb,c,6,4\na,c,8,2\n";
+  std::ofstream(folder / "levels.csv") << "level,correct,trials\n0.1,5,10\n0.2,8,10\n0.3,10,10\n";
+  using Words = std::vector<std::string>;
+  const auto analyse = [&](const std::string& input, const Words& option) {
+    Words command = {"analyse", input, "--out", "report", "--no-figures"};
+    command.insert(command.end(), option.begin(), option.end());
+    return run_program(folder, command);
+  };
+  const Words of_levels[] = {
+      {"--function", "weibull"}, {"--guess", "0.3"}, {"--lapse", "0"}, {"--threshold-at", "0.5"}};
+  const Words scale = {"--scale", "thurstone"}, groups = {"--groups", "nofile"},
+              repetitions = {"--repetitions", "7"}, missing = {"--allow-missing"},
+              pinch = {"--pinch-value", "zz"};
+  const auto refuses = [&](const std::string& input, const Words& option) {
+    const RunResult run = analyse(input, option);
+    EXPECT_EQ(run.exit_code, 2) << input << option[0];
+    EXPECT_TRUE(run.err.starts_with(option[0] + ": is about ")) << input << run.err;
+    EXPECT_FALSE(fs::exists(folder / "report")) << input << option[0];
+  };
+  for (const char* input : {"counts.csv", "answers.csv", "several.csv"}) {
+    for (const Words& option : of_levels) refuses(input, option);
+  }
+  for (const char* input : {"counts.csv", "answers.csv", "levels.csv"}) refuses(input, scale);
+  for (const char* input : {"several.csv", "levels.csv"}) refuses(input, groups);
+  for (const char* input : {"several.csv", "levels.csv", "counts.csv"}) {
+    refuses(input, repetitions);
+    refuses(input, missing);
+  }
+  refuses("several.csv", pinch);
+  EXPECT_EQ(analyse("counts.csv", pinch).exit_code, 0);
+  EXPECT_EQ(analyse("several.csv", scale).exit_code, 0);
+  EXPECT_EQ(analyse("answers.csv", missing).exit_code, 0);
+  EXPECT_EQ(analyse("answers.csv", {"--repetitions", "1"}).exit_code, 0);
+  EXPECT_EQ(analyse("levels.csv", {"--bootstrap", "99"}).exit_code, 0);
+}
+
+// Results that went to standard output are lost: that is a failure, whatever the command.
+TEST(Program, FullStandardOutputIsAFailure) {
+  const fs::path folder = folder_with_scene();
+  fs::create_directory(folder / "demos");
+  fs::copy_file(folder / "01-small.json", folder / "demos/01-small.json");
+  std::ofstream(folder / "counts.csv") << "demonstration,pinch,cable\na,7,3\n";
+  fs::create_symlink("/dev/full", folder / "stdout.txt");
+  const std::vector<std::vector<std::string>> commands = {
+      {"--help"},
+      {"--version"},
+      {"render", "--help"},
+      {"simulate", "01-small.json", "--out", "-"},
+      {"baseline", "01-small.json"},
+      {"render", "01-small.json", "--size", "64x64", "--only-report"},
+      {"study", "plan", "--participants", "1", "--seed", "1"},
+      {"analyse", "counts.csv", "--out", "report", "--no-figures"},
+      {"power", "--share", "0.75"},
+  };
+  for (const std::vector<std::string>& command : commands) {
+    const pid_t process = start_program(folder, command);
+    int status = 0;
+    EXPECT_EQ(::waitpid(process, &status, 0), process);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 1) << command[0];
+    const std::string told = text_of(folder / "stderr.txt");
+    EXPECT_NE(told.find("standard output: cannot be written"), std::string::npos)
+        << command[0] << ": " << told;
+  }
+}
+
 TEST(Simulate, WritesOneRowABodyAndFrame) {
   const fs::path folder = folder_with_scene();
   const RunResult run =
@@ -278,7 +357,8 @@ TEST(Program, TheTimeLimitBoundsTheRehearsalOfAFittedView) {
     limited.insert(limited.end(), {"--time-limit", "0.000001"});
     const RunResult run = run_program(folder, limited);
     EXPECT_EQ(run.exit_code, 1) << command[0];
-    EXPECT_NE(run.err.find("method pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s"),
+    EXPECT_NE(run.err.find("01-small.json: while placing labels and fitting the view: method "
+                           "pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s"),
               std::string::npos)
         << run.err;
     EXPECT_EQ(run_program(folder, command).exit_code, 0) << command[0];
@@ -357,6 +437,19 @@ TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
 }
 
 TEST(Player, FailureSaysHowToSeeItAgain) {
+// However many sweeps it has, and whatever else is asked of it, thesis is what to type.
+TEST(Player, NamesTheThesisByItsWays) {
+  Configuration thesis = thesis_configuration();
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  thesis.iterations = 40;
+  thesis.sleep = true;
+  thesis.diagnostics = true;
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  EXPECT_STREQ(in_words(thesis), "the thesis' pinch joints");
+  thesis.solver = Solver::direct;
+  EXPECT_STREQ(to_string(thesis), "pinch");
+}
+
   Scene scene;
   World world;
   world.configuration.method = Method::cable;
@@ -365,8 +458,16 @@ TEST(Player, FailureSaysHowToSeeItAgain) {
       failure_report("demos/03-drop.json", scene, world, 461),
       "demos/03-drop.json: method cable: step 1841, cable 3, segment 12: velocity not finite; to "
       "see it again: "
-      "pinchlab simulate demos/03-drop.json --method cable --fps 60 --steps-per-frame 4 --until "
-      "7.683333333333334 --out -");
+      "pinchlab simulate demos/03-drop.json --method cable --fps 60 --steps-per-frame 4 --error 0 "
+      "--until 7.683333333333334 --out -");
+  scene.error = 1e-3;
+  world.configuration = thesis_configuration();
+  world.configuration.iterations = 40;
+  const std::string report = failure_report("s.json", scene, world, 6);
+  EXPECT_NE(report.find("pinchlab simulate s.json --method thesis --fps 60 --steps-per-frame 4 "
+                        "--error 0.001 --until 0.1 --out - (but with 40 sweeps"),
+            std::string::npos)
+      << report;
 }
 
 // Width and height from a PNG's header.
