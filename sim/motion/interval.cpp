@@ -240,15 +240,18 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     try_again(scene, world, work, movers, {length, most_rounds}, watch);
   };
   const double allowed = share_of_error * world.configuration.error;
-  while (errs(world, trial) && length > shortest * world.step_length) {
-    length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
-    again(shake_rounds);
-  }
   const auto misses = [&trial] {
     return !trial.met && (trial.settled || trial.missed > most_missed);
   };
-  const double whole = length;
-  for (int halvings = 0; misses() && halvings < most_halvings; ++halvings) {
+  double whole = length;  // before the first halving
+  for (int halvings = 0;;) {
+    if (errs(world, trial) && length > shortest * world.step_length) {
+      length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
+      again(shake_rounds);
+      if (halvings == 0) whole = length;
+      continue;
+    }
+    if (!misses() || halvings++ == most_halvings) break;
     const double missed = trial.missed;
     length *= 0.5;
     again(shake_rounds);
