@@ -286,6 +286,23 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
 
 }  // namespace
 
+Mobility mobility_of(const BodyProperties& body, double kick) {
+  Mobility m;
+  // Drag takes its share of what an impulse adds.
+  const double linear = 1.0 / (body.mass * (1.0 + Drag(kick * body.linear_drag).after));
+  if (body.kind == BodyKind::free) m.xx = m.yy = linear;
+  if (body.kind == BodyKind::rail) {
+    const Vec2 n = body.rail_axis.normalized();
+    m.xx = linear * n.x() * n.x();
+    m.xy = linear * n.x() * n.y();
+    m.yy = linear * n.y() * n.y();
+  }
+  if (body.kind != BodyKind::fixed && !body.driven_angular_velocity) {
+    m.angular = 1.0 / (inertia_of(body) * (1.0 + Drag(kick * body.angular_drag).after));
+  }
+  return m;
+}
+
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, const Parts& parts,
                   const Part& part, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);

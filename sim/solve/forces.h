@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "sim/solve/part_system.h"
+
 namespace pinchlab {
 
 struct Part;
 struct Parts;
-struct PartSystem;
-struct Scene;
 struct Start;
-struct TimeSpan;
 struct Workspace;
 struct World;
+
+/// Of a body by itself, for a velocity kick of `kick` seconds.
+Mobility mobility_of(const BodyProperties& body, double kick);
 
 /// Velocities of all bodies that are awake after forces alone have acted for the interval's kick, and
 /// what moves the bodies, into their parts' systems.

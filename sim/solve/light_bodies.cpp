@@ -8,8 +8,8 @@
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
+#include "sim/solve/forces.h"
 #include "sim/solve/part_system.h"
-#include "sim/solve/rows.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {

@@ -162,5 +162,33 @@ TEST(Rooms, NoIncludesGoRoundInACircle) {
   EXPECT_EQ(circles, "");
 }
 
+// clang-format wraps code only: what it would do to comments breaks formulas.
+TEST(Comments, FitIntoOneHundredColumns) {
+  const fs::path root = PINCHLAB_SOURCE_DIR;
+  const std::regex comment(R"re(^\s*//.*)re");
+  std::string longer;
+  int comments = 0;
+  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study", "tests"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path& path = entry.path();
+      if (path.extension() != ".cpp" && path.extension() != ".h") continue;
+      if (path.string().find("node_modules") != std::string::npos) continue;
+      std::istringstream text(read_whole(path));
+      int number = 0;
+      for (std::string line; std::getline(text, line); ++number) {
+        if (!std::regex_match(line, comment)) continue;
+        ++comments;
+        const auto columns =
+            std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });  // UTF-8
+        if (columns > 100) {
+          longer += "\n" + fs::relative(path, root).string() + ":" + std::to_string(number + 1);
+        }
+      }
+    }
+  }
+  EXPECT_GT(comments, 5000);
+  EXPECT_EQ(longer, "");
+}
+
 }  // namespace
 }  // namespace pinchlab
