@@ -161,6 +161,7 @@ ordered_json plan_entry(const ClipPlan& plan) {
       {"panel_height_px", plan.video.height},
       {"frames_per_second", scene.frames_per_second},
       {"steps_per_frame", scene.steps_per_frame},
+      {"error_m", scene.error},
   };
   if (plan.upside_down) {
     entry["upside_down_panel"] = *plan.upside_down;

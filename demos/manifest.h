@@ -22,11 +22,12 @@ Manifest read_manifest(const std::filesystem::path& folder);
 /// Writes manifest.json, whole or not at all.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
-/// Adds an entry or replaces the one of the same file.
+/// Adds an entry or replaces the one of the same file. Where the new file is not made to the size of
+/// one that was made to the size of its forerunner, that one's entry no longer says so.
 void put(Manifest& manifest, nlohmann::ordered_json entry);
 
 /// Whether the folder holds the file that `plan` (clip.h, plan_entry) would make: its entry says
-/// all that the plan says, and the file's SHA-256 is the entry's.
+/// what the plan says and no more but results, and the file's SHA-256 is the entry's.
 bool is_up_to_date(const Manifest& manifest, const std::filesystem::path& folder,
                    const nlohmann::ordered_json& plan);
 

@@ -110,6 +110,7 @@ TEST(Batch, ManifestSaysWhatEachFileIs) {
                      {"panel_height_px", 64},
                      {"frames_per_second", 30},
                      {"steps_per_frame", 4},
+                     {"error_m", 0.0},
                      {"frame_count", 60},
                      {"duration_s", 2.0},
                      {"codec", "h264"},
@@ -303,6 +304,51 @@ TEST(Batch, MakesOnlyWhatIsMissingOrOutOfDate) {
   }
   std::ofstream(folder / "clips/manifest.json") << manifest;
   EXPECT_EQ(made_again(), "clips: 6 made, 0");
+}
+
+// Each option gives another file, and so does the next run without it.
+TEST(Batch, WhatAnOptionChangedIsMadeAnew) {
+  const fs::path folder = folder_with_demos();
+  std::ofstream(folder / "theme.json") << R"({"background": "#ff0000"})";
+  const std::vector<std::string> short_scene = {"demos/02-short.json", "--method", "cable"};
+  const auto made = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = short_scene;
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult run = run_program(folder, render_with(all));
+    return run.err.substr(0, run.err.find(" up to date"));
+  };
+  const std::string one = "clips: 1 made, 0", none = "clips: 0 made, 1";
+  EXPECT_EQ(made({}), one);
+  const std::vector<std::vector<std::string>> options = {
+      {"--burn-time"},           {"--theme", "theme.json"}, {"--fps", "60"},
+      {"--slow", "0.1-0.2:0.5"}, {"--error", "1e-3"},       {"--freeze", "0.1:0.5"}};
+  for (const std::vector<std::string>& option : options) {
+    EXPECT_EQ(made(option), one) << option[0];
+    EXPECT_EQ(made(option), none) << option[0];
+    EXPECT_EQ(made({}), one) << option[0];
+    EXPECT_EQ(made({}), none) << option[0];
+  }
+}
+
+// A clip of a pair that is made by itself has another size: neither entry says that they are equal.
+TEST(Batch, SizesThatAreNoLongerEqualAreNotSaidToBe) {
+  const fs::path folder = folder_with_demos();
+  const auto render_short = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"demos/02-short.json"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_program(folder, render_with(all)).err;
+  };
+  const auto of_equal_size = [&] {
+    const json manifest = json::parse(text_of(folder / "clips/manifest.json"));
+    return std::ranges::count_if(
+        manifest["clips"], [](const json& clip) { return clip.contains("equal_sizes_with"); });
+  };
+  render_short({});
+  EXPECT_EQ(of_equal_size(), 2);
+  EXPECT_TRUE(render_short({"--method", "pinch"}).starts_with("clips: 1 made"));
+  EXPECT_EQ(of_equal_size(), 0);
+  EXPECT_TRUE(render_short({}).starts_with("clips: 2 made, 1 up to date"));
+  EXPECT_EQ(of_equal_size(), 2);
 }
 
 TEST(Batch, KeepsTheEntriesOfOtherRuns) {
