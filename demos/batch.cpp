@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -382,7 +381,7 @@ int render_batch(const BatchOptions& options) {
       make_all(to_make, options, options.jobs > 0 ? options.jobs : cores, manifest);
   if (outcome.signal != 0) {
     remove_partial_files(options.out);
-    ::raise(outcome.signal);  // as if it had not been caught
+    end_by(outcome.signal);
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();  // s

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
@@ -318,7 +317,7 @@ int run_sweep(const SweepOptions& options) {
   const Outcome outcome = make_all(sweep, to_make, options.render);
   if (outcome.signal != 0) {
     RowFolder::remove_left_over(out);
-    ::raise(outcome.signal);  // as if it had not been caught
+    end_by(outcome.signal);
   }
   tell_broken_promises(stimuli, out);
   fmt::print(stderr, "{}: {} made, {} there already, {} failed\n", out.string(), outcome.made,

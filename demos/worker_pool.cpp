@@ -30,7 +30,8 @@ extern "C" void catch_signal(int number) {
   caught_signal = number;
 }
 
-// While it lives, the signals that ask to stop are only noted.
+// While it lives, the signals that ask to stop are only noted. Those that the program was started
+// to ignore (by nohup, or in the background of a shell without job control) stay ignored.
 class CaughtSignals {
  public:
   CaughtSignals() {
@@ -39,7 +40,8 @@ class CaughtSignals {
     action.sa_handler = catch_signal;
     sigemptyset(&action.sa_mask);
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      sigaction(numbers[i], &action, &before_[i]);
+      sigaction(numbers[i], nullptr, &before_[i]);
+      if (before_[i].sa_handler != SIG_IGN) sigaction(numbers[i], &action, nullptr);
     }
   }
   ~CaughtSignals() { restore(); }
@@ -156,6 +158,11 @@ void end_workers(const std::vector<Worker>& workers) {
 }
 
 }  // namespace
+
+void end_by(int signal) {
+  ::raise(signal);
+  throw std::runtime_error(fmt::format("stopped by signal {} ({})", signal, ::strsignal(signal)));
+}
 
 int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvents& events) {
   const CaughtSignals signals;

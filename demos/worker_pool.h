@@ -24,7 +24,12 @@ struct WorkerPoolEvents {
 /// no OpenGL context before.
 ///
 /// Returns 0, or the number of the signal (SIGINT, SIGTERM, SIGHUP) that stopped it: then the
-/// workers have been ended and the signals' former handlers are back in place.
+/// workers have been ended and the signals' former handlers are back in place. A signal that the
+/// program ignores does not stop it.
 int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvents& events);
+
+/// Ends the program by the signal, as if it had not been caught. Throws std::runtime_error where that
+/// does not end it.
+[[noreturn]] void end_by(int signal);
 
 }  // namespace pinchlab

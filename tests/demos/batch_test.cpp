@@ -441,6 +441,20 @@ TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
   }
 }
 
+// As nohup starts it: who logs out does not end it.
+TEST(Batch, IgnoredSignalsDoNotStopIt) {
+  const fs::path folder = folder_with_demos();
+  write_scene(folder / "demos/01-long.json", 20.0);
+  ::signal(SIGHUP, SIG_IGN);
+  const pid_t process = start_program(folder, render);
+  ::signal(SIGHUP, SIG_DFL);
+  ASSERT_TRUE(wait_for_file(process, folder / "clips", ".partial"));
+  ::kill(process, SIGHUP);
+  const RunResult run = wait_for_program(folder, process);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(run.err.starts_with("clips: 6 made, 0 up to date already, 0 failed")) << run.err;
+}
+
 TEST(Batch, OneRunAtATimeInAFolder) {
   const fs::path folder = folder_with_long_demo();
   const pid_t first = start_program(folder, render);
