@@ -11,6 +11,16 @@
 
 namespace pinchlab {
 
+bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+  if (one.empty() || other.empty()) return false;
+  if (one == "-" || other == "-") return one == other;
+  std::error_code none;
+  const auto whole = [&none](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
+  };
+  return whole(one) == whole(other);
+}
+
 OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
   if (path == "-") {
     path_ = "standard output";

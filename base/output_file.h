@@ -10,6 +10,9 @@
 
 namespace pinchlab {
 
+/// Whether both are names of one file, however they are written; "-" is standard output.
+bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other);
+
 /// A file that appears under its name only when complete. "-" is standard output, and what exists
 /// and is no ordinary file (/dev/null, a pipe) is written directly. Every function throws
 /// std::runtime_error, with the name and the reason, where the file cannot be written.

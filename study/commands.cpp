@@ -17,6 +17,8 @@
 #include "base/answer_file.h"
 #include "base/design_file.h"
 #include "base/durable_file.h"
+#include "base/output_file.h"
+#include "base/progress.h"
 #include "study/answers.h"
 #include "study/command_options.h"
 #include "study/config.h"
@@ -208,6 +210,16 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
       "  pinchlab study plan --participants 16 --seed 7\n"
       "  pinchlab study plan --participants 16 --seed 7 --csv plan.csv --json plan.json");
   command->callback([options, stimuli] {
+    const fs::path csv = options->csv.empty() && options->json.empty() ? "-" : options->csv;
+    if (is_same_file(csv, options->json)) {
+      throw std::invalid_argument("--csv and --json must be different files");
+    }
+    for (const fs::path& out : {csv, options->json}) {
+      if (!out.empty() && is_same_file(out, options->config)) {
+        throw std::invalid_argument(
+            fmt::format("{}: is the configuration; give the plan another name", out.string()));
+      }
+    }
     Config config = read_or_default(options->config);
     if (config.demonstrations.empty()) {
       config.demonstrations = stimuli.demonstrations();
@@ -222,9 +234,8 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
       write_text(options->json,
                  plan_json(options->seed, options->participants, plan).dump(2) + "\n");
     }
-    if (!options->csv.empty() || options->json.empty()) {
-      write_text(options->csv.empty() ? "-" : options->csv,
-                 plan_csv(options->seed, options->participants, plan));
+    if (!csv.empty()) {
+      write_text(csv, plan_csv(options->seed, options->participants, plan));
     }
   });
 }

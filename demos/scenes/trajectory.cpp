@@ -15,6 +15,8 @@
 namespace pinchlab {
 namespace {
 
+namespace fs = std::filesystem;
+
 void add_bodies(const Player& player, std::string& rows) {
   const Scene& scene = player.scene();
   const World& world = player.world();
@@ -67,8 +69,14 @@ int last_frame(const Scene& scene, std::optional<double> until) {
 }  // namespace
 
 void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
-  if (options.segments && *options.segments == options.out) {
+  if (options.segments && is_same_file(*options.segments, options.out)) {
     throw std::invalid_argument("--out and --segments must be different files");
+  }
+  for (const fs::path& out : {options.out, options.segments.value_or(fs::path())}) {
+    if (is_same_file(out, file.path)) {
+      throw std::invalid_argument(
+          fmt::format("{}: is the scene; give the motion another name", out.string()));
+    }
   }
   const Scene scene = with_timing(file.scene, options.timing);
   const int last = last_frame(scene, options.until);

@@ -125,6 +125,19 @@ TEST(StagingFolder, FilesAppearTogetherOrNotAtAll) {
   EXPECT_THROW(StagingFolder{out / "a"}, std::runtime_error) << "a file is no folder";
 }
 
+TEST(OutputFile, KnowsOneFileByItsNames) {
+  const TemporaryFolder folder;
+  const fs::path a = folder.path() / "a";
+  EXPECT_TRUE(is_same_file(a, folder.path() / "." / "x" / ".." / "a"));
+  EXPECT_TRUE(is_same_file("x.csv", "./x.csv"));
+  EXPECT_TRUE(is_same_file("-", "-"));
+  EXPECT_FALSE(is_same_file("-", "./-"));
+  EXPECT_FALSE(is_same_file("", ""));
+  EXPECT_FALSE(is_same_file(a, folder.path() / "b"));
+  fs::create_symlink(folder.path(), folder.path() / "here");
+  EXPECT_TRUE(is_same_file(a, folder.path() / "here" / "a"));
+}
+
 TEST(DurableFile, FailureLeavesNothing) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_durably(folder.path() / "missing/a.json", "x"), std::runtime_error);
