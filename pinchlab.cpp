@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -392,17 +395,37 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
-}  // namespace pinchlab
-
-int main(int argc, char** argv) {
+int run_and_tell(int argc, char** argv) {
   try {
-    return pinchlab::run(argc, argv);
+    return run(argc, argv);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr,
+                 "memory is short for this; ask for less at a time (fewer or smaller pictures, "
+                 "fewer --jobs), or allow the program more memory\n");
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   }
+}
+
+// What is left of results on standard output goes out; exit code 1 where that fails, or failed before.
+int with_results_written(int exit_code) {
+  errno = 0;
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || exit_code != 0) return exit_code;
+  std::fprintf(stderr, "standard output: cannot be written%s%s\n", errno != 0 ? ": " : "",
+               errno != 0 ? std::strerror(errno) : "");
+  return 1;
+}
+
+}  // namespace
+}  // namespace pinchlab
+
+int main(int argc, char** argv) {
+  using namespace pinchlab;
+  return with_results_written(run_and_tell(argc, argv));
 }

@@ -191,6 +191,36 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
   EXPECT_FALSE(fs::exists(folder / "x.csv.partial"));
 }
 
+// Results that went to standard output are lost: that is a failure, whatever the command.
+TEST(Program, FullStandardOutputIsAFailure) {
+  const fs::path folder = folder_with_scene();
+  fs::create_directory(folder / "demos");
+  fs::copy_file(folder / "01-small.json", folder / "demos/01-small.json");
+  std::ofstream(folder / "counts.csv") << "demonstration,pinch,cable\na,7,3\n";
+  fs::create_symlink("/dev/full", folder / "stdout.txt");
+  const std::vector<std::vector<std::string>> commands = {
+      {"--help"},
+      {"--version"},
+      {"render", "--help"},
+      {"simulate", "01-small.json", "--out", "-"},
+      {"baseline", "01-small.json"},
+      {"render", "01-small.json", "--size", "64x64", "--only-report"},
+      {"study", "plan", "--participants", "1", "--seed", "1"},
+      {"analyse", "counts.csv", "--out", "report", "--no-figures"},
+      {"power", "--share", "0.75"},
+  };
+  for (const std::vector<std::string>& command : commands) {
+    const pid_t process = start_program(folder, command);
+    int status = 0;
+    EXPECT_EQ(::waitpid(process, &status, 0), process);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 1) << command[0];
+    const std::string told = text_of(folder / "stderr.txt");
+    EXPECT_NE(told.find("standard output: cannot be written"), std::string::npos)
+        << command[0] << ": " << told;
+  }
+}
+
 TEST(Simulate, WritesOneRowABodyAndFrame) {
   const fs::path folder = folder_with_scene();
   const RunResult run =
