@@ -2,7 +2,6 @@
 #include "base/partial_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
@@ -66,20 +65,15 @@ std::runtime_error PartialFile::error(std::string_view what) const {
       fmt::format("{}: {}: {}", path_, what, std::generic_category().message(errno)));
 }
 
-StagingFolder::StagingFolder(const fs::path& folder)
-    : folder_(folder), staging_(folder / fmt::format(".unfinished-{}", ::getpid())) {
+StagingFolder::StagingFolder(const fs::path& folder) : folder_(folder) {
   make_folders(folder);
-  make_folders(staging_);
-}
-
-StagingFolder::~StagingFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
+  UnfinishedFolder::remove_left_over(folder);
+  staging_.emplace(folder);
 }
 
 void StagingFolder::write(const std::string& name,
                           const std::function<void(std::ostream&)>& write_to) {
-  std::ofstream file(staging_ / name, std::ios::binary);
+  std::ofstream file(path() / name, std::ios::binary);
   write_to(file);
   file.close();
   if (!file) {
@@ -95,7 +89,7 @@ void StagingFolder::write(const std::string& name, std::string_view text) {
 
 std::vector<std::string> StagingFolder::keep() {
   for (const std::string& name : names_) {
-    fs::rename(staging_ / name, folder_ / name);
+    staging_->keep(name);
   }
   return std::exchange(names_, {});
 }

@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/unfinished_folder.h"
 
 namespace pinchlab {
 
@@ -43,17 +46,18 @@ class PartialFile {
   bool kept_ = false;
 };
 
-/// A folder inside `folder` (so that renaming cannot cross file systems) that takes files that
-/// belong together, and vanishes with what is not finished.
+/// Takes files that belong together, in an UnfinishedFolder inside `folder`, until all are whole.
 class StagingFolder {
  public:
-  /// Makes `folder` too if it is missing. Throws std::runtime_error.
+  /// Makes `folder` too if it is missing, and clears it of what interrupted writers left. Throws
+  /// std::runtime_error.
   explicit StagingFolder(const std::filesystem::path& folder);
-  ~StagingFolder();
-  StagingFolder(const StagingFolder&) = delete;
-  StagingFolder& operator=(const StagingFolder&) = delete;
 
-  const std::filesystem::path& path() const { return staging_; }
+  const std::filesystem::path& path() const { return staging_->path(); }
+  /// Where the files will be.
+  const std::filesystem::path& folder() const { return folder_; }
+  /// What it has taken so far.
+  const std::vector<std::string>& names() const { return names_; }
 
   /// Writes a file. Throws std::runtime_error.
   void write(const std::string& name, const std::function<void(std::ostream&)>& write_to);
@@ -65,7 +69,8 @@ class StagingFolder {
   std::vector<std::string> keep();
 
  private:
-  std::filesystem::path folder_, staging_;
+  std::filesystem::path folder_;
+  std::optional<UnfinishedFolder> staging_;
   std::vector<std::string> names_;
 };
 

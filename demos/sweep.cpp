@@ -4,18 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <stdexcept>
 #include <thread>
 
 #include "base/csv.h"
-#include "base/folder_lock.h"
 #include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/progress.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
+#include "base/unfinished_folder.h"
 #include "demos/clip.h"
 #include "demos/manifest.h"
 #include "demos/pair_report.h"
@@ -29,51 +28,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr const char* format_name = "pinchlab stimulus 1";
-
-/// A folder of one process's own in the sweep's, in which a row's files are made. Its lock goes
-/// with the process, so that others know what is left over.
-class RowFolder {
- public:
-  explicit RowFolder(const fs::path& folder)
-      : path_(make(folder)), lock_(path_, path_.string() + ": is in use") {}
-  ~RowFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  RowFolder(const RowFolder&) = delete;
-  RowFolder& operator=(const RowFolder&) = delete;
-
-  const fs::path& path() const { return path_; }
-  void keep(const std::string& file) const { fs::rename(path_ / file, path_.parent_path() / file); }
-
-  /// Removes those of processes that have ended.
-  static void remove_left_over(const fs::path& folder) {
-    std::vector<fs::path> found;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      if (entry.path().filename().string().starts_with(prefix)) found.push_back(entry.path());
-    }
-    for (const fs::path& path : found) {
-      try {
-        const FolderLock lock(path, "");
-        fs::remove_all(path);
-      } catch (const std::runtime_error&) {  // somebody is at work in it, or it has just gone
-      }
-    }
-  }
-
- private:
-  static constexpr const char* prefix = ".unfinished-";
-  static fs::path make(const fs::path& folder) {
-    std::string name = (folder / prefix).string() + "XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error(folder.string() + ": cannot be written into");
-    }
-    return name;
-  }
-
-  fs::path path_;
-  FolderLock lock_;
-};
 
 ordered_json file_entry(const fs::path& folder, const std::string& name) {
   return {{"file", name}, {"sha256", sha256_of_file(folder / name)}};
@@ -99,7 +53,7 @@ ordered_json clip_entry(const Stimulus& stimulus, const ordered_json& made) {
 /// Makes all files of a stimulus and puts them into the folder, the one that vouches for the others
 /// last.
 void make_stimulus(const Stimulus& stimulus, const BatchOptions& render) {
-  const RowFolder row(render.out);
+  const UnfinishedFolder row(render.out);
   const auto no_tick = [] {};
   std::vector<std::string> files = {stimulus.plan.file, stimulus.name + ".csv"};
   ordered_json record = {{"format", format_name},
@@ -242,7 +196,7 @@ void merge(const Sweep& sweep, const Stimuli& stimuli, const SweepOptions& optio
                              ": there is no such folder; make the stimuli first, by the same "
                              "command without --merge");
   }
-  RowFolder::remove_left_over(out);
+  UnfinishedFolder::remove_left_over(out);
   std::map<std::string, ordered_json> records;
   std::vector<const Stimulus*> missing;
   for (const Stimulus& stimulus : stimuli.list) {
@@ -316,7 +270,7 @@ int run_sweep(const SweepOptions& options) {
   }
   const Outcome outcome = make_all(sweep, to_make, options.render);
   if (outcome.signal != 0) {
-    RowFolder::remove_left_over(out);
+    UnfinishedFolder::remove_left_over(out);
     end_by(outcome.signal);
   }
   tell_broken_promises(stimuli, out);

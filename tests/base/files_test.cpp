@@ -125,6 +125,25 @@ TEST(StagingFolder, FilesAppearTogetherOrNotAtAll) {
   EXPECT_THROW(StagingFolder{out / "a"}, std::runtime_error) << "a file is no folder";
 }
 
+// What an interrupted writer left goes; what another one is at work in stays.
+TEST(StagingFolder, ClearsAwayWhatIsLeftOver) {
+  const TemporaryFolder folder;
+  folder.write(".unfinished-12345/report.html", "half");
+  folder.write("a", "1");
+  StagingFolder other(folder.path());
+  other.write("b", "2");
+  EXPECT_FALSE(fs::exists(folder.path() / ".unfinished-12345"));
+  {
+    StagingFolder staging(folder.path());
+    EXPECT_TRUE(fs::exists(other.path() / "b"));
+    staging.write("c", "3");
+    staging.keep();
+  }
+  other.keep();
+  EXPECT_EQ(read_whole(folder.path() / "b"), "2");
+  EXPECT_EQ(read_whole(folder.path() / "a"), "1");
+}
+
 TEST(OutputFile, KnowsOneFileByItsNames) {
   const TemporaryFolder folder;
   const fs::path a = folder.path() / "a";
