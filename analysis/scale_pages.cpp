@@ -351,9 +351,8 @@ std::vector<std::string> write_scale_report(const ScaleReport& report,
   if (with_figures && report.fit().why_not.empty()) figures.push_back(scale_figure(report, table));
   if (with_figures) std::ranges::move(besides_figures(report.besides), std::back_inserter(figures));
   write_pages(Writer(report, table).write(), std::move(figures), staging);
-  staging.write("report.json", scale_json(report, table));
   for (const CsvTable& csv : scale_csv(report, table)) staging.write(csv.name, csv.content);
-  return staging.keep();
+  return keep_report(scale_json(report, table), staging, table.sources);
 }
 
 }  // namespace pinchlab::analysis

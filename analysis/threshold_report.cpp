@@ -423,11 +423,10 @@ std::vector<std::string> write_threshold_report(const ThresholdReport& report,
     std::ranges::move(besides_figures(report.besides), std::back_inserter(figures));
   }
   write_pages(threshold_document(report, table), std::move(figures), staging);
-  staging.write("report.json", threshold_json(report, table));
   staging.write("thresholds.csv", thresholds_csv(report, table));
   staging.write("participants.csv", participants_csv(report, table));
   for (const CsvTable& csv : besides_csv(report.besides)) staging.write(csv.name, csv.content);
-  return staging.keep();
+  return keep_report(threshold_json(report, table), staging, table.sources);
 }
 
 }  // namespace pinchlab::analysis

@@ -1,13 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "analysis/report.h"
+#include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/read_file.h"
 
 namespace pinchlab::analysis {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+namespace {
+
+// What the report in a folder lists as its own; nothing if there is none, or one without a list.
+std::vector<std::string> listed_files(const fs::path& folder) {
+  const fs::path path = folder / "report.json";
+  if (!fs::is_regular_file(path)) return {};
+  const ordered_json report =
+      ordered_json::parse(read_whole(path), nullptr, /*allow_exceptions=*/false);
+  std::vector<std::string> names;
+  if (!report.is_object() || !report.contains("files") || !report["files"].is_array()) return names;
+  for (const ordered_json& entry : report["files"]) {
+    if (!entry.is_string()) continue;
+    const fs::path name = entry.get<std::string>();
+    if (name.has_filename() && name == name.filename()) names.push_back(name);  // no way out of it
+  }
+  return names;
+}
+
+}  // namespace
 
 void write_pages(const Document& document, std::vector<Figure> figures, StagingFolder& folder) {
   for (Figure& figure : figures) {
@@ -22,17 +47,37 @@ void write_pages(const Document& document, std::vector<Figure> figures, StagingF
   folder.write("tables.tex", latex_tables(document));
 }
 
+std::vector<std::string> keep_report(const std::string& json, StagingFolder& folder,
+                                     const std::vector<std::string>& sources) {
+  ordered_json report = ordered_json::parse(json);
+  std::vector<std::string> files = folder.names();
+  files.emplace_back("report.json");
+  std::ranges::sort(files);
+  report["files"] = files;
+  folder.write("report.json", report.dump(2) + "\n");
+  const std::vector<std::string> before = listed_files(folder.folder());
+  std::vector<std::string> written = folder.keep();
+  for (const std::string& name : before) {
+    const fs::path path = folder.folder() / name;
+    const bool is_source = std::ranges::any_of(
+        sources, [&](const std::string& source) { return is_same_file(source, path); });
+    if (!std::ranges::binary_search(files, name) && !is_source && fs::is_regular_file(path)) {
+      fs::remove(path);
+    }
+  }
+  return written;
+}
+
 std::vector<std::string> write_report(const Report& report, const AnswersTable& table,
                                       const fs::path& folder, bool with_figures) {
   StagingFolder staging(folder);
   write_pages(make_document(report, table),
               with_figures ? make_figures(report) : std::vector<Figure>{}, staging);
-  staging.write("report.json", report_json(report, table));
   for (const CsvTable& csv : report_csv(report, table)) staging.write(csv.name, csv.content);
   if (!table.answers.empty()) {
     staging.write("answers.csv", [&](std::ostream& file) { write_tidy_csv(table, file); });
   }
-  return staging.keep();
+  return keep_report(report_json(report, table), staging, table.sources);
 }
 
 }  // namespace pinchlab::analysis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "analysis/document.h"
@@ -322,6 +323,33 @@ TEST(WriteReport, WritesEveryFileAndLeavesNothingUnfinished) {
   }
   EXPECT_EQ(files, written.size());
   EXPECT_NE(test::read_text(out / "shares.svg").find("it's \"a\" @b &lt;x>"), std::string::npos);
+}
+
+// A folder holds one report: what only the earlier one had is gone, what is not its own stays.
+TEST(WriteReport, RemovesWhatOnlyTheEarlierReportHad) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  const AnswersTable answers = test::clustered_table();
+  write_report(analyse_table(answers, {}), answers, out, true);
+  folder.write("out/notes.csv", "mine");
+  const AnswersTable counts = test::table_of("demonstration,pinch,cable\na,7,3\n");
+  const auto written = write_report(analyse_table(counts, {}), counts, out, false);
+  std::set<std::string> there, expected(written.begin(), written.end());
+  for (const auto& entry : fs::directory_iterator(out)) there.insert(entry.path().filename());
+  expected.insert("notes.csv");
+  EXPECT_EQ(there, expected);
+  EXPECT_FALSE(there.contains("answers.csv"));
+}
+
+TEST(WriteReport, KeepsWhatItReads) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path() / "out";
+  const AnswersTable answers = test::clustered_table();
+  write_report(analyse_table(answers, {}), answers, out, false);
+  AnswersTable counts = test::table_of("demonstration,pinch,cable\na,7,3\n");
+  counts.sources = {(out / "../out/answers.csv").string()};
+  write_report(analyse_table(counts, {}), counts, out, false);
+  EXPECT_TRUE(fs::exists(out / "answers.csv"));
 }
 
 TEST(WriteReport, RefusesAFileAsItsFolder) {
