@@ -96,6 +96,8 @@ constexpr const char* footer =
     "Answers come as files or folders of the study page (.json), as tidy CSV with the columns\n"
     "participant, demonstration, choice and, if known, group, side, position, reaction_time_s, "
     "kind,\n"
+    "preference (-3, left by far, to 3; 0 with the choice `tie`), as `study export --csv` writes "
+    "it,\n"
     "or as a CSV table of counts with the columns demonstration, pinch, cable.\n"
     "With a column `level` (graded stimuli) and `correct` (0 or 1; a count beside `trials`) or "
     "`choice`\n"

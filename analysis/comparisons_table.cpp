@@ -25,7 +25,7 @@ enum Column { left, right, choice, left_wins, right_wins, ties, participant, dem
 const std::vector<std::string> column_names{"left",        "right",         "choice",
                                             "left_wins",   "right_wins",    "ties",
                                             "participant", "demonstration", "kind"};
-const std::vector<std::string> other_columns{"group", "position", "reaction_time_s"};
+const std::vector<std::string> other_columns{"group", "position", "reaction_time_s", "preference"};
 
 constexpr long most_answers = 1000000000;
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "analysis/groups.h"
+#include "base/answer_columns.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -41,7 +42,7 @@ CsvColumns::CsvColumns(const fs::path& path, const ReadOptions& options,
   for (std::size_t i = 0; i < width_; ++i) {
     const auto found = std::ranges::find(known, fields_[i]);
     if (found == known.end()) {
-      if (options.ignore_other_columns) continue;
+      if (options.ignore_other_columns || is_column_beside_answers(fields_[i])) continue;
       fail(
           fmt::format("unknown column `{}`{}; columns are {}. Name columns with --map-column, or "
                       "pass --ignore-other-columns",

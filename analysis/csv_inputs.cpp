@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
+#include "analysis/csv_columns.h"
+#include "base/answer_columns.h"
 #include "base/csv_reader.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
@@ -20,7 +23,7 @@ using Fields = std::vector<std::string_view>;
 // Where each of our columns stands in the file; -1: it has no such column.
 struct Header {
   int participant = -1, demonstration = -1, choice = -1, group = -1, side = -1, position = -1;
-  int reaction_time_s = -1, kind = -1, pinch = -1, cable = -1;
+  int reaction_time_s = -1, kind = -1, preference = -1, pinch = -1, cable = -1;
   size_t width = 0;
 };
 
@@ -29,24 +32,19 @@ struct ColumnName {
   int Header::*index;
 };
 
-constexpr std::array<ColumnName, 8> tidy_columns{{{"participant", &Header::participant},
+constexpr std::array<ColumnName, 9> tidy_columns{{{"participant", &Header::participant},
                                                   {"demonstration", &Header::demonstration},
                                                   {"choice", &Header::choice},
                                                   {"group", &Header::group},
                                                   {"side", &Header::side},
                                                   {"position", &Header::position},
                                                   {"reaction_time_s", &Header::reaction_time_s},
-                                                  {"kind", &Header::kind}}};
+                                                  {"kind", &Header::kind},
+                                                  {"preference", &Header::preference}}};
 constexpr std::array<ColumnName, 4> count_columns{{{"demonstration", &Header::demonstration},
                                                    {"pinch", &Header::pinch},
                                                    {"cable", &Header::cable},
                                                    {"group", &Header::group}}};
-
-// The name that a column of ours bears in the file.
-std::string name_in_file(const ReadOptions& options, const std::string& column) {
-  const auto mapped = options.columns.find(column);
-  return mapped == options.columns.end() ? column : mapped->second;
-}
 
 bool has_column(const Fields& fields, const std::string& name) {
   return std::find(fields.begin(), fields.end(), name) != fields.end();
@@ -62,7 +60,7 @@ void find_columns(const std::array<ColumnName, n>& columns, const Fields& fields
   for (size_t i = 0; i < fields.size(); ++i) {
     const auto found = std::find(names.begin(), names.end(), fields[i]);
     if (found == names.end()) {
-      if (options.ignore_other_columns) continue;
+      if (options.ignore_other_columns || is_column_beside_answers(fields[i])) continue;
       throw InputError(place,
                        fmt::format("unknown column `{}`{}; columns are {}. Name columns with "
                                    "--map-column, or pass --ignore-other-columns",
@@ -131,8 +129,13 @@ class RowReader {
     answer.participant = participant;
     answer.demonstration = name(fields, header_.demonstration, "demonstration");
     answer.group = group(fields);
-    answer.chose_pinch = chose_pinch(at(fields, header_.choice));
     if (header_.side >= 0) answer.pinch_side = side(at(fields, header_.side));
+    if (const auto grade = preference(fields, answer.pinch_side)) {
+      builder_.add_graded(
+          {std::string(answer.participant), std::string(answer.demonstration), *grade});
+      if (*grade == 0) return;
+    }
+    answer.chose_pinch = chose_pinch(at(fields, header_.choice));
     if (header_.position >= 0) answer.position = position(at(fields, header_.position));
     if (header_.reaction_time_s >= 0) {
       answer.reaction_time_s = reaction_time(at(fields, header_.reaction_time_s));
@@ -215,6 +218,29 @@ class RowReader {
     return value == "left" ? Side::left : Side::right;
   }
 
+  // How much the method under test was preferred, where that was asked. Column `preference` counts
+  // from left to right.
+  [[nodiscard]] std::optional<int> preference(const Fields& fields, Side pinch_side) const {
+    if (header_.preference < 0 || at(fields, header_.preference).empty()) return std::nullopt;
+    const std::string_view value = at(fields, header_.preference);
+    const auto number = parse_whole(value, -3, 3);
+    if (!number) {
+      fail(fmt::format("preference `{}` is not a whole number from -3 to 3", value.substr(0, 60)));
+    }
+    if (pinch_side == Side::unknown) {
+      fail("a preference needs the column `side`: it counts from the left side to the right");
+    }
+    const int grade = static_cast<int>(pinch_side == Side::left ? -*number : *number);
+    const std::string_view choice = at(fields, header_.choice);
+    const bool agrees =
+        grade == 0 ? choice == "tie" : choice != "tie" && chose_pinch(choice) == (grade > 0);
+    if (!agrees) {
+      fail(fmt::format("choice `{}` and preference {} say different things", choice.substr(0, 60),
+                       value));
+    }
+    return grade;
+  }
+
   [[nodiscard]] int position(std::string_view value) const {
     if (value.empty()) return 0;
     const auto number = parse_whole(value, 1, 65535);
@@ -251,6 +277,10 @@ class RowReader {
 };
 
 }  // namespace
+
+bool has_counts(const std::filesystem::path& path, const ReadOptions& options) {
+  return has_columns(path, options, {"pinch"}) && !has_columns(path, options, {"participant"});
+}
 
 bool is_input_column(const std::string& name) {
   const auto named = [&](const ColumnName& column) { return name == column.name; };

@@ -11,4 +11,7 @@ namespace pinchlab::analysis {
 void read_csv_input(const std::filesystem::path& path, const ReadOptions& options,
                     TableBuilder& builder);
 
+/// Is it a table of counts?
+bool has_counts(const std::filesystem::path& path, const ReadOptions& options);
+
 }  // namespace pinchlab::analysis

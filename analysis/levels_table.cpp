@@ -30,7 +30,8 @@ enum Column { level, correct, trials, choice, participant, demonstration, kind }
 const std::vector<std::string> column_names{"level",       "correct",       "trials", "choice",
                                             "participant", "demonstration", "kind"};
 // What the tidy form may hold besides, which no threshold depends on.
-const std::vector<std::string> other_columns{"group", "side", "position", "reaction_time_s"};
+const std::vector<std::string> other_columns{"group",           "side", "position",
+                                             "reaction_time_s", "left", "right"};
 
 struct NaturalLess {
   bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }

@@ -117,7 +117,7 @@ TEST(Simulate, AStudyOfFourMethodsFindsTheirScale) {
   fs::remove_all(folder / "answers");
   expect_same_answers(report_of(folder, "--participants 40 --seed 3", ""), report);
   run(folder, "study export --answers answers --csv answers.csv");
-  run(folder, "analyse answers.csv --ignore-other-columns --no-figures --out again");
+  run(folder, "analyse answers.csv --no-figures --out again");
   expect_same_answers(json::parse(read_whole(folder / "again/report.json")), report);
 }
 
@@ -172,7 +172,7 @@ TEST(Simulate, AStudyOfThresholdsFindsTheThreshold) {
   EXPECT_NEAR(series["spread"].get<double>(), 0.02, 0.02);
   run(folder, "study export --answers answers --csv answers.csv");
   expect_reproduced(folder, series);
-  run(folder, "analyse answers.csv --ignore-other-columns --no-figures --bootstrap 99 --out again");
+  run(folder, "analyse answers.csv --no-figures --bootstrap 99 --out again");
   EXPECT_EQ(json::parse(read_whole(folder / "again/report.json"))["series"][0]["threshold"],
             series["threshold"]);
 }
@@ -192,6 +192,40 @@ TEST(Simulate, AStudyOfTwoMethodsFindsTheShares) {
     EXPECT_LE(row["clopper_pearson_low"].get<double>(), truth[i]) << row["name"];
     EXPECT_GE(row["clopper_pearson_high"].get<double>(), truth[i]) << row["name"];
   }
+  run(folder, "study export --answers answers --csv answers.csv");
+  run(folder, "analyse answers.csv --no-figures --bootstrap 199 --out again");
+  const json again = json::parse(read_whole(folder / "again/report.json"));
+  for (const char* key : {"demonstrations", "pooled", "side_bias", "order_effect"})
+    EXPECT_EQ(again[key], report[key]) << key;
+}
+
+// Whatever is asked besides the choice: the table of answers reads back.
+TEST(Simulate, TheExportOfAllThatCanBeAskedIsRead) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder / "clips");
+  write_text(folder / "study.json",
+             json{{"format", "pinchlab-study 1"},
+                  {"demonstrations", demonstrations},
+                  {"training", {"01-first"}},
+                  {"preference", "graded"},
+                  {"confidence", 5},
+                  {"reason", 100},
+                  {"click_where", true},
+                  {"questionnaire_before", json::array({{{"name", "age"},
+                                                         {"kind", "number"},
+                                                         {"text", "How old are you?"},
+                                                         {"min", 18},
+                                                         {"max", 120}}})}}
+                 .dump());
+  write_text(folder / "truth.json", json{{"format", "pinchlab-truth 1"}}.dump());
+  const json report = report_of(folder, "--participants 40 --seed 2", "--bootstrap 99");
+  ASSERT_TRUE(report.contains("graded_preferences"));
+  run(folder, "study export --answers answers --csv answers.csv");
+  EXPECT_NE(read_whole(folder / "answers.csv").find(",tie,"), std::string::npos);
+  run(folder, "analyse answers.csv --no-figures --bootstrap 99 --out again");
+  const json again = json::parse(read_whole(folder / "again/report.json"));
+  for (const char* key : {"demonstrations", "pooled", "graded_preferences"})
+    EXPECT_EQ(again[key], report[key]) << key;
 }
 
 TEST(Simulate, TruthsAreCheckedWholly) {
