@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/csv_inputs.h"
 #include "analysis/design_check.h"
 #include "analysis/report.h"
 #include "analysis/scale_report.h"
@@ -316,15 +317,79 @@ void analyse_two_methods(const Arguments& args) {
   tell(args, plain_words(report, table), written);
 }
 
-void run(Arguments& args) {
-  check_columns(args);
-  take_design(args);
+enum class Kind { levels, comparisons, two_methods };
+
+/// Answers that options may be about.
+struct Given {
+  Kind kind = Kind::two_methods;
+  bool csv = false;     // some inputs are tables
+  bool single = false;  // some of these hold single answers of two methods, not counts
+  bool files = false;   // some inputs are answer files
+};
+
+Given given_inputs(const Arguments& args) {
   const auto is_any = [&](const auto& has) {
     return std::ranges::any_of(args.inputs,
                                [&](const auto& input) { return has(input, args.read); });
   };
-  if (is_any(has_levels)) return analyse_levels(args);
-  if (is_any(has_comparisons)) return analyse_comparisons(args);
+  const auto is_csv = [](const std::filesystem::path& input, const ReadOptions&) {
+    return input.extension() == ".csv" || input.extension() == ".tsv";
+  };
+  Given given;
+  given.kind = is_any(has_levels)        ? Kind::levels
+               : is_any(has_comparisons) ? Kind::comparisons
+                                         : Kind::two_methods;
+  given.csv = is_any(is_csv);
+  given.files = is_any([&](const auto& input, const auto& read) { return !is_csv(input, read); });
+  given.single =
+      given.kind == Kind::two_methods && is_any([&](const auto& input, const auto& read) {
+        return is_csv(input, read) && !has_counts(input, read);
+      });
+  return given;
+}
+
+/// Throws for options that nothing here reads: who gives them expects something of them.
+void refuse_idle_options(const Arguments& args, const Given& given) {
+  struct Rule {
+    const char* flag;
+    bool is_read;
+    const char* of_what;
+  };
+  const bool levels = given.kind == Kind::levels, comparisons = given.kind == Kind::comparisons;
+  const bool two_methods = given.kind == Kind::two_methods;
+  const char* const of_levels = "psychometric functions (a column `level`)";
+  const char* const of_names = "the names of two methods";
+  const char* const of_csv = "CSV files";
+  const Rule rules[] = {
+      {"--function", levels, of_levels},
+      {"--guess", levels, of_levels},
+      {"--lapse", levels, of_levels},
+      {"--threshold-at", levels, of_levels},
+      {"--scale", comparisons, "comparisons of several methods (columns `left` and `right`)"},
+      {"--groups", two_methods, "answers about two methods"},
+      {"--repetitions", given.single, "single answers about two methods in CSV files"},
+      {"--allow-missing", given.single || given.files, "single answers of participants"},
+      {"--pinch-value", two_methods || (levels && given.csv), of_names},
+      {"--cable-value", two_methods || (levels && given.csv), of_names},
+      {"--map-column", given.csv, of_csv},
+      {"--separator", given.csv, of_csv},
+      {"--ignore-other-columns", given.csv, of_csv},
+  };
+  for (const Rule& rule : rules) {
+    if (rule.is_read || !args.is_given(rule.flag)) continue;
+    throw CLI::ValidationError(
+        rule.flag, fmt::format("is about {}, which are not what is analysed here; leave it out",
+                               rule.of_what));
+  }
+}
+
+void run(Arguments& args) {
+  check_columns(args);
+  const Given given = given_inputs(args);
+  refuse_idle_options(args, given);
+  take_design(args);
+  if (given.kind == Kind::levels) return analyse_levels(args);
+  if (given.kind == Kind::comparisons) return analyse_comparisons(args);
   analyse_two_methods(args);
 }
 

@@ -191,6 +191,49 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
   EXPECT_FALSE(fs::exists(folder / "x.csv.partial"));
 }
 
+// Whoever gives an option expects something of it.
+TEST(Program, AnalyseRefusesOptionsThatItDoesNotRead) {
+  const fs::path folder = scratch_folder();
+  std::ofstream(folder / "counts.csv") << "demonstration,pinch,cable\na,7,3\n";
+  std::ofstream(folder / "answers.csv")
+      << "participant,demonstration,choice\np,a,pinch\nq,a,cable\n";
+  std::ofstream(folder / "several.csv")
+      << "left,right,left_wins,right_wins\na,b,7,3\nb,c,6,4\na,c,8,2\n";
+  std::ofstream(folder / "levels.csv") << "level,correct,trials\n0.1,5,10\n0.2,8,10\n0.3,10,10\n";
+  using Words = std::vector<std::string>;
+  const auto analyse = [&](const std::string& input, const Words& option) {
+    Words command = {"analyse", input, "--out", "report", "--no-figures"};
+    command.insert(command.end(), option.begin(), option.end());
+    return run_program(folder, command);
+  };
+  const Words of_levels[] = {
+      {"--function", "weibull"}, {"--guess", "0.3"}, {"--lapse", "0"}, {"--threshold-at", "0.5"}};
+  const Words scale = {"--scale", "thurstone"}, groups = {"--groups", "nofile"},
+              repetitions = {"--repetitions", "7"}, missing = {"--allow-missing"},
+              pinch = {"--pinch-value", "zz"};
+  const auto refuses = [&](const std::string& input, const Words& option) {
+    const RunResult run = analyse(input, option);
+    EXPECT_EQ(run.exit_code, 2) << input << option[0];
+    EXPECT_TRUE(run.err.starts_with(option[0] + ": is about ")) << input << run.err;
+    EXPECT_FALSE(fs::exists(folder / "report")) << input << option[0];
+  };
+  for (const char* input : {"counts.csv", "answers.csv", "several.csv"}) {
+    for (const Words& option : of_levels) refuses(input, option);
+  }
+  for (const char* input : {"counts.csv", "answers.csv", "levels.csv"}) refuses(input, scale);
+  for (const char* input : {"several.csv", "levels.csv"}) refuses(input, groups);
+  for (const char* input : {"several.csv", "levels.csv", "counts.csv"}) {
+    refuses(input, repetitions);
+    refuses(input, missing);
+  }
+  refuses("several.csv", pinch);
+  EXPECT_EQ(analyse("counts.csv", pinch).exit_code, 0);
+  EXPECT_EQ(analyse("several.csv", scale).exit_code, 0);
+  EXPECT_EQ(analyse("answers.csv", missing).exit_code, 0);
+  EXPECT_EQ(analyse("answers.csv", {"--repetitions", "1"}).exit_code, 0);
+  EXPECT_EQ(analyse("levels.csv", {"--bootstrap", "99"}).exit_code, 0);
+}
+
 // Results that went to standard output are lost: that is a failure, whatever the command.
 TEST(Program, FullStandardOutputIsAFailure) {
   const fs::path folder = folder_with_scene();
