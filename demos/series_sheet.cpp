@@ -48,6 +48,9 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       throw std::invalid_argument(fmt::format("a sheet of {} pictures is too large; at most {}",
                                               frames.size() * columns, most_pictures));
     }
+    if (options.out.extension() == ".png") {
+      check_sheet_size(frames.size() * columns, options, "take fewer times or a smaller --size");
+    }
     if (!std::ranges::is_sorted(frames)) {
       throw std::invalid_argument("--time must go forward on the sheet of a series");
     }

@@ -21,6 +21,8 @@ namespace pinchlab {
 namespace {
 
 constexpr std::size_t most_frames = 10'000;
+// px; of a sheet there are two copies of 4 bytes a pixel in memory: the pictures, and all together
+constexpr std::size_t most_sheet_pixels = 100'000'000;
 
 int frame_at(const Scene& scene, const std::string& text) {
   const double duration = static_cast<double>(scene.frame_count) / scene.frames_per_second;
@@ -146,6 +148,18 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& t
   return frames;
 }
 
+void check_sheet_size(std::size_t pictures, const StillOptions& options, const std::string& cure) {
+  const std::size_t pixels =
+      pictures * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+  if (pictures > 1 && pixels > most_sheet_pixels) {
+    throw std::invalid_argument(
+        fmt::format("a sheet of {} pictures of {}x{} pixels is too large: {} million pixels, {} at "
+                    "most; {}",
+                    pictures, options.width, options.height, pixels / 1'000'000,
+                    most_sheet_pixels / 1'000'000, cure));
+  }
+}
+
 void write_still(const SceneFile& file, const StillOptions& options) {
   const std::vector<int> frames = frames_at(file.scene, options.times);
   const std::string ending = options.out.extension().string();
@@ -154,6 +168,13 @@ void write_still(const SceneFile& file, const StillOptions& options) {
     throw std::invalid_argument(fmt::format(
         "{}: --out must end in {}", options.out.string(),
         sequence ? ".png where a # stands for the frame's number" : ".png, .svg or .pdf"));
+  }
+  if (ending == ".png" && !sequence) {
+    check_sheet_size(frames.size() * options.methods.size(), options,
+                     options.methods.size() > 1
+                         ? "take fewer times or a smaller --size"
+                         : "a # in --out's name gives each frame a file of its own; or take fewer "
+                           "times or a smaller --size");
   }
   const Scenery scenery = for_file(file.path, [&] {
     return set_scenery(file.scene, file.look, options.theme.theme,

@@ -27,6 +27,10 @@ struct StillOptions {
 /// of the scene.
 std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& times);
 
+/// Throws std::invalid_argument, with `cure`, if a PNG of so many pictures of the options' size is
+/// more than a sheet may hold.
+void check_sheet_size(std::size_t pictures, const StillOptions& options, const std::string& cure);
+
 /// One frame of a scene as PNG, SVG or PDF, or, for several times or methods, a contact sheet with
 /// a label under each frame. A # in the name of a PNG file stands for the frame's number: each
 /// frame is a file of its own. Throws std::invalid_argument for a time outside of the clip or

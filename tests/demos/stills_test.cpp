@@ -69,6 +69,28 @@ TEST(Still, EveryFrameOfAPartBecomesAFile) {
   }
 }
 
+// Refused before anything is drawn, by their pixels.
+TEST(Still, SheetsThatFitInNoMemoryAreRefused) {
+  const fs::path folder = folder_with_scene();
+  const auto still = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"still", "01-small.json"};
+    command.insert(command.end(), more.begin(), more.end());
+    return run_program(folder, command);
+  };
+  const RunResult large = still({"--time", "0:1", "--size", "2048x2048", "--out", "x.png"});
+  EXPECT_EQ(large.exit_code, 2);
+  EXPECT_EQ(
+      large.err,
+      "a sheet of 31 pictures of 2048x2048 pixels is too large: 130 million pixels, 100 at "
+      "most; a # in --out's name gives each frame a file of its own; or take fewer times or a "
+      "smaller --size\n");
+  EXPECT_EQ(still({"--time", "0:1", "--size", "2048x2048", "--both", "--out", "x.png"}).exit_code,
+            2);
+  EXPECT_FALSE(fs::exists(folder / "x.png"));
+  EXPECT_EQ(still({"--time", "0:0.1", "--size", "2048x2048", "--out", "#.png"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder / "00003.png"));
+}
+
 TEST(Still, NeutralSheetsNameNoMethod) {
   const fs::path folder = folder_with_scene();
   const auto svg = [&](const std::vector<std::string>& more) {
