@@ -131,7 +131,8 @@ Outcome make_all(const Sweep& sweep, const std::vector<const Stimulus*>& stimuli
                                        [&](std::size_t i, const std::string& error) {
                                          progress.clear();
                                          fmt::print(stderr, "{}: not made: {}\n",
-                                                    sweep.table.place(stimuli[i]->row), error);
+                                                    sweep.table.place(stimuli[i]->row),
+                                                    failure_of_row(error));
                                          ++outcome.failed;
                                        },
                                    .idle = [&] { progress.add(0); }};
@@ -253,6 +254,12 @@ void tell_broken_promises(const Stimuli& stimuli, const fs::path& out) {
 }
 
 }  // namespace
+
+std::string failure_of_row(const std::string& error) {
+  const std::size_t command = error.find("; to see it again: ");
+  if (command == std::string::npos) return error;
+  return error.substr(0, command) + "; to see it again, sweep a table that holds this row alone";
+}
 
 int run_sweep(const SweepOptions& options) {
   const Sweep sweep = read_sweep(options.scene, options.table);

@@ -46,4 +46,7 @@ struct SweepOptions {
 /// std::runtime_error, with the cure, where rows to merge are missing.
 int run_sweep(const SweepOptions& options);
 
+/// What is told of a row that failed: a scene with placeholders can be given to no other command.
+std::string failure_of_row(const std::string& error);
+
 }  // namespace pinchlab

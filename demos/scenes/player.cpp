@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "demos/scenes/scene_format.h"
@@ -53,11 +54,19 @@ Scene with_timing(const Scene& scene, const Timing& timing) {
 
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
                            const World& world, int frame) {
+  const Configuration& configuration = world.configuration;
+  const std::string sweeps =
+      configuration.solver == Solver::iterative &&
+              configuration.iterations != thesis_configuration().iterations
+          ? fmt::format(" (but with {} sweeps, which only a table of `sweep` can ask for)",
+                        configuration.iterations)
+          : "";
   return fmt::format(
       "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
-      "--steps-per-frame {4} --until {5} --out -",
+      "--steps-per-frame {4} --error {5} --until {6} --out -{7}",
       path.string(), to_string(world.configuration), world.failure, scene.frames_per_second,
-      scene.steps_per_frame, static_cast<double>(frame) / scene.frames_per_second);
+      scene.steps_per_frame, scene.error, static_cast<double>(frame) / scene.frames_per_second,
+      sweeps);
 }
 
 void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {
@@ -71,7 +80,7 @@ void tell_broken_promises(const std::string& file, const std::vector<std::string
 }
 
 const char* in_words(const Configuration& configuration) {
-  if (configuration == thesis_configuration()) return "the thesis' pinch joints";
+  if (to_string(configuration) == std::string_view("thesis")) return "the thesis' pinch joints";
   switch (configuration.method) {
     case Method::pinch:
       return "pinch joints";

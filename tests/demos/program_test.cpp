@@ -435,6 +435,19 @@ TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
   EXPECT_THROW(with_timing(scene, {0, {}}), std::invalid_argument);
 }
 
+// However many sweeps it has, and whatever else is asked of it, thesis is what to type.
+TEST(Player, NamesTheThesisByItsWays) {
+  Configuration thesis = thesis_configuration();
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  thesis.iterations = 40;
+  thesis.sleep = true;
+  thesis.diagnostics = true;
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  EXPECT_STREQ(in_words(thesis), "the thesis' pinch joints");
+  thesis.solver = Solver::direct;
+  EXPECT_STREQ(to_string(thesis), "pinch");
+}
+
 TEST(Player, FailureSaysHowToSeeItAgain) {
   Scene scene;
   World world;
@@ -444,8 +457,16 @@ TEST(Player, FailureSaysHowToSeeItAgain) {
       failure_report("demos/03-drop.json", scene, world, 461),
       "demos/03-drop.json: method cable: step 1841, cable 3, segment 12: velocity not finite; to "
       "see it again: "
-      "pinchlab simulate demos/03-drop.json --method cable --fps 60 --steps-per-frame 4 --until "
-      "7.683333333333334 --out -");
+      "pinchlab simulate demos/03-drop.json --method cable --fps 60 --steps-per-frame 4 --error 0 "
+      "--until 7.683333333333334 --out -");
+  scene.error = 1e-3;
+  world.configuration = thesis_configuration();
+  world.configuration.iterations = 40;
+  const std::string report = failure_report("s.json", scene, world, 6);
+  EXPECT_NE(report.find("pinchlab simulate s.json --method thesis --fps 60 --steps-per-frame 4 "
+                        "--error 0.001 --until 0.1 --out - (but with 40 sweeps"),
+            std::string::npos)
+      << report;
 }
 
 // Width and height from a PNG's header.

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "demos/research_crate.h"
+#include "demos/scenes/player.h"
+#include "demos/sweep.h"
 #include "run_program.h"
 #include "tests/demos/scenes/scene_files.h"
 
@@ -55,6 +57,18 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
     files[entry.path().filename().string()] = is_file ? text_of(entry.path()) : "a folder";
   }
   return files;
+}
+
+// What simulate would have to be given has placeholders.
+TEST(Sweep, FailureOfARowNamesNoCommandThatCannotBeRun) {
+  Scene scene;
+  World world;
+  world.failure = "step 7: velocity not finite";
+  EXPECT_EQ(
+      failure_of_row(failure_report("s.json", scene, world, 2)),
+      "s.json: method pinch: step 7: velocity not finite; to see it again, sweep a table that "
+      "holds this row alone");
+  EXPECT_EQ(failure_of_row("the disk is full"), "the disk is full");
 }
 
 std::vector<std::string> with_ending(const fs::path& folder, const std::string& ending) {
