@@ -69,7 +69,7 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
   std::vector<const Picture*> panels(pictures.size());
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
   const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme,
-                                      pinchlab::time_limit(*plan.source, time_limit));
+                                      rehearsal_limit(*plan.source, time_limit));
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   FrameHash frames;
@@ -107,7 +107,7 @@ Made write_poster(const ClipPlan& plan, const std::string& path, const std::func
   const int width = panel_width(plan);
   const std::size_t bytes = frame_bytes(width, plan.video.height);
   const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme,
-                                      pinchlab::time_limit(*plan.source, time_limit));
+                                      rehearsal_limit(*plan.source, time_limit));
   Canvas canvas(width, plan.video.height);
   Picture picture;
   FrameHash frames;

@@ -211,7 +211,7 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
   Blocks blocks{
       std::max(smallest_frame / 2, width / 4), std::max(smallest_frame / 2, height / 4), {}};
   const Scenery scenery = for_file(file.path, [&] {
-    return set_scenery(scene, file.look, {}, pinchlab::time_limit(file, time_limit));
+    return set_scenery(scene, file.look, {}, rehearsal_limit(file, time_limit));
   });
   Canvas canvas(2 * block * blocks.columns, block * blocks.rows);
   Player pinch(file, scene, Method::pinch), baseline(file, scene, scene.baseline);

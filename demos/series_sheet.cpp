@@ -57,7 +57,7 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
     sheet.resize(frames.size() * columns);
     const Scenery scenery = for_file(stimulus.source.path, [&] {
       return set_scenery(scene, stimulus.source.look, options.theme.theme,
-                         time_limit(stimulus.source, options.time_limit));
+                         rehearsal_limit(stimulus.source, options.time_limit));
     });
     Player player(stimulus.source, scene, stimulus.plan.methods[0]);
     player.give_up_after(options.time_limit);

@@ -178,7 +178,7 @@ void write_still(const SceneFile& file, const StillOptions& options) {
   }
   const Scenery scenery = for_file(file.path, [&] {
     return set_scenery(file.scene, file.look, options.theme.theme,
-                       time_limit(file, options.time_limit));
+                       rehearsal_limit(file, options.time_limit));
   });
   if (sequence) {
     write_sequence(file, options, frames, scenery);

@@ -98,18 +98,19 @@ Player::Player(const SceneFile& file, const Scene& scene, const Configuration& c
       world_(start_world(scene, file.path, configuration)),
       promises_(scene_, world_) {}
 
-std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds) {
+std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds,
+                                             const std::string& meanwhile) {
   using std::chrono::steady_clock;
   if (!seconds) return [](const World&) {};
-  return [path = file.path.string(), limit = *seconds, start = steady_clock::now(),
-          known = false](const World& world) mutable {
+  return [place = file.path.string() + ": " + meanwhile, limit = *seconds,
+          start = steady_clock::now(), known = false](const World& world) mutable {
     const auto now = steady_clock::now();
     if (std::exchange(known, true) && world.step == 1) start = now;
     if (std::chrono::duration<double>(now - start).count() <= limit) return;
     throw std::runtime_error(fmt::format(
-        "{}: method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
+        "{}method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
         "steps a frame or fewer bodies are faster",
-        path, to_string(world.configuration), world.time(), world.step, limit));
+        place, to_string(world.configuration), world.time(), world.step, limit));
   };
 }
 

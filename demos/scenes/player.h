@@ -40,8 +40,15 @@ const char* in_words(const Configuration& configuration);
 
 /// What, called after each step of a simulation of `file`, throws std::runtime_error once its steps
 /// have taken more than `seconds`, from now on or from another simulation's first step; without
-/// `seconds` nothing.
-std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds);
+/// `seconds` nothing. The message says that it was `meanwhile`.
+std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds,
+                                             const std::string& meanwhile = "");
+
+/// The same for the rehearsal of set_scenery.
+inline std::function<void(const World&)> rehearsal_limit(const SceneFile& file,
+                                                         std::optional<double> seconds) {
+  return time_limit(file, seconds, "while placing labels and fitting the view: ");
+}
 
 class Player {
  public:

@@ -357,7 +357,8 @@ TEST(Program, TheTimeLimitBoundsTheRehearsalOfAFittedView) {
     limited.insert(limited.end(), {"--time-limit", "0.000001"});
     const RunResult run = run_program(folder, limited);
     EXPECT_EQ(run.exit_code, 1) << command[0];
-    EXPECT_NE(run.err.find("method pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s"),
+    EXPECT_NE(run.err.find("01-small.json: while placing labels and fitting the view: method "
+                           "pinch: given up at t = 0.00833333 s, step 1, after the 1e-06 s"),
               std::string::npos)
         << run.err;
     EXPECT_EQ(run_program(folder, command).exit_code, 0) << command[0];
