@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -422,11 +423,14 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
     const Truth truth = read_truth(options->truth);
     Desk desk(std::move(desk_options));
     const int participants = options->simulation.participants;
-    options->simulation.progress = [participants](int finished) {
-      fmt::print(stderr, "\r{} of {} finished", finished, participants);
+    pinchlab::Progress progress("simulating", "participants", participants);
+    std::mutex mutex;
+    options->simulation.progress = [&](int) {
+      const std::scoped_lock lock(mutex);
+      progress.add(1);
     };
     simulate(desk, truth, options->simulation);
-    fmt::print(stderr, "\n");
+    progress.clear();
     fmt::print("{} simulated participants; answers in {}\n", participants,
                options->answers.string());
   });

@@ -228,6 +228,18 @@ TEST(Simulate, TheExportOfAllThatCanBeAskedIsRead) {
     EXPECT_EQ(again[key], report[key]) << key;
 }
 
+TEST(Simulate, LogsHaveNoLinesThatAreWrittenAnew) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder / "clips");
+  write_text(folder / "study.json",
+             json{{"format", "pinchlab-study 1"}, {"demonstrations", demonstrations}}.dump());
+  write_text(folder / "truth.json", json{{"format", "pinchlab-truth 1"}}.dump());
+  run(folder,
+      "study simulate --clips clips --answers answers --truth truth.json --config study.json "
+      "--participants 3");
+  EXPECT_EQ(read_whole(folder / "err.txt").find('\r'), std::string::npos);
+}
+
 TEST(Simulate, NamesThatTheStudyDoesNotHaveAreRefused) {
   const fs::path folder = scratch_folder();
   Desk desk(desk_options(folder));
