@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "analysis/experiments/accuracy.h"
@@ -102,6 +103,10 @@ void add_render(CLI::App& bench) {
     run->scene = *scene;
     run->width = size->width;
     run->height = size->height;
+    if (run->width % 2 != 0 || run->height % 2 != 0) {
+      throw std::invalid_argument(fmt::format("h264 needs an even size, not {}x{}; change --size",
+                                              run->width, run->height));
+    }
     run->command = fmt::format(
         "pinchlab bench render{}{} --method {} --size {}x{}{} --out {}", scene->empty() ? "" : " ",
         *scene, run->method, run->width, run->height,

@@ -506,6 +506,14 @@ TEST(Still, OneTimeIsAFrameSeveralAreASheet) {
   EXPECT_NE(text_of(folder / "x.png"), list);
 }
 
+TEST(Bench, OddSizesAreRefusedAtTheDoor) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run =
+      run_program(folder, {"bench", "render", "01-small.json", "--size", "63x64"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "h264 needs an even size, not 63x64; change --size\n");
+}
+
 TEST(Bench, PrintsWhatAFrameCosts) {
   const fs::path folder = folder_with_scene();
   const RunResult run = run_program(
