@@ -468,6 +468,12 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
   CLI::App* study =
       app.add_subcommand("study", "Ask people which clip looks most realistic, in a browser")
           ->require_subcommand(1);
+  study->footer(
+      "Clips that are missing are rendered. study/README.md tells how a study is run.\n\n"
+      "Examples:\n"
+      "  pinchlab study plan --participants 16 --seed 7\n"
+      "  pinchlab study serve --clips clips --answers answers\n"
+      "  pinchlab study export --answers answers --csv answers.csv");
   add_serve(*study, stimuli);
   add_plan(*study, stimuli);
   add_freeze(*study, stimuli);
