@@ -132,7 +132,7 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
     throw SceneError(
         place_of_stop(course, static_cast<int>(i) + first_stop),
         fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
-                    "move them apart or turn the orientation round",
+                    "move them apart or give the wrap the other `turn`",
                     name_of_body(scene, leaves[before].body),
                     name_of_body(scene, arrives[i].body)));
   }
@@ -214,7 +214,7 @@ void lay_wraps(const Scene& scene, Course& course) {
       throw SceneError(
           place_of(course, i),
           fmt::format("the cable would have to run {:.0f} degrees round {}; does it pass on "
-                      "the other side (turn the orientation round), or not touch it at all?",
+                      "the other side (the other `turn`), or not touch it at all?",
                       of_stop / turn * 360.0, name_of_body(scene, link.body)));
     }
     const double next = cable.segments[i].alpha + link.orientation * (wrap + turn * turns);
