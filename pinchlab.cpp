@@ -412,7 +412,8 @@ int run_and_tell(int argc, char** argv) {
   }
 }
 
-// What is left of results on standard output goes out; exit code 1 where that fails, or failed before.
+// What is left of results on standard output goes out; exit code 1 where that fails, or failed
+// before.
 int with_results_written(int exit_code) {
   errno = 0;
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

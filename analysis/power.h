@@ -39,8 +39,8 @@ void check_question(const PowerQuestion& question);
 /// beta-binomial.
 std::vector<double> answers_of_one(const PowerQuestion& question);
 
-/// Does the sign-flip test find a preference at this level? drawn[k] participants chose one method k
-/// times.
+/// Does the sign-flip test find a preference at this level? drawn[k] participants chose one method
+/// k times.
 bool sign_flips_reject(const std::vector<unsigned>& drawn, std::int64_t participants, double alpha);
 
 struct PowerAnswer {

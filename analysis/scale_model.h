@@ -55,8 +55,8 @@ struct ScaleFit {
 
 /// Maximum likelihood by Fisher's scoring. The robust covariance is the cluster sandwich with
 /// N / (N - 1) (Liang and Zeger, Biometrika 73 (1986) 13). There is no finite scale, and `why_not`
-/// says between whom, where some methods never lost to the others (Ford, Am. Math. Monthly 64 (1957)
-/// 28). `with_side` adds s.
+/// says between whom, where some methods never lost to the others (Ford, Am. Math. Monthly 64
+/// (1957) 28). `with_side` adds s.
 ScaleFit fit_scale(ScaleModel model, std::size_t methods, const std::vector<PairChoices>& choices,
                    bool with_side = false);
 

@@ -37,8 +37,8 @@ ScaleDifference scale_difference(ScaleModel model, const ScaleFit& fit, std::siz
 /// methods, 3 to 7 (Kendall and Babington Smith, Biometrika 31 (1940) 324, table).
 std::vector<double> triad_counts(std::size_t methods);
 
-/// Circular triads: A over B over C over A, in the choices of one participant who saw each pair of a
-/// demonstration once and chose.
+/// Circular triads: A over B over C over A, in the choices of one participant who saw each pair of
+/// a demonstration once and chose.
 struct Transitivity {
   long rounds = 0;       ///< participants times demonstrations that can be judged
   long triads = 0;       ///< circular ones in all
@@ -59,7 +59,8 @@ Transitivity transitivity(std::size_t methods, std::size_t participants, std::si
                           const std::vector<PairChoices>& choices);
 
 /// How well the scale of all others foretells one participant: log-likelihood an answer. Far out:
-/// below the first quartile by 1.5 interquartile ranges (Perez-Ortiz and Mantiuk, arXiv 1712.03686).
+/// below the first quartile by 1.5 interquartile ranges (Perez-Ortiz and Mantiuk, arXiv
+/// 1712.03686).
 struct ObserverFit {
   std::uint32_t participant = 0;
   std::int64_t answers = 0;

@@ -11,8 +11,8 @@
 namespace pinchlab::analysis {
 
 /// How fast the error is spent (Lan and DeMets, Biometrika 70 (1983) 659), of each side's alpha:
-/// 2 - 2 Phi(z_(alpha/2) / sqrt t) as O'Brien and Fleming's bounds do, or alpha ln(1 + (e - 1) t) as
-/// Pocock's.
+/// 2 - 2 Phi(z_(alpha/2) / sqrt t) as O'Brien and Fleming's bounds do, or alpha ln(1 + (e - 1) t)
+/// as Pocock's.
 enum class Spending : std::uint8_t { obrien_fleming, pocock };
 
 /// One look at the data.

@@ -70,8 +70,8 @@ struct AnswerFile {
 /// Within 2 %, which is more than browsers' clocks are off.
 bool shows_60_evenly(double hz);
 
-/// The JSON of an answer file, or of a session that will be one. Throws InputError if it is none, or
-/// larger than an answer file can be.
+/// The JSON of an answer file, or of a session that will be one. Throws InputError if it is none,
+/// or larger than an answer file can be.
 nlohmann::json read_answer_json(const std::filesystem::path& path);
 
 /// Checks one parsed answer file and returns what the analysis needs of it; `file` is for messages.
@@ -81,8 +81,8 @@ AnswerFile parse_answer_file(const nlohmann::json& document, const std::string& 
 /// What the answers of a study are about.
 enum class AnswersKind { none, two_methods, comparisons, graded };
 
-/// Of an answer file (.json), or of the first one of a folder; `none` if there is none, or it is not
-/// one (which whoever reads it then tells).
+/// Of an answer file (.json), or of the first one of a folder; `none` if there is none, or it is
+/// not one (which whoever reads it then tells).
 AnswersKind kind_of_answers(const std::filesystem::path& path);
 
 /// The answer files of a folder, in order of their names: every *.json but hidden ones and the

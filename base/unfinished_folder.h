@@ -10,8 +10,8 @@
 namespace pinchlab {
 
 /// A folder of this object's own inside another one (so that renaming cannot cross file systems),
-/// for files that are not finished. Its lock goes with the process, so that others know what is left
-/// over. The destructor removes it with all that has not been kept.
+/// for files that are not finished. Its lock goes with the process, so that others know what is
+/// left over. The destructor removes it with all that has not been kept.
 class UnfinishedFolder {
  public:
   /// `folder` must exist. Throws std::runtime_error where it cannot be written into.

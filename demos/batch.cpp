@@ -72,8 +72,8 @@ double cpu_seconds(int who) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Drops what is up to date, puts the longest first so that no core is left idle at the end. Files of
-// equal sizes are made together.
+// Drops what is up to date, puts the longest first so that no core is left idle at the end. Files
+// of equal sizes are made together.
 std::vector<ClipPlan> plans_to_make(const std::vector<ClipPlan>& plans, const Manifest& manifest,
                                     const fs::path& out) {
   std::set<std::string> stale;

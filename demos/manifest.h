@@ -22,8 +22,8 @@ Manifest read_manifest(const std::filesystem::path& folder);
 /// Writes manifest.json, whole or not at all.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
-/// Adds an entry or replaces the one of the same file. Where the new file is not made to the size of
-/// one that was made to the size of its forerunner, that one's entry no longer says so.
+/// Adds an entry or replaces the one of the same file. Where the new file is not made to the size
+/// of one that was made to the size of its forerunner, that one's entry no longer says so.
 void put(Manifest& manifest, nlohmann::ordered_json entry);
 
 /// Whether the folder holds the file that `plan` (clip.h, plan_entry) would make: its entry says

@@ -46,6 +46,14 @@ double number(const ordered_json& object, const char* key) {
   return object.at(key).get<double>();
 }
 
+// Where nothing differs no body is the farthest.
+std::string largest_distance(const ordered_json& report) {
+  const auto body = report.at("largest_distance_body").get<std::string>();
+  if (body.empty()) return "0";
+  return fmt::format("{:.0f} ({}) at {:.2f}", number(report, "largest_distance_px"), body,
+                     number(report, "largest_distance_at_s"));
+}
+
 std::vector<std::string> cells(const ordered_json& entry) {
   const ordered_json& report = entry.at("report");
   const ordered_json *pinch = &report.at("pinch"), *baseline = &report.at("baseline");
@@ -55,9 +63,7 @@ std::vector<std::string> cells(const ordered_json& entry) {
           event == nullptr ? "never" : fmt::format("{:.2f}", number(*event, "from_s")),
           seconds_or_never(report.at("first_difference_s")),
           fmt::format("{:.0f}", 100.0 * number(report, "same_share")),
-          fmt::format("{:.0f} ({}) at {:.2f}", number(report, "largest_distance_px"),
-                      report.at("largest_distance_body").get<std::string>(),
-                      number(report, "largest_distance_at_s")),
+          largest_distance(report),
           fmt::format("{:.0f}", number(report, "largest_turn_rad") * 180.0 / std::numbers::pi),
           fmt::format("{:.0f} / {:.0f}", 100.0 * number(*pinch, "still_share"),
                       100.0 * number(*baseline, "still_share")),

@@ -28,8 +28,8 @@ struct WorkerPoolEvents {
 /// program ignores does not stop it.
 int run_in_processes(std::span<const Work> work, int jobs, const WorkerPoolEvents& events);
 
-/// Ends the program by the signal, as if it had not been caught. Throws std::runtime_error where that
-/// does not end it.
+/// Ends the program by the signal, as if it had not been caught. Throws std::runtime_error where
+/// that does not end it.
 [[noreturn]] void end_by(int signal);
 
 }  // namespace pinchlab

@@ -15,8 +15,8 @@ namespace pinchlab {
 constexpr int smallest_frame = 16;   // px
 constexpr int largest_frame = 8192;  // px
 
-/// Draws pictures into a frame of its own. The same picture gives the same bytes in every run on any
-/// machine.
+/// Draws pictures into a frame of its own. The same picture gives the same bytes in every run on
+/// any machine.
 ///
 /// Where the environment variable PINCHLAB_GL asks for OpenGL, its driver draws instead
 /// (gl_context.h): bytes that differ by a level or two, and one canvas at a time in a process.

@@ -39,8 +39,8 @@ std::unique_ptr<GlContext> make_context() {
 
 std::unique_ptr<GlContext> make_gl_context() {
 #if defined(__GLIBC__)
-  // The driver takes and frees some 256 KB with each call that draws. Giving them back to the system
-  // each time, page by page, would cost as much as drawing a small part of a frame.
+  // The driver takes and frees some 256 KB with each call that draws. Giving them back to the
+  // system each time, page by page, would cost as much as drawing a small part of a frame.
   constexpr int enough = 64 << 20;  // bytes
   mallopt(M_TRIM_THRESHOLD, enough);
   mallopt(M_MMAP_THRESHOLD, enough / 2);

@@ -175,8 +175,8 @@ void Mesh::add(const Strip& strip, const std::vector<StripPoint>& points, const 
   }
 }
 
-// A fan of triangles, each a quad whose last corner counts twice. To the stroke program every pixel of
-// theirs is on the middle line of a wide stroke, which is no disc.
+// A fan of triangles, each a quad whose last corner counts twice. To the stroke program every pixel
+// of theirs is on the middle line of a wide stroke, which is no disc.
 void Mesh::add(const Patch& patch, const std::vector<Vec2>& corners, const Fit& fit) {
   begin(Program::stroke);
   Vertex common{};

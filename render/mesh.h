@@ -35,8 +35,8 @@ struct Vertex {
   bool operator==(const Vertex&) const = default;
 };
 
-/// Where a quad's shape lies in the frame: the tile painter works from it, in places that do not lose
-/// digits far from an arc's centre.
+/// Where a quad's shape lies in the frame: the tile painter works from it, in places that do not
+/// lose digits far from an arc's centre.
 struct Frame {
   std::array<float, 2> origin{};  ///< px: a stroke's start, a text's corner, a chord's middle
   std::array<float, 2> x_axis{};  ///< unit: along a stroke; outwards from an arc's centre

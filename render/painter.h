@@ -21,8 +21,8 @@ class Painter {
   /// Forgets all images.
   virtual void forget_images() = 0;
 
-  /// Draws the mesh anew in the parts of the frame that have changed, into `pixels` (RGBA of 8 bits,
-  /// top row first). `first`: with these sheets, so that pages have not been seen before.
+  /// Draws the mesh anew in the parts of the frame that have changed, into `pixels` (RGBA of 8
+  /// bits, top row first). `first`: with these sheets, so that pages have not been seen before.
   virtual void paint(const Mesh& mesh, const std::vector<PixelRect>& changed, bool first,
                      std::uint8_t* pixels) = 0;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Compounds: rigid bodies of several outlines, each a disc or a convex polygon. The body itself has the
-// mass and moves; a shape of it is a body of the scene that is carried along, with an outline and
-// surfaces of its own. Rows of what touches a shape act on the body that carries it.
+// Compounds: rigid bodies of several outlines, each a disc or a convex polygon. The body itself has
+// the mass and moves; a shape of it is a body of the scene that is carried along, with an outline
+// and surfaces of its own. Rows of what touches a shape act on the body that carries it.
 
 #include <span>
 #include <vector>
@@ -13,8 +13,9 @@
 
 namespace pinchlab {
 
-/// An outline of a compound and its surfaces: of `properties` radius, corners, corner_radius, frictions
-/// and restitution count. Corners are in the shape's own frame, whose origin may be anywhere.
+/// An outline of a compound and its surfaces: of `properties` radius, corners, corner_radius,
+/// frictions and restitution count. Corners are in the shape's own frame, whose origin may be
+/// anywhere.
 struct Shape {
   BodyProperties properties;
   Vec2 place = Vec2::
@@ -25,10 +26,10 @@ struct Shape {
 /// What even plates of these outlines and of unit density have together, as if none lay on others.
 Plate plate_of(std::span<const Shape> shapes);
 
-/// Gives the scene's body `body` these shapes in place of an outline of its own: bodies after all that
-/// there are, called as it is with ":1", ":2" and so on. They do not touch one another. Its mass, inertia
-/// (if it has none: of even plates) and centre of mass are the body's. Moving the body afterwards does
-/// not move its shapes.
+/// Gives the scene's body `body` these shapes in place of an outline of its own: bodies after all
+/// that there are, called as it is with ":1", ":2" and so on. They do not touch one another. Its
+/// mass, inertia (if it has none: of even plates) and centre of mass are the body's. Moving the
+/// body afterwards does not move its shapes.
 void add_shapes(Scene& scene, int body, std::span<const Shape> shapes);
 
 /// The bodies that have the outlines of a body: itself, or its shapes.

@@ -52,8 +52,8 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// Whether events are located. Sweeps have no exact lengths to locate them by, and neither has a plain
-/// cable joint whose bodies have crossed.
+/// Whether events are located. Sweeps have no exact lengths to locate them by, and neither has a
+/// plain cable joint whose bodies have crossed.
 inline bool locates_events(const Configuration& configuration) {
   return configuration.events == Events::located && configuration.solver == Solver::direct &&
          configuration.method != Method::cable;

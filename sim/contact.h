@@ -18,8 +18,8 @@ enum class Touch : std::int8_t {
   end_of_wall,  // meets the outline of a
 };
 
-/// Two bodies, or a body and a wall, that touch or may touch within the next step. Where one of them
-/// is a polygon there may be several of a pair.
+/// Two bodies, or a body and a wall, that touch or may touch within the next step. Where one of
+/// them is a polygon there may be several of a pair.
 struct Contact {
   int a = -1;     // body index
   int b = -1;     // body index > a, or -1: a wall

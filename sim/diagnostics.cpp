@@ -63,8 +63,8 @@ bool check_positions(const Scene& scene, World& world) {
 }
 
 bool check_corners(const Scene& scene, World& world) {
-  // A cable that a polygon winds up without end costs more with each turn: this is what makes a step last
-  // milliseconds.
+  // A cable that a polygon winds up without end costs more with each turn: this is what makes a
+  // step last milliseconds.
   constexpr std::size_t most_corners_met = 20'000;
   for (std::size_t i = 0; i < world.cables.size(); ++i) {
     const std::vector<Link>& links = world.cables[i].links;
@@ -138,8 +138,8 @@ double kinetic_energy(const World& world, const Instant& before, double after, i
 
 namespace {
 
-/// Links may have come and gone since: one of the cable's on the same body stands for the sleeve, or, where
-/// there is none any more, its motion before.
+/// Links may have come and gone since: one of the cable's on the same body stands for the sleeve,
+/// or, where there is none any more, its motion before.
 double kinetic_energy(const World& world, double after, Sleeve sleeve) {
   const std::vector<Link>& links = at(world.cables, sleeve.cable).links;
   const auto is_it = [&sleeve](const Link& link) {

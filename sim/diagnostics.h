@@ -38,9 +38,9 @@ inline double zero_if_finite(const World& world, int body) {
 /// Kinetic energy of all bodies at the velocities that they have (J).
 double kinetic_energy(const World& world);
 
-/// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a kick:
-/// what is between them, by the share `after`, is right to second order. Of all that moves, of one body, or of
-/// a cable's sleeves.
+/// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a
+/// kick: what is between them, by the share `after`, is right to second order. Of all that moves,
+/// of one body, or of a cable's sleeves.
 double kinetic_energy(const World& world, const Instant& before, double after);
 double kinetic_energy(const World& world, const Instant& before, double after, int body);
 double kinetic_energy_of_sleeves(const World& world, const Instant& before, double after,

@@ -28,7 +28,8 @@ void refuse_idle(const std::string& name, int body, int other) {
   }
 }
 
-/// A cable of one segment from `start` to `end`; of no use as a pinched one, it has next to no width.
+/// A cable of one segment from `start` to `end`; of no use as a pinched one, it has next to no
+/// width.
 Cable segment_of(const Scene& scene, const std::string& name, Joint joint, const Attachment& start,
                  const Attachment& end) {
   Cable cable;
@@ -85,7 +86,8 @@ void add_spring(Scene& scene, const std::string& name, const Attachment& start,
 }
 
 // |x - anchor| <= 2 range, the anchor so far beyond the other end of the travel that the body never
-// comes nearer than the range: along a rail that is x <= its end, and the segment's direction the axis.
+// comes nearer than the range: along a rail that is x <= its end, and the segment's direction the
+// axis.
 void add_stops(Scene& scene, int body, double low, double high) {
   const Body& b = at(scene.bodies, body);
   const Vec2 axis = b.rail_axis.normalized();

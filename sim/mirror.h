@@ -6,9 +6,9 @@
 
 namespace pinchlab {
 
-/// The scene's mirror image. It moves as the mirror image of the scene's motion, to the last bit (test
-/// `Mirror`), but for polygons: as their corners must go counter-clockwise, they come in another order, and
-/// their contacts with them.
+/// The scene's mirror image. It moves as the mirror image of the scene's motion, to the last bit
+/// (test `Mirror`), but for polygons: as their corners must go counter-clockwise, they come in
+/// another order, and their contacts with them.
 Scene mirrored(Scene scene);
 
 }  // namespace pinchlab

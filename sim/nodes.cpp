@@ -22,8 +22,8 @@ bool ends_on_mobile(const Scene& scene, const Attachment& end) {
 }
 
 /// Directions of a chain's pieces at rest, from its start on. The tension of piece k is t_k = t_0 -
-/// sum of the weights before it, and the pieces l t_k / |t_k| add up to d: where the convex function
-/// sum l |t_k| - t_0 . d is least, which Newton's method finds.
+/// sum of the weights before it, and the pieces l t_k / |t_k| add up to d: where the convex
+/// function sum l |t_k| - t_0 . d is least, which Newton's method finds.
 std::vector<Vec2> hanging_pieces(const std::vector<Vec2>& weights, double length, const Vec2& d) {
   constexpr int most_rounds = 200;
   const std::size_t pieces = weights.size() + 1;
@@ -62,8 +62,8 @@ std::vector<Vec2> hanging_pieces(const std::vector<Vec2>& weights, double length
   return directions;
 }
 
-/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) / l^2, and a
-/// leapfrog is stable to omega h = 2.
+/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) /
+/// l^2, and a leapfrog is stable to omega h = 2.
 double shortest_that_bends(const Scene& scene, const Cable& cable) {
   const double speed = std::sqrt(cable.bending_stiffness / cable.mass_per_metre);  // m^2/s
   return std::sqrt(2.0 * step_length(scene) * speed);
@@ -85,7 +85,8 @@ void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
   }
 }
 
-/// What an end of a cable whose number of nodes adapts may be held by: it takes over the mass of nodes that go.
+/// What an end of a cable whose number of nodes adapts may be held by: it takes over the mass of
+/// nodes that go.
 void refuse_ends_that_turn(const Scene& scene, const Cable& cable, const std::string& place) {
   for (const Attachment* end : {&cable.start, &cable.end}) {
     if (end->body < 0 || is_static(at(scene.bodies, end->body))) continue;
@@ -140,7 +141,8 @@ int count_adaptive_pieces(const Cable& cable, int pieces, const std::string& pla
   return power;
 }
 
-/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps can follow.
+/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
+/// can follow.
 int count_pieces(const Scene& scene, const Cable& cable, double length, const std::string& place) {
   int pieces = cable.nodes > 0
                    ? cable.nodes + 1
@@ -165,7 +167,8 @@ int count_pieces(const Scene& scene, const Cable& cable, double length, const st
   return pieces;
 }
 
-/// Nodes that are nearer along the cable to the body that holds an end than that is large are never clear of it.
+/// Nodes that are nearer along the cable to the body that holds an end than that is large are never
+/// clear of it.
 void keep_off_end(Scene& scene, const NodeChain& chain, const Attachment& end, bool is_start) {
   if (end.body < 0) return;
   for (const int body : outlines_of(scene, end.body)) {
@@ -186,7 +189,8 @@ void load_end(Scene& scene, const Attachment& end, double mass) {
   body.mass += mass;
 }
 
-/// kg, of each node; the ends' half pieces are theirs, or of bodies that hold a cable whose number of nodes adapts.
+/// kg, of each node; the ends' half pieces are theirs, or of bodies that hold a cable whose number
+/// of nodes adapts.
 std::vector<double> weigh_nodes(Scene& scene, const Cable& whole, int pieces, double piece) {
   std::vector<double> masses(index(pieces - 1), whole.mass_per_metre * piece);
   const double half = 0.5 * whole.mass_per_metre * piece;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Cables with mass that hang: chains of nodes with massless pieces of cable between them. Those that run
-// over bodies are in cable/mass.h.
+// Cables with mass that hang: chains of nodes with massless pieces of cable between them. Those
+// that run over bodies are in cable/mass.h.
 
 #include <vector>
 
@@ -24,23 +24,27 @@ inline bool becomes_nodes(const Cable& cable) {
   return cable.mass_per_metre > 0.0 && cable.wraps.empty();
 }
 
-/// Replaces every cable of the scene that has a mass, and runs over no bodies, by n nodes and n + 1 massless pieces of equal
-/// length l between them: node i has the mass (l_(i-1) + l_i) / 2 times that of a metre, and those next to
-/// an end on a body that can move have the end's half piece too. Nodes are discs as wide as the cable
-/// that do not turn: they lie on walls and bodies, and on one another, with friction.
+/// Replaces every cable of the scene that has a mass, and runs over no bodies, by n nodes and n + 1
+/// massless pieces of equal length l between them: node i has the mass (l_(i-1) + l_i) / 2 times
+/// that of a metre, and those next to an end on a body that can move have the end's half piece too.
+/// Nodes are discs as wide as the cable that do not turn: they lie on walls and bodies, and on one
+/// another, with friction.
 ///
-/// A cable with slack starts where its chain hangs at rest, exactly; a taut one, or one without gravity,
-/// straight. How many nodes: as many as it says, or so many that pieces are no shorter than
-/// twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension runs in a step,
-/// h sqrt(g L), beyond which nodes vibrate faster than steps can follow; and, with a bending stiffness EI and
-/// the mass rho a metre, than sqrt(2 h sqrt(EI / rho)), beyond which their bending does.
+/// A cable with slack starts where its chain hangs at rest, exactly; a taut one, or one without
+/// gravity, straight. How many nodes: as many as it says, or so many that pieces are no shorter
+/// than twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension
+/// runs in a step, h sqrt(g L), beyond which nodes vibrate faster than steps can follow; and, with
+/// a bending stiffness EI and the mass rho a metre, than sqrt(2 h sqrt(EI / rho)), beyond which
+/// their bending does.
 ///
-/// With a node tolerance their number adapts as it moves (motion/adapt_nodes.h): it starts with the most, 2^k - 1 of them, and
-/// a body that holds an end has the end's half piece itself.
+/// With a node tolerance their number adapts as it moves (motion/adapt_nodes.h): it starts with the
+/// most, 2^k - 1 of them, and a body that holds an end has the end's half piece itself.
 ///
-/// With a bending stiffness pieces bear force both ways, and bend against one another (cable/bending.h).
+/// With a bending stiffness pieces bear force both ways, and bend against one another
+/// (cable/bending.h).
 ///
-/// Throws SceneError where a cable has no length, or more nodes than fit, or cannot adapt their number.
+/// Throws SceneError where a cable has no length, or more nodes than fit, or cannot adapt their
+/// number.
 std::vector<NodedCable> spread_nodes(Scene& scene);
 
 }  // namespace pinchlab

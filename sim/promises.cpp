@@ -77,7 +77,8 @@ void Promises::note_cables(const Scene& scene, const World& world) {
   }
 }
 
-// A parabola's, w l^2 / 8 T by the weight w of a metre across the span; slack, it hangs by all of its length.
+// A parabola's, w l^2 / 8 T by the weight w of a metre across the span; slack, it hangs by all of
+// its length.
 void Promises::note_sag(const Scene& scene, const World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
@@ -108,9 +109,9 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
   }
 }
 
-// Energy at the step's start: velocities were `lag_` before it and are half an interval after it, and
-// between the two they change evenly. Where the step was divided that half is not known, and the
-// step after it tells.
+// Energy at the step's start: velocities were `lag_` before it and are half an interval after it,
+// and between the two they change evenly. Where the step was divided that half is not known, and
+// the step after it tells.
 void Promises::note_energy(const Scene& scene, const World& world) {
   const double after = lag_ / (lag_ + 0.5 * world.step_length);
   const double kinetic = kinetic_energy(world, before_, after);

@@ -34,8 +34,8 @@ enum class BodyKind {
 struct BodyProperties {
   BodyKind kind = BodyKind::free;
   double radius = 0.5;  ///< m, > 0; of a polygon that of the circle about its centre that holds it
-  /// m, in the body's frame, whose origin is the centre of mass: 3 to 64 corners of a convex polygon,
-  /// counter-clockwise. Empty: a disc.
+  /// m, in the body's frame, whose origin is the centre of mass: 3 to 64 corners of a convex
+  /// polygon, counter-clockwise. Empty: a disc.
   std::vector<Vec2> corners;
   double corner_radius = 0.0;       ///< m, >= 0: the polygon's outline is that far off
   double mass = 1.0;                ///< kg, > 0; unused for fixed bodies; 0 of shapes
@@ -89,7 +89,8 @@ struct Wrap {
   int extra_turns = 0;  ///< whole turns beyond the one wrap in [0, 2 pi) that the tangents ask for
 };
 
-/// What a joint of the scene has become: a cable of one straight segment that nothing hits (joints.h).
+/// What a joint of the scene has become: a cable of one straight segment that nothing hits
+/// (joints.h).
 enum class Joint : std::int8_t {
   none,    ///< a cable
   bar,     ///< keeps two points at their distance
@@ -104,8 +105,8 @@ enum class Joint : std::int8_t {
 // friction of a pinch is at most grip * mu * N of either body. Arcs keep their capstan law, spans
 // their length, and a body without slip that lies on the pinched cable's way does not slip.
 
-/// A cable, massless unless it says so, from `start` over `wraps` to `end`; a closed one has wraps only (at least
-/// two).
+/// A cable, massless unless it says so, from `start` over `wraps` to `end`; a closed one has wraps
+/// only (at least two).
 struct Cable {
   std::string name;          ///< unique in the scene
   double half_width = 0.05;  ///< m, > 0
@@ -121,12 +122,12 @@ struct Cable {
   double damping = 0.0;               ///< N s/m, of a spring: force per speed of its lengthening
   double squeeze = 0.0;  ///< 0..1, share of the width that a pinch presses out of it without force
   double grip = 1.0;     ///< 0..1, factor on the friction that a pinch's force gives
-  /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes a chain
-  /// of nodes that have its mass (nodes.h).
+  /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes
+  /// a chain of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;
   int nodes = 0;  ///< of such a chain; 0: as spread_nodes chooses
-  /// m, of such a chain: how far from straight it may be between two nodes, whose number adapts; 0: it is
-  /// fixed.
+  /// m, of such a chain: how far from straight it may be between two nodes, whose number adapts; 0:
+  /// it is fixed.
   double node_tolerance = 0.0;
   double bending_stiffness = 0.0;  ///< N m^2, EI, of such a chain
   int bends_with = -1;  ///< of a piece between nodes: the next one, against which it bends; or -1
@@ -135,8 +136,8 @@ struct Cable {
   double linear_drag = 0.0;       ///< 1/s, of its nodes
 };
 
-/// A cable of nodes whose number adapts, by spread_nodes: its finest pieces, equally long, and the nodes between
-/// them.
+/// A cable of nodes whose number adapts, by spread_nodes: its finest pieces, equally long, and the
+/// nodes between them.
 struct NodeChain {
   int cable = 0;                ///< the first piece
   int first_piece = 0;          ///< the second; all others follow

@@ -12,7 +12,8 @@ struct BroadPhase;
 /// Figures that the geometry takes for granted.
 void refuse_impossible_figures(const Scene& scene);
 
-/// Cables with mass that may slip, where that is not solved: by sweeps, and with three rows a pinch.
+/// Cables with mass that may slip, where that is not solved: by sweeps, and with three rows a
+/// pinch.
 void refuse_slip_of_mass(const Scene& scene, const Configuration& configuration);
 
 /// Bodies in one another or in a wall.

@@ -16,14 +16,14 @@ inline double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Angle (rad) of the direction e, counter-clockwise from the y axis: of the mirror image in x = 0 it is
-/// the negative to the last bit, as one from the x axis would not be.
+/// Angle (rad) of the direction e, counter-clockwise from the y axis: of the mirror image in x = 0
+/// it is the negative to the last bit, as one from the x axis would not be.
 inline double heading(const Vec2& e) {
   return std::atan2(-e.x(), e.y());
 }
 
-/// The same of a cable's first span, where the cable goes round a body by that orientation. Straight down is
-/// half a turn from the y axis either way, and in a mirror the other.
+/// The same of a cable's first span, where the cable goes round a body by that orientation.
+/// Straight down is half a turn from the y axis either way, and in a mirror the other.
 inline double first_heading(const Vec2& e, int orientation) {
   return e.x() == 0.0 ? std::copysign(heading(e), orientation) : heading(e);
 }

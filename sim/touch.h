@@ -29,8 +29,9 @@ Meeting meeting_of(const Scene& scene, const World& world, const Contact& contac
 /// Where a corner of a polygon is, or the centre of a disc (whatever `point`).
 Vec2 place_of_point(const World& world, int body, int point);
 
-/// Of a contact of two bodies that is not of circles, what of `body` is nearest to the other: the corner or
-/// the disc's centre with which it touches, or the place within its rounding that the other's touches.
+/// Of a contact of two bodies that is not of circles, what of `body` is nearest to the other: the
+/// corner or the disc's centre with which it touches, or the place within its rounding that the
+/// other's touches.
 Vec2 nearest_place(const World& world, const Contact& contact, int body);
 
 /// Brings a contact's gap and normal up to the bodies' present positions.
@@ -45,8 +46,8 @@ void append_touches(const Scene& scene, const World& world, int a, int b, int wa
                     std::vector<Contact>& to);
 
 /// By how much the outlines of two bodies one of which is a polygon are apart along the direction
-/// that parts them most (m): below 0 they overlap by that. Where they are apart, their distance is at
-/// least that.
+/// that parts them most (m): below 0 they overlap by that. Where they are apart, their distance is
+/// at least that.
 double separation(const World& world, int a, int b);
 
 }  // namespace pinchlab

@@ -14,7 +14,8 @@ inline int find_root(std::vector<int>& root, int item) {
   return item;
 }
 
-/// The tree with the lesser root takes the other, so that sets come in the order of their first items.
+/// The tree with the lesser root takes the other, so that sets come in the order of their first
+/// items.
 inline void join(std::vector<int>& root, int a, int b) {
   a = find_root(root, a);
   b = find_root(root, b);

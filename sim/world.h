@@ -15,9 +15,10 @@
 
 namespace pinchlab {
 
-/// How a cable lies in layers on the drum that holds its end, by the area that it takes: wound by the
-/// angle th it has the length l = inner th + w th^2 / 2 pi (w the half width), and its centre line there
-/// the radius sqrt(inner^2 + 2 w l / pi) = inner + w th / pi, which is dl/dth and lever arm alike.
+/// How a cable lies in layers on the drum that holds its end, by the area that it takes: wound by
+/// the angle th it has the length l = inner th + w th^2 / 2 pi (w the half width), and its centre
+/// line there the radius sqrt(inner^2 + 2 w l / pi) = inner + w th / pi, which is dl/dth and lever
+/// arm alike.
 struct Layers {
   int way = 0;          // +1: the drum holds the cable's start, -1: its end; 0: there are none
   double inner = 0.0;   // m, radius of the centre line where the first layer begins
@@ -35,8 +36,9 @@ struct Layers {
 /// The material at the link's tail tangent has the coordinate material + p (alpha_tail - angle),
 /// that at its head tangent material + p (alpha_head - angle), where p = orientation * radius,
 /// alpha is the direction of the segment before or after, and angle is the body's. Without slip
-/// `material` is constant, so the cable's total length is conserved by construction. Of an elastic cable
-/// that a rim carries over stretched it is material + what its rim carries up to p (alpha - angle).
+/// `material` is constant, so the cable's total length is conserved by construction. Of an elastic
+/// cable that a rim carries over stretched it is material + what its rim carries up to p (alpha -
+/// angle).
 struct alignas(64) Link {
   // What every step reads, in one line of the cache.
   int body = -1;              // index, or -1: attached to the world
@@ -152,8 +154,8 @@ inline double stored_length(const Link& link) {
   return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
 }
 
-/// What came of a step. It fails where a value is not finite, or where cables bend round more corners, or meet and
-/// leave bodies more often, than anything real: World::failure.
+/// What came of a step. It fails where a value is not finite, or where cables bend round more
+/// corners, or meet and leave bodies more often, than anything real: World::failure.
 enum class StepStatus { ok, failed };
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -210,6 +211,16 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
       "  pinchlab study plan --participants 16 --seed 7\n"
       "  pinchlab study plan --participants 16 --seed 7 --csv plan.csv --json plan.json");
   command->callback([options, stimuli] {
+    const fs::path csv = options->csv.empty() && options->json.empty() ? "-" : options->csv;
+    if (is_same_file(csv, options->json)) {
+      throw std::invalid_argument("--csv and --json must be different files");
+    }
+    for (const fs::path& out : {csv, options->json}) {
+      if (!out.empty() && is_same_file(out, options->config)) {
+        throw std::invalid_argument(
+            fmt::format("{}: is the configuration; give the plan another name", out.string()));
+      }
+    }
     Config config = read_or_default(options->config);
     const fs::path csv = options->csv.empty() && options->json.empty() ? "-" : options->csv;
     if (is_same_file(csv, options->json)) {
@@ -422,11 +433,14 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
     const Truth truth = read_truth(options->truth);
     Desk desk(std::move(desk_options));
     const int participants = options->simulation.participants;
-    options->simulation.progress = [participants](int finished) {
-      fmt::print(stderr, "\r{} of {} finished", finished, participants);
+    pinchlab::Progress progress("simulating", "participants", participants);
+    std::mutex mutex;
+    options->simulation.progress = [&](int) {
+      const std::scoped_lock lock(mutex);
+      progress.add(1);
     };
     simulate(desk, truth, options->simulation);
-    fmt::print(stderr, "\n");
+    progress.clear();
     fmt::print("{} simulated participants; answers in {}\n", participants,
                options->answers.string());
   });
@@ -464,6 +478,12 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
   CLI::App* study =
       app.add_subcommand("study", "Ask people which clip looks most realistic, in a browser")
           ->require_subcommand(1);
+  study->footer(
+      "Clips that are missing are rendered. study/README.md tells how a study is run.\n\n"
+      "Examples:\n"
+      "  pinchlab study plan --participants 16 --seed 7\n"
+      "  pinchlab study serve --clips clips --answers answers\n"
+      "  pinchlab study export --answers answers --csv answers.csv");
   add_serve(*study, stimuli);
   add_plan(*study, stimuli);
   add_freeze(*study, stimuli);

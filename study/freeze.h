@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// The frozen design of a study, and a preregistration text of it, made before the first participant.
+// The frozen design of a study, and a preregistration text of it, made before the first
+// participant.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A client as patient as a browser, of a server on this computer: for simulated participants and tests.
+// A client as patient as a browser, of a server on this computer: for simulated participants and
+// tests.
 
 #include <chrono>
 #include <cstdint>

@@ -128,6 +128,15 @@ HttpRequest plain(http::request<http::string_body> message, const std::string& a
   return request;
 }
 
+// What helps where an address cannot be listened on.
+const char* cure_of(const error_code& error) {
+  if (error == asio::error::address_in_use) {
+    return "is another server running? Use another --port or --host";
+  }
+  if (error == asio::error::access_denied) return "use a --port of 1024 or more";
+  return "use another --host: an address or name of this computer, or 0.0.0.0 for all of them";
+}
+
 }  // namespace
 
 struct HttpServer::Implementation {
@@ -155,10 +164,8 @@ struct HttpServer::Implementation {
       acceptor.bind(endpoint);
       acceptor.listen(static_cast<int>(limits.connections));
     } catch (const boost::system::system_error& error) {
-      throw std::runtime_error(
-          fmt::format("{}:{} cannot be listened on: {}; is another server running? Use another "
-                      "--port or --host",
-                      host, port, error.code().message()));
+      throw std::runtime_error(fmt::format("{}:{} cannot be listened on: {}; {}", host, port,
+                                           error.code().message(), cure_of(error.code())));
     }
   }
 

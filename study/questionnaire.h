@@ -44,8 +44,8 @@ inline constexpr std::array<const char*, 3> questionnaire_parts = {"screen", "be
 /// What `measure_screen` asks: size of a pixel, viewing distance, refresh rate.
 Questionnaire screen_questions();
 
-/// Reads `measure_screen`, `questionnaire_before` and `questionnaire_after` of a configuration strictly. Throws
-/// InputError.
+/// Reads `measure_screen`, `questionnaire_before` and `questionnaire_after` of a configuration
+/// strictly. Throws InputError.
 Questionnaires read_questionnaires(JsonObject& object, const std::string& file);
 
 /// As a configuration holds them, which is also what the page gets: part -> questions.

@@ -16,10 +16,10 @@ class Results {
   explicit Results(std::filesystem::path answers) : answers_(std::move(answers)) {}
 
   /// `{finished, demonstrations: [{name, answers, left}], sides: {left, right}, warnings: [{code,
-  /// participant, value}]}`; with `reveal` demonstrations also hold `chosen`, by what was chosen, or
-  /// `levels`. Warnings: dropped_frames (share of all, over 0.02), small_clip (shown less than 900
-  /// CSS pixels wide), failed_check (how many), one_side (share, of eight answers and more, 0.9 and
-  /// over), focus_lost (times, over 5), versions (of the page's program; of no participant).
+  /// participant, value}]}`; with `reveal` demonstrations also hold `chosen`, by what was chosen,
+  /// or `levels`. Warnings: dropped_frames (share of all, over 0.02), small_clip (shown less than
+  /// 900 CSS pixels wide), failed_check (how many), one_side (share, of eight answers and more, 0.9
+  /// and over), focus_lost (times, over 5), versions (of the page's program; of no participant).
   /// Files are read once. Safe to use from many threads.
   nlohmann::json read(bool reveal);
 

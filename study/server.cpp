@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -21,6 +22,7 @@
 #include "study/session.h"
 #include "study/study_file.h"
 #include "study/tables.h"
+#include "study/utc.h"
 #include "study/zip.h"
 
 namespace pinchlab::study {
@@ -149,7 +151,9 @@ struct Server::Implementation {
       return route->second(request);
     } catch (const Refused& refused) {
       return refusal(refused.status, refused.what());
-    } catch (const std::exception&) {
+    } catch (const std::exception& error) {
+      // Participants need not know what it is, who runs the study must.
+      fmt::print(stderr, "{} {} {}: {}\n", utc_now(), request.method, request.path, error.what());
       return refusal(500, "the server has a problem");
     }
   }

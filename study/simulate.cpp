@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
 #include "base/strict_json.h"
@@ -218,6 +219,17 @@ class Simulated {
   std::string token_;
 };
 
+// A name that the study does not have would have no effect.
+template <class Value>
+void check_names(const std::map<std::string, Value>& given, const std::vector<std::string>& known,
+                 const char* key, const char* what) {
+  for (const auto& [name, value] : given) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    throw std::invalid_argument(fmt::format("the truth's `{}`: the study has no {} `{}`{}", key,
+                                            what, name, did_you_mean(name, known)));
+  }
+}
+
 void check_truth(const Config& config, const Truth& truth) {
   for (const std::string& method : config.methods) {
     if (!truth.methods.contains(method)) {
@@ -230,6 +242,13 @@ void check_truth(const Config& config, const Truth& truth) {
           fmt::format("the truth has no threshold of the series `{}`", stimulus.clip.series));
     }
   }
+  std::vector<std::string> demonstrations = config.demonstrations;
+  demonstrations.insert(demonstrations.end(), config.training.begin(), config.training.end());
+  check_names(truth.shares, demonstrations, "shares", "demonstration");
+  check_names(truth.methods, config.methods, "methods", "method");
+  std::vector<std::string> series;
+  for (const GradedStimulus& stimulus : config.graded) series.push_back(stimulus.clip.series);
+  check_names(truth.series, series, "series", "series");
 }
 
 // Runs a server until it goes out of scope.

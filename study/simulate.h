@@ -42,7 +42,7 @@ struct SimulationOptions {
 /// Lets participants take part in a study whose desk this is: consent, clips, answers, save. Serves
 /// it on a free port of this computer meanwhile. Throws std::runtime_error for whatever is not
 /// answered as it must be, and std::invalid_argument if the truth does not tell about a method or
-/// series of the study.
+/// series of the study, or names what the study does not have.
 void simulate(Desk& desk, const Truth& truth, const SimulationOptions& options);
 
 }  // namespace pinchlab::study

@@ -22,7 +22,8 @@ std::string plan_csv(std::uint64_t seed, std::uint64_t participants, const PlanO
 /// that is no answer file.
 std::string answers_csv(const std::filesystem::path& folder);
 
-/// The same as one row a participant: times, measures that exclusion rules are about, screen, texts.
+/// The same as one row a participant: times, measures that exclusion rules are about, screen,
+/// texts.
 std::string participants_csv(const std::filesystem::path& folder);
 
 /// The same without ids of a recruiting site, for data that are shared.

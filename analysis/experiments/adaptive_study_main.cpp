@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well thresholds are found by chosen levels and by constant stimuli, against the number of
-// trials: participants of a known truth take part over HTTP, as `pinchlab study simulate` lets them.
-// For analysis/results: pinchlab_adaptive_study --out analysis/results
+// trials: participants of a known truth take part over HTTP, as `pinchlab study simulate` lets
+// them. For analysis/results: pinchlab_adaptive_study --out analysis/results
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -26,8 +26,12 @@ struct Advice {
   Problem problem;          ///< with the scene's own solution; its length is 1 m
   int reference_steps = 0;  ///< a frame
   std::vector<Rung> rungs;  ///< empty where the reference cannot vouch for the wanted error
-  int best = -1;            ///< among the rungs, or -1
+  int best = -1;            ///< best_to_type
 };
+
+/// The rung that is cheapest within the error at its steps and all finer ones, of the settings that
+/// `simulate` has a name for; -1: none.
+int best_to_type(const Question& question, const Advice& advice);
 
 /// Refines the scene's own solution until it is eight times as sure as the wanted error, or as
 /// fine as allowed, then tries all configurations. Throws SceneFileError, or std::runtime_error

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "analysis/experiments/accuracy.h"
@@ -28,21 +29,26 @@ struct Experiment {
   const char* name;
   const char* help;
   void (*run)(const Options& options);
+  const char* example;
   bool has_loads = false;
 };
 
 /// All but render, which has options of its own.
 constexpr Experiment experiments[] = {
     {"stress", "What a step costs as scenes grow, stage by stage, against the thesis' method",
-     run_stress, true},
-    {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection, true},
+     run_stress, "pinchlab bench stress --loads 1,10,100 --out /tmp/stress", true},
+    {"pinch-detection", "What finding pinches costs, phase by phase", run_pinch_detection,
+     "pinchlab bench pinch-detection --quick --out /tmp/pinches", true},
     {"features", "What features cost scenes that do not use them, and what sleep saves",
-     run_features},
-    {"accuracy", "Error against processor time, ours and other engines'", run_accuracy},
+     run_features, "pinchlab bench features --quick --out /tmp/features"},
+    {"accuracy", "Error against processor time, ours and other engines'", run_accuracy,
+     "pinchlab bench accuracy --quick --out /tmp/accuracy"},
     {"convergence", "How motion through events converges, with events at their time and without",
-     run_convergence},
-    {"shapes", "Corners, drums that fill and cables with mass against known solutions", run_shapes},
-    {"stability", "How far each method holds, and how it fails beyond", run_stability},
+     run_convergence, "pinchlab bench convergence --quick --out /tmp/convergence"},
+    {"shapes", "Corners, drums that fill and cables with mass against known solutions", run_shapes,
+     "pinchlab bench shapes --quick --out /tmp/shapes"},
+    {"stability", "How far each method holds, and how it fails beyond", run_stability,
+     "pinchlab bench stability --quick --out /tmp/stability"},
 };
 
 /// The options as they can be typed again, after the command's name.
@@ -76,6 +82,7 @@ void add_experiment(CLI::App& bench, const Experiment& experiment) {
   CLI::App* command = bench.add_subcommand(experiment.name, experiment.help);
   add_options(*command, *options);
   if (experiment.has_loads) add_loads(*command, *options);
+  command->footer(fmt::format("Example:\n  {}", experiment.example));
   command->callback([options, &experiment] {
     options->command =
         fmt::format("pinchlab bench {}{}", experiment.name, typed(*options, experiment.has_loads));
@@ -98,10 +105,18 @@ void add_render(CLI::App& bench) {
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
   command->add_option("--out", run->out, "Folder for a table and a page as well")->type_name("DIR");
+  command->footer(
+      "Examples:\n"
+      "  pinchlab bench render demos/03-drop.json --size 640x640\n"
+      "  pinchlab bench render --frames 60 --out /tmp/render");
   command->callback([run, scene, size] {
     run->scene = *scene;
     run->width = size->width;
     run->height = size->height;
+    if (run->width % 2 != 0 || run->height % 2 != 0) {
+      throw std::invalid_argument(fmt::format("h264 needs an even size, not {}x{}; change --size",
+                                              run->width, run->height));
+    }
     run->command = fmt::format(
         "pinchlab bench render{}{} --method {} --size {}x{}{} --out {}", scene->empty() ? "" : " ",
         *scene, run->method, run->width, run->height,
@@ -122,6 +137,10 @@ void add_population(CLI::App& bench) {
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
+  command->footer(
+      "Examples:\n"
+      "  pinchlab bench population --scenes 100 --out /tmp/population\n"
+      "  pinchlab bench population --first 1234 --scenes 1 --out /tmp/one");
   command->callback([run] {
     run->options.command = fmt::format("pinchlab bench population --scenes {} --first {} --out {}",
                                        run->scenes, run->first, run->options.out.string());
@@ -140,6 +159,7 @@ void add_instructions(CLI::App& bench) {
       "instructions", "What a step executes, counted by valgrind: steady where clocks are not");
   command->add_option("--out", counting->options.out, "Folder for table and page [results]")
       ->type_name("DIR");
+  command->footer("Example:\n  pinchlab bench instructions --out /tmp/instructions");
   // What the program asks of itself under valgrind.
   command->add_option("--scene", counting->scene)->group("");
   command->add_option("--growing", counting->growing)->group("");

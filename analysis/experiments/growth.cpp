@@ -48,8 +48,8 @@ Scene discs_on_walls(int count) {
   return scene;
 }
 
-/// Balls that bounce for ever on one floor, from heights that are all different, so that of many some land
-/// in every step.
+/// Balls that bounce for ever on one floor, from heights that are all different, so that of many
+/// some land in every step.
 Scene bouncing_balls(int count) {
   constexpr double golden = 0.6180339887498949;
   Scene scene = discs_in_a_row("bouncing-balls", count,

@@ -194,8 +194,8 @@ Fall fall(int pieces, int steps_per_frame) {
   return result;
 }
 
-/// The least that a step of a chain of so many nodes can consist of: tangents, a tridiagonal matrix, its
-/// elimination, speeds.
+/// The least that a step of a chain of so many nodes can consist of: tangents, a tridiagonal
+/// matrix, its elimination, speeds.
 double bare_seconds(const Scene& scene, const World& world, const Effort& effort) {
   const std::size_t rows = world.cables.size();
   std::vector<Vec2> x, v(rows + 1, Vec2::Zero()), e(rows, Vec2::Zero());

@@ -47,8 +47,8 @@ void step_or_throw(const Scene& scene, World& world, Workspace& work) {
   }
 }
 
-/// The scene begins again before a weight of the chain comes to its pulley, after 31 s: from then on it
-/// bounces and swings, which is another scene.
+/// The scene begins again before a weight of the chain comes to its pulley, after 31 s: from then
+/// on it bounces and swings, which is another scene.
 BareResult measure_bare(const char* name, const Scene& scene, Method method, const Effort& effort) {
   const World start = make_world(scene, awake(method));
   World world = start;

@@ -10,15 +10,16 @@
 
 namespace pinchlab {
 
-/// A disc's radius, or a polygon's corners; false, and a problem noted, where there is not one of them.
-/// What a polygon has besides (make_polygon) is for the caller.
+/// A disc's radius, or a polygon's corners; false, and a problem noted, where there is not one of
+/// them. What a polygon has besides (make_polygon) is for the caller.
 bool read_outline(const nlohmann::json& from, const std::string& place, BodyProperties& to,
                   std::vector<SceneProblem>& problems);
 
 /// Frictions and restitution.
 void read_surface(const nlohmann::json& from, BodyProperties& to);
 
-/// A body of a scene file, at `place` in it, checked by check_format; what does not go together is noted.
+/// A body of a scene file, at `place` in it, checked by check_format; what does not go together is
+/// noted.
 Body read_body(const nlohmann::json& from, const std::string& place,
                std::vector<SceneProblem>& problems);
 

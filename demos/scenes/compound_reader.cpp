@@ -29,8 +29,9 @@ std::vector<Shape> shapes_of(const json& from, const std::string& place,
   return shapes;
 }
 
-/// Gives the compound the mass of its density, and its centre of mass to its shapes and its position; where
-/// that is in the file's frame (m). A compound of both mass and inertia has it at that frame's origin.
+/// Gives the compound the mass of its density, and its centre of mass to its shapes and its
+/// position; where that is in the file's frame (m). A compound of both mass and inertia has it at
+/// that frame's origin.
 Vec2 weigh(const json& from, const std::string& place, std::vector<Shape>& shapes, Body& body,
            std::vector<SceneProblem>& problems) {
   const Plate plate = plate_of(shapes);

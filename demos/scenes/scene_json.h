@@ -40,8 +40,8 @@ SceneFile read_scene_file(const std::filesystem::path& path);
 /// name.
 SceneFile parse_scene(std::string_view text, const std::filesystem::path& path);
 
-/// What `make` returns for the scene of the file at `path`; where it throws SceneError, because the geometry
-/// cannot exist, throws SceneFileError with the file's name.
+/// What `make` returns for the scene of the file at `path`; where it throws SceneError, because the
+/// geometry cannot exist, throws SceneFileError with the file's name.
 template <class Make>
 auto for_file(const std::filesystem::path& path, Make make) {
   try {

@@ -17,8 +17,8 @@ struct SceneContent {
   double poster_time = 0.0;  ///< s
 };
 
-/// Reads JSON that has the form of scene_format(), and adds to `problems` what does not go together:
-/// names, kinds, numbers. Where there is one, the content is not to be used.
+/// Reads JSON that has the form of scene_format(), and adds to `problems` what does not go
+/// together: names, kinds, numbers. Where there is one, the content is not to be used.
 SceneContent read_scene(const nlohmann::json& from, std::vector<SceneProblem>& problems);
 
 }  // namespace pinchlab

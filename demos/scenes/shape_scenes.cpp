@@ -14,8 +14,8 @@ namespace {
 
 constexpr double g = 9.81;  // m/s^2, the default gravity
 
-/// Of the bob's angle and its speed, by one step of Runge and Kutta's method on either side of 0, also
-/// where the step goes beyond it.
+/// Of the bob's angle and its speed, by one step of Runge and Kutta's method on either side of 0,
+/// also where the step goes beyond it.
 struct Swing {
   double angle = 0.0, speed = 0.0;  // rad, rad/s
 

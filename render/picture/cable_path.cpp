@@ -96,9 +96,10 @@ class PathBuilder {
            to.orientation != 0 && from.body != to.body;
   }
 
-  /// The end of a hanging span on the far side of link `by`, whose wrap is used up, and of the pinch
-  /// on to link `next`: from there on the cable lies on that one. Adds the wrap to `length` (m); where
-  /// the two bodies clip, the span keeps its slack on the longer or shorter way from `far`.
+  /// The end of a hanging span on the far side of link `by`, whose wrap is used up, and of the
+  /// pinch on to link `next`: from there on the cable lies on that one. Adds the wrap to `length`
+  /// (m); where the two bodies clip, the span keeps its slack on the longer or shorter way from
+  /// `far`.
   SpanEnd pass(std::size_t by, std::size_t next, std::size_t pinch, const Vec2& far,
                double& length) {
     length += bounds_[by].head_material - bounds_[by].tail_material;
@@ -251,9 +252,10 @@ class PathBuilder {
     return overlap.norm() > 0.2 * smallest_sag_ ? overlap : Vec2(Vec2::Zero());
   }
 
-  /// Where two bodies clip, the arcs round them do not meet. Both give way, the shorter one by more,
-  /// smoothly, along a few widths of cable; what is left at the end of a short arc moves the end of
-  /// the span beyond it. So the cable does not jump where the one body's wrap begins or ends.
+  /// Where two bodies clip, the arcs round them do not meet. Both give way, the shorter one by
+  /// more, smoothly, along a few widths of cable; what is left at the end of a short arc moves the
+  /// end of the span beyond it. So the cable does not jump where the one body's wrap begins or
+  /// ends.
   struct GiveWay {
     Vec2 at_tail = Vec2::Zero(), at_head = Vec2::Zero();  // m, at the ends of the arc
     double length = 0.0, reach = 1.0;                     // m, of the arc; along which it fades

@@ -13,7 +13,8 @@ namespace pinchlab {
 
 namespace {
 
-/// The node (a body) number i, from 1 on, of those that a piece holds, of a chain whose number of nodes adapts.
+/// The node (a body) number i, from 1 on, of those that a piece holds, of a chain whose number of
+/// nodes adapts.
 int held_node(const Scene& scene, std::size_t piece, int i) {
   const int c = static_cast<int>(piece);
   for (const NodeChain& chain : scene.chains) {
@@ -34,8 +35,8 @@ void append_bend(const Vec2& to, std::vector<StripPoint>& points) {
   }
 }
 
-/// The piece that goes on from the node that holds `end`. Pieces follow one another, the first one's successor
-/// after all cables that the scene had.
+/// The piece that goes on from the node that holds `end`. Pieces follow one another, the first
+/// one's successor after all cables that the scene had.
 std::size_t next_piece(const World& world, std::size_t piece, const Link& end) {
   const auto starts_there = [&end](const CableState& next) {
     return next.rod && next.links.front().body == end.body;

@@ -13,8 +13,8 @@ namespace pinchlab {
 /// Whether a node holds the link.
 bool is_on_node(const Scene& scene, const Link& link);
 
-/// Appends the centre line of a cable with mass from its first piece on, as the points of one strip that bends at
-/// the nodes, those that have been taken into longer pieces too.
+/// Appends the centre line of a cable with mass from its first piece on, as the points of one strip
+/// that bends at the nodes, those that have been taken into longer pieces too.
 void append_chain_path(const Scene& scene, const World& world, std::size_t first_piece,
                        std::vector<StripPoint>& points);
 

@@ -169,8 +169,8 @@ class Composer {
     }
   }
 
-  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a turn
-  /// is full, by which the first turn climbs on to itself.
+  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a
+  /// turn is full, by which the first turn climbs on to itself.
   void add_riser(const Link& link, double half_width) {
     const auto body = static_cast<std::size_t>(link.body);
     const auto [fill, edge] = paint_of(body);
@@ -234,7 +234,8 @@ class Composer {
     go_to(to);
   }
 
-  /// A block at the place where a stop's body runs against it, off the rail's line by the body's radius.
+  /// A block at the place where a stop's body runs against it, off the rail's line by the body's
+  /// radius.
   void add_stop(const CableState& cable) {
     const Link& body = cable.links.back();
     const Vec2 axis = cable.segments[1].direction;
@@ -328,8 +329,8 @@ class Composer {
     picture_.add(Patch{picture_.corners.size() - count, count, colour});
   }
 
-  /// Visits the points of a polygon's outline moved inwards by `depth` (m), with the outline's direction, and
-  /// once for each where it has no rounding left.
+  /// Visits the points of a polygon's outline moved inwards by `depth` (m), with the outline's
+  /// direction, and once for each where it has no rounding left.
   template <class Visit>
   void trace(std::size_t i, double depth, Visit visit) const {
     const double rounding = scene_.bodies[i].corner_radius;

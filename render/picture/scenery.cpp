@@ -195,8 +195,8 @@ void Rehearsal::fit_labels() {
   scenery_.view = {frame.low, frame.high};
 }
 
-/// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail or
-/// another body; out of the view counts three times.
+/// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail
+/// or another body; out of the view counts three times.
 double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
                           double own_radius) const {
   const Box frame{scenery_.view.low, scenery_.view.high};
@@ -218,9 +218,12 @@ double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
 }
 
 Box Rehearsal::label_box(const SceneryLabel& label) const {
-  // A character of DejaVu Sans is about 0.6 em wide.
+  // A character of DejaVu Sans is about 0.6 em wide; in UTF-8 each begins with a byte other than
+  // 10xxxxxx.
   const double height = scenery_.text();
-  const Vec2 half(0.5 * 0.6 * height * static_cast<double>(label.text.size()), 0.6 * height);
+  const auto characters =
+      std::ranges::count_if(label.text, [](char c) { return (c & 0xC0) != 0x80; });
+  const Vec2 half(0.5 * 0.6 * height * static_cast<double>(characters), 0.6 * height);
   return {-half, half};
 }
 

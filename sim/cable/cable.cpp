@@ -90,8 +90,8 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 namespace {
 
 /// The radius of a drum's outermost turn depends on the direction of the span that leaves it, which
-/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by w / (pi
-/// length) each time.
+/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by w /
+/// (pi length) each time.
 void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
                         const Link& from, const Link& to) {
   constexpr int most_rounds = 60;
@@ -123,7 +123,8 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
   const bool exact = locates_events(world.configuration);  // and so round-off matters
-  // Far above what gaps are right to (1e-12 of the part's extent); less to become pinched than to stay so.
+  // Far above what gaps are right to (1e-12 of the part's extent); less to become pinched than to
+  // stay so.
   const double parting = !opposite(from, to) || !exact ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
@@ -160,8 +161,8 @@ void update_wrap(CableState& cable, Link& link, double arrives, double leaves) {
   if (!(link.wrap >= 0.0 || link.pinch_middle)) cable.unwound = true;
 }
 
-/// Notes what the whole step asks of a segment whose rest length is up to date, while it is at hand.
-/// Zero times what is finite is zero, and sums of that are.
+/// Notes what the whole step asks of a segment whose rest length is up to date, while it is at
+/// hand. Zero times what is finite is zero, and sums of that are.
 void inspect(CableState& cable, const Segment& segment, double rounding, double& sum) {
   if (segment.pinched && !(segment.rest_length <= rounding)) cable.overfull = true;
   sum += 0.0 * (segment.length + segment.rest_length + segment.tension);

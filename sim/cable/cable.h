@@ -135,15 +135,15 @@ void begin_layers(const World& world, CableState& cable, std::size_t link, int w
 /// UpdateSegments). Material stays where it is on every body.
 void update_segments(World& world, Workspace& work);
 
-/// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last began. `known`:
-/// what cannot move has not been moved by hand.
+/// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last
+/// began. `known`: what cannot move has not been moved by hand.
 bool update_cable(const World& world, CableState& cable, bool begins, bool known);
 
 /// Tangent, direction and length of segment i alone; its angle is kept continuous.
 void update_tangent(const World& world, CableState& cable, std::size_t segment);
 
-/// Material coordinate (m) of the point where a cable of direction `alpha` (rad) leaves link i's body, which is
-/// turned by `angle` (rad), or with `at_head` where it comes on to it.
+/// Material coordinate (m) of the point where a cable of direction `alpha` (rad) leaves link i's
+/// body, which is turned by `angle` (rad), or with `at_head` where it comes on to it.
 double material_at(const CableState& cable, std::size_t i, bool at_head, double alpha,
                    double angle);
 

@@ -11,7 +11,8 @@ namespace pinchlab {
 
 namespace {
 
-/// Where a segment of the direction alpha meets the link's rim (m along it, forward along the cable).
+/// Where a segment of the direction alpha meets the link's rim (m along it, forward along the
+/// cable).
 double place_on_rim(const World& world, const Link& link, double alpha) {
   return link.signed_radius() * (alpha - body_angle(world, link));
 }
@@ -64,7 +65,8 @@ void move_tail(Rim& rim, double place) {
   }
 }
 
-/// Ends what the rim carries where the cable leaves it. So little that tensions cannot tell waits for more to come.
+/// Ends what the rim carries where the cable leaves it. So little that tensions cannot tell waits
+/// for more to come.
 void keep(Rim& rim, const Span& span, double radius) {
   const double rounding = 1e-10 * radius;
   if (std::abs(span.head - rim.laid.back().place) > rounding) move_head(rim, span.head);
@@ -78,8 +80,8 @@ double slope_at_end(const Rim& rim, bool at_head) {
   return at_head ? laid[laid.size() - 2].slope : laid[0].slope;
 }
 
-/// Material in a metre of what comes off a segment on to a rim: its own strain's, or, through a pinch, that of
-/// the rim beyond.
+/// Material in a metre of what comes off a segment on to a rim: its own strain's, or, through a
+/// pinch, that of the rim beyond.
 double slope_of(const CableState& cable, std::size_t i, std::size_t before) {
   const Segment& segment = cable.segments[i];
   if (!segment.pinched) {
@@ -91,8 +93,8 @@ double slope_of(const CableState& cable, std::size_t i, std::size_t before) {
   return to.laid.empty() ? 1.0 : slope_at_end(to, false);
 }
 
-/// m/s, by which a link's rim takes less of a segment's material than it turns by, or gives it less; forward
-/// positive.
+/// m/s, by which a link's rim takes less of a segment's material than it turns by, or gives it
+/// less; forward positive.
 double creep_at(const World& world, const Link& link, const Rim& rim, bool at_head) {
   if (rim.laid.empty()) return 0.0;
   const double speed = link.signed_radius() * at(world.angular_velocity, link.body);
@@ -127,8 +129,8 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
   if (span.head > span.tail) laid.push_back({span.head, span.head, 1.0});
 }
 
-// The strain at the middle of the interval to come is extrapolated from those at its start and at the start of the
-// one before, so that creep is of second order.
+// The strain at the middle of the interval to come is extrapolated from those at its start and at
+// the start of the one before, so that creep is of second order.
 void lay_down(const World& world, CableState& cable) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Rim& rim = cable.rims[i];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Elastic creep: what a rim carries over has the strain that it came on with. Of a cable that is stretched
-// by e, a rim that turns by ds takes ds / (1 + e) of material, and gives back what it has taken, whatever the
-// tension is where it goes off: the belt on a driven pulley is slower than on the one that drives it,
+// Elastic creep: what a rim carries over has the strain that it came on with. Of a cable that is
+// stretched by e, a rim that turns by ds takes ds / (1 + e) of material, and gives back what it has
+// taken, whatever the tension is where it goes off: the belt on a driven pulley is slower than on
+// the one that drives it,
 //     w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA).
 // On discs that a cable does not slip on; elsewhere rims carry as much as they turn.
 
@@ -13,8 +14,8 @@ namespace pinchlab {
 /// Material on a rim up to a place (m), beyond what lies there by what comes on.
 double laid_material(const Rim& rim, double place);
 
-/// The same near the end where the cable leaves the rim, or comes to it: whichever way the place lies off that by
-/// round-off, without a jump.
+/// The same near the end where the cable leaves the rim, or comes to it: whichever way the place
+/// lies off that by round-off, without a jump.
 inline double laid_near_end(const Rim& rim, bool at_head, double place) {
   const std::size_t last = rim.laid.size() - 1;
   const Laid& end = at_head ? rim.laid[last] : rim.laid[0];
@@ -29,16 +30,16 @@ inline double laid_near_end(const Rim& rim, bool at_head, double place) {
   return end.material + beyond * (beyond > 0.0 ? end.slope : rim.comes_on_at_tail);
 }
 
-/// Gives a link of a cable that creeps, newly on its body, a rim that has carried what it turned by so far,
-/// if it is one that may do otherwise from now on.
+/// Gives a link of a cable that creeps, newly on its body, a rim that has carried what it turned by
+/// so far, if it is one that may do otherwise from now on.
 void begin_to_carry(const World& world, CableState& cable, std::size_t link);
 
-/// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has gone off
-/// them is forgotten; and sets what will come on in the next.
+/// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has
+/// gone off them is forgotten; and sets what will come on in the next.
 void lay_down(const World& world, CableState& cable);
 
-/// m/s, by which the rims at the ends of a segment of a cable that creeps change its material otherwise than
-/// they turn, at the world's velocities.
+/// m/s, by which the rims at the ends of a segment of a cable that creeps change its material
+/// otherwise than they turn, at the world's velocities.
 double creep_speed(const World& world, const CableState& cable, int segment);
 
 /// m of material on a link, which has wraps.

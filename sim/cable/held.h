@@ -2,16 +2,17 @@
 #pragma once
 // Chains whose number of nodes adapts: pieces that hold the bend that they had, as rigid bodies.
 //
-// A piece is made of n of the finest pieces of its chain, n a power of two (CableState::pieces), those after the
-// first dormant (0), and so are the nodes between them: they bear nothing, nothing meets them, and they are carried
-// along. The finest keep their length l and the directions turned_i to the straight line between the ends that they
-// had when they became one, so that the rod between these ends is c = |sum l e(turned_i)| long, a little less than n
-// l: no cable is lost, and no node jumps. Half of its mass rho n l moves with either end. Where the nodes r_i
-// really are off these ends' middle is its first moment
+// A piece is made of n of the finest pieces of its chain, n a power of two (CableState::pieces),
+// those after the first dormant (0), and so are the nodes between them: they bear nothing, nothing
+// meets them, and they are carried along. The finest keep their length l and the directions
+// turned_i to the straight line between the ends that they had when they became one, so that the
+// rod between these ends is c = |sum l e(turned_i)| long, a little less than n l: no cable is lost,
+// and no node jumps. Half of its mass rho n l moves with either end. Where the nodes r_i really are
+// off these ends' middle is its first moment
 //     h = rho l (sum r_i - (n - 1) / 2 (c, 0))                     in the frame of the line, kg m,
-// whose weight it has: V = -g . R(theta) h, and so n . (left(R h) . g) / c across its ends. Then its statics are
-// those of the nodes, exactly: a cable that hangs at rest stays as it hangs, whatever becomes one. Of the kinetic
-// energy h has no part.
+// whose weight it has: V = -g . R(theta) h, and so n . (left(R h) . g) / c across its ends. Then
+// its statics are those of the nodes, exactly: a cable that hangs at rest stays as it hangs,
+// whatever becomes one. Of the kinetic energy h has no part.
 
 #include "sim/world.h"
 
@@ -25,11 +26,12 @@ inline int node_before(const NodeChain& chain, int number) {
   return chain.first_body + number - 1;
 }
 
-/// Gives the piece that begins at that one its rod's length, first moment and nodes' seats, from what its finest are
-/// turned by.
+/// Gives the piece that begins at that one its rod's length, first moment and nodes' seats, from
+/// what its finest are turned by.
 void settle_held(World& world, const NodeChain& chain, int first);
 
-/// m, by which the piece is bent at most: its nodes' greatest distance from the line between its ends.
+/// m, by which the piece is bent at most: its nodes' greatest distance from the line between its
+/// ends.
 double held_bend(const World& world, const NodeChain& chain, int first);
 
 /// Places a chain's dormant nodes, and sets their velocities, by the ends of what they are part of.
@@ -41,13 +43,15 @@ void carry_velocities(const World& world, const NodeChain& chain, std::vector<Ve
 /// Whether what holds an end of a piece has a centre that can move.
 bool moves(const World& world, const Link& end);
 
-/// Velocity of a body that holds an end of a piece at its centre, or not at all; 0 of what stands (m/s).
+/// Velocity of a body that holds an end of a piece at its centre, or not at all; 0 of what stands
+/// (m/s).
 Vec2 end_velocity(const World& world, const Link& end);
 
 /// h in the plane (kg m).
 Vec2 first_moment(const CableState& piece);
 
-/// Of a chain's first moments, and of the mass that ends have which do not move (J): beside that of bodies that do.
+/// Of a chain's first moments, and of the mass that ends have which do not move (J): beside that of
+/// bodies that do.
 double potential_energy_held(const World& world, const NodeChain& chain, const Vec2& gravity);
 
 /// Force that the weight of h has on the piece's end, and its opposite on its start (N).

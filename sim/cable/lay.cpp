@@ -64,8 +64,8 @@ std::vector<Link> choices(const World& world, const Cable& cable, const Wrap& wr
   return links;
 }
 
-/// Whether all corners of a link's polygon are on the inner side of a span along `direction` through
-/// `point`.
+/// Whether all corners of a link's polygon are on the inner side of a span along `direction`
+/// through `point`.
 bool is_beside(const World& world, const Link& link, const Vec2& point, const Vec2& direction,
                double allowed) {
   if (link.corner < 0) return true;
@@ -77,8 +77,8 @@ bool is_beside(const World& world, const Link& link, const Vec2& point, const Ve
   });
 }
 
-/// Of all tangents from one of the first links to one of the others, the one that leaves no corner on
-/// its outer side; whether there is one.
+/// Of all tangents from one of the first links to one of the others, the one that leaves no corner
+/// on its outer side; whether there is one.
 bool join(const World& world, const std::vector<Link>& from, const std::vector<Link>& to,
           double allowed, Link& leaves, Link& arrives) {
   for (const Link& tail : from) {
@@ -96,8 +96,8 @@ bool join(const World& world, const std::vector<Link>& from, const std::vector<L
   return false;
 }
 
-/// Links of a wrap from the one at which the cable arrives to the one at which it leaves: on a polygon
-/// those at the corners between them, and once more round for each extra turn.
+/// Links of a wrap from the one at which the cable arrives to the one at which it leaves: on a
+/// polygon those at the corners between them, and once more round for each extra turn.
 void append_wrap(const World& world, int number, const Link& first, const Link& last,
                  Course& course) {
   const Wrap& wrap = at(course.given.wraps, number);
@@ -132,7 +132,7 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
     throw SceneError(
         place_of_stop(course, static_cast<int>(i) + first_stop),
         fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
-                    "move them apart or turn the orientation round",
+                    "move them apart or give the wrap the other `turn`",
                     name_of_body(scene, leaves[before].body),
                     name_of_body(scene, arrives[i].body)));
   }
@@ -214,7 +214,7 @@ void lay_wraps(const Scene& scene, Course& course) {
       throw SceneError(
           place_of(course, i),
           fmt::format("the cable would have to run {:.0f} degrees round {}; does it pass on "
-                      "the other side (turn the orientation round), or not touch it at all?",
+                      "the other side (the other `turn`), or not touch it at all?",
                       of_stop / turn * 360.0, name_of_body(scene, link.body)));
     }
     const double next = cable.segments[i].alpha + link.orientation * (wrap + turn * turns);

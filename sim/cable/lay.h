@@ -7,8 +7,8 @@
 
 namespace pinchlab {
 
-/// Cable c of the scene, for the bodies' positions in `world`. Throws SceneError where it does not fit,
-/// to `allowed` (m; overlap_allowed).
+/// Cable c of the scene, for the bodies' positions in `world`. Throws SceneError where it does not
+/// fit, to `allowed` (m; overlap_allowed).
 CableState lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c);
 
 }  // namespace pinchlab

@@ -37,8 +37,8 @@ void take_over(CableState& cable, int link, int later) {
 
 void remove_link(World& world, CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
-  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now, and how
-  // the cable slipped there is over.
+  // The neighbours of what goes may have been middle links of a pinch: they are ordinary ones now,
+  // and how the cable slipped there is over.
   for (const int neighbour : {before, after}) {
     Link& now = at(cable.links, neighbour);
     if (now.pinch_middle) now.slip_speed = 0.0;

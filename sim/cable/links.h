@@ -23,9 +23,9 @@ bool remove_links(World& world, Workspace& work);
 /// Takes link i out of the cable. If its neighbours lie on one body they become one link.
 void remove_link(World& world, CableState& cable, int link);
 
-/// Puts a rolling link on `body`, or on that corner of it, into free segment i, between its tail and
-/// head links, and shares the segment's material so that both parts are stretched alike (thesis:
-/// AddJoints); a part that then lies along a polygon gets as much as it is long.
+/// Puts a rolling link on `body`, or on that corner of it, into free segment i, between its tail
+/// and head links, and shares the segment's material so that both parts are stretched alike
+/// (thesis: AddJoints); a part that then lies along a polygon gets as much as it is long.
 void insert_link(World& world, CableState& cable, std::size_t segment, int body, int corner,
                  int orientation);
 

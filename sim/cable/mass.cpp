@@ -172,8 +172,8 @@ Eigen::Matrix3d inverse_on(const Ways& ways, const Eigen::Matrix3d& matrix) {
   return ways * there.inverse() * ways.transpose();
 }
 
-/// Changes the body's velocity as if a mass with velocity u had joined it at z, where its own mass, `carried`
-/// with it, already has that mass.
+/// Changes the body's velocity as if a mass with velocity u had joined it at z, where its own mass,
+/// `carried` with it, already has that mass.
 void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass, const Vec2& z,
              const Vec2& u) {
   const BodyProperties& properties = at(world.bodies, body);
@@ -187,8 +187,8 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass
   omega += change.z();
 }
 
-/// Changes velocities as take_up does, where the mass has joined sleeve `at_sleeve` of the body (-1: the
-/// body itself) and all of `sleeves` are counted with what is on theirs.
+/// Changes velocities as take_up does, where the mass has joined sleeve `at_sleeve` of the body
+/// (-1: the body itself) and all of `sleeves` are counted with what is on theirs.
 void take_up(World& world, int body, const Eigen::Matrix3d& carried,
              const std::vector<Sleeve>& sleeves, int at_sleeve, double mass, const Vec2& z,
              const Vec2& u) {

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Cables with mass that run over bodies: belts, and ropes over pulleys and on drums, tight enough to be
-// straight. Half of a span's mass moves with its end on either body, and what lies on a rim turns with
-// it, so that along a taut cable all of its mass and weight is there, whatever its spans' lengths.
+// Cables with mass that run over bodies: belts, and ropes over pulleys and on drums, tight enough
+// to be straight. Half of a span's mass moves with its end on either body, and what lies on a rim
+// turns with it, so that along a taut cable all of its mass and weight is there, whatever its
+// spans' lengths.
 //
-// With z = left(x) for a place x from a body's centre, u = v + omega z is the velocity there, and what a
-// body carries of cables has the kinetic energy
+// With z = left(x) for a place x from a body's centre, u = v + omega z is the velocity there, and
+// what a body carries of cables has the kinetic energy
 //     T = sum 1/2 rho l |u|^2 / 2 (ends of spans) + 1/2 integral rho |u|^2 ds (rims),
-// whose Hessian joins the body's own mass. T depends on where things are too: material flows, tangents
-// turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in velocities.
+// whose Hessian joins the body's own mass. T depends on where things are too: material flows,
+// tangents turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in
+// velocities.
 
 #include <Eigen/Core>
 #include <span>
@@ -20,8 +22,8 @@
 namespace pinchlab {
 
 /// A straight piece between two links. Of its ends a and b: body that it moves with, the number of
-/// bodies for the world, whose centre is its origin, or -1 - k for sleeve k (sleeve.h); p and centre of
-/// the link's circle, see Link.
+/// bodies for the world, whose centre is its origin, or -1 - k for sleeve k (sleeve.h); p and
+/// centre of the link's circle, see Link.
 struct MassedSpan {
   int a = 0, b = 0;
   double p_a = 0.0, p_b = 0.0;                        // m
@@ -61,24 +63,25 @@ inline double end_mass(const MassedSpan& span) {
 /// Adds a cable's masses, its geometry being up to date. `sleeves`: of this cable and others.
 void add_masses(const World& world, int cable, const std::vector<Sleeve>& sleeves, CableMasses& to);
 
-/// Adds them to the masses of bodies, for (x, y, angle): kg, kg m, kg m^2. Bodies are one after another as in the
-/// spans, and the world after the last.
+/// Adds them to the masses of bodies, for (x, y, angle): kg, kg m, kg m^2. Bodies are one after
+/// another as in the spans, and the world after the last.
 void add_carried(const CableMasses& masses, std::span<Eigen::Matrix3d> to);
 
-/// The same of all cables of the world, and its sleeves with their masses; empty where none has mass.
+/// The same of all cables of the world, and its sleeves with their masses; empty where none has
+/// mass.
 void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
                   std::vector<Sleeve>& sleeves);
 
-/// What a sleeve has at least. Where both spans beside a new one are pinched it has no mass of its own:
-/// as little as this does not show, and keeps its motion determined.
+/// What a sleeve has at least. Where both spans beside a new one are pinched it has no mass of its
+/// own: as little as this does not show, and keeps its motion determined.
 Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen::Matrix3d& mass);
 
 /// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`.
 void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
                       std::span<Eigen::Vector3d> to);
 
-/// What this is to the turning of the sleeves at either end, as a tension of the span (N): at a, at b. Places
-/// are of `velocities`.
+/// What this is to the turning of the sleeves at either end, as a tension of the span (N): at a, at
+/// b. Places are of `velocities`.
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Eigen::Vector3d> velocities);
 
 /// Of a cable's weight (J).
@@ -90,8 +93,9 @@ Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& m
 /// The same on what a sleeve on the body can do: it turns whatever holds the body.
 Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix);
 
-/// insert_link and remove_link of a cable that may have mass: a body that it meets, or its sleeve there, and
-/// those that it is left to, take up the momentum of their new share, which they and no others bear.
+/// insert_link and remove_link of a cable that may have mass: a body that it meets, or its sleeve
+/// there, and those that it is left to, take up the momentum of their new share, which they and no
+/// others bear.
 void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
                int orientation);
 void leave_body(World& world, CableState& cable, int link);

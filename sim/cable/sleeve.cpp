@@ -121,7 +121,8 @@ void begin_slip(const Scene& scene, World& world) {
     sleeves.clear();
     list_sleeves(world, c, sleeves);
     if (sleeves.empty()) continue;
-    // From a link that the cable does not slip at; where it slips everywhere, the first sleeve turns along.
+    // From a link that the cable does not slip at; where it slips everywhere, the first sleeve
+    // turns along.
     int last = cable.closed ? -1 : 0;
     for (int i = 0; cable.closed && last < 0 && index(i) < cable.links.size(); ++i) {
       const bool slips = sleeve_at(world, sleeves, c, i) >= 0;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Cables with mass that may slip on bodies (mass.h; bodies with a finite cable friction). What lies on such
-// a disc, with half of either span beside it, turns about the disc's centre as a sleeve on it would:
-// it moves along with the centre, and has an angular velocity of its own,
+// Cables with mass that may slip on bodies (mass.h; bodies with a finite cable friction). What lies
+// on such a disc, with half of either span beside it, turns about the disc's centre as a sleeve on
+// it would: it moves along with the centre, and has an angular velocity of its own,
 //     omega_s = omega + s / p,       s: slip speed, p: signed radius of the cable's centre line,
-// so that its mass is inertia to the cable's own motion, and none to the disc's turning. What passes
-// between the two is friction alone: solve/rubbing.h.
+// so that its mass is inertia to the cable's own motion, and none to the disc's turning. What
+// passes between the two is friction alone: solve/rubbing.h.
 
 #include <Eigen/Core>
 #include <vector>
@@ -26,7 +26,8 @@ struct Sleeve {
 /// Whether any part of the cable is a sleeve.
 bool has_sleeves(const World& world, const CableState& cable);
 
-/// Appends a cable's sleeves, in its order. What is wound up on the body that holds the cable's end is fast.
+/// Appends a cable's sleeves, in its order. What is wound up on the body that holds the cable's end
+/// is fast.
 void list_sleeves(const World& world, int cable, std::vector<Sleeve>& to);
 
 /// The place in `sleeves` of the one that link `link` of the cable is part of, or -1.
@@ -41,8 +42,8 @@ Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve);
 /// Lets a sleeve slip at `speed` (m/s of material over the disc's surface, forward positive).
 void set_slip(CableState& cable, const Sleeve& sleeve, Slip slip, double speed);
 
-/// A scene says how bodies move at its start: cables that are not slack move along as they must, from their
-/// first link on.
+/// A scene says how bodies move at its start: cables that are not slack move along as they must,
+/// from their first link on.
 void begin_slip(const Scene& scene, World& world);
 
 }  // namespace pinchlab

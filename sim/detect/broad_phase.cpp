@@ -185,7 +185,8 @@ bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& br
   return true;
 }
 
-/// Whether all bodies are where their boxes allow for; of a divided step, those that may have moved.
+/// Whether all bodies are where their boxes allow for; of a divided step, those that may have
+/// moved.
 bool boxes_hold(const Scene& scene, const World& world, const Workspace& work) {
   const Parts& parts = work.parts;
   const BroadPhase& broad = work.broad_phase;

@@ -67,14 +67,16 @@ double speed_of(const World& world, int body) {
   return at(world.velocity, body).norm() + rim;
 }
 
-/// How far a body may get by the end of the step; by what it may get in all of it, parts were divided.
+/// How far a body may get by the end of the step; by what it may get in all of it, parts were
+/// divided.
 double way_left(const Scene& scene, const World& world, const Neighbourhoods& near, int body) {
   const double gained = scene.gravity.norm() * world.step_length;
   return 2.0 * near.left_of(body) * (speed_of(world, body) + gained);
 }
 
-/// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre lies by
-/// `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than `most` (m).
+/// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre
+/// lies by `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than
+/// `most` (m).
 void add_contacts(const Scene& scene, World& world, int a, int b, int wall, const Vec2& d,
                   double radii, double most) {
   const double distance = d.norm();

@@ -102,9 +102,9 @@ void note_cable_between(const CableState& cable, const Link& link, Contact& cont
   contact.pinch_linked = true;
 }
 
-/// The same for a cable on a link that its body holds without slip, so that what presses it on to the
-/// body rolls on it, or rubs on it as on the body. Where the body lets it slip, too, it is pressed without
-/// friction.
+/// The same for a cable on a link that its body holds without slip, so that what presses it on to
+/// the body rolls on it, or rubs on it as on the body. Where the body lets it slip, too, it is
+/// pressed without friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
   note_cable_between(cable, link, contact);
@@ -194,8 +194,8 @@ bool is_kept(const Parts& parts, const Contact& contact) {
   return is_still(parts, contact.a) && (contact.b < 0 || is_still(parts, contact.b));
 }
 
-/// Lists the cables that stand, in parts all of whose contacts do: their pinches are what they were when
-/// they were configured last. What has moved elsewhere does not matter to them.
+/// Lists the cables that stand, in parts all of whose contacts do: their pinches are what they were
+/// when they were configured last. What has moved elsewhere does not matter to them.
 void find_standing_cables(const World& world, const Parts& parts, ContactScratch& scratch) {
   scratch.stands.assign(world.cables.size(), false);
   if (parts.list.empty() || scratch.configured_changes != world.changes) return;

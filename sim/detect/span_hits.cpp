@@ -97,9 +97,10 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double along_before = direction_before.dot(before);
   const double side_before = cross(direction_before, before);
 
-  // What was within reach of the span's line before, but not beside the span, has come past its end: it is
-  // in front of the cable, not in its way. What was beside it has been pushed into it by a repair. What
-  // touches the line does so to within_reach of the part's extent, and `in_touch` is far above that.
+  // What was within reach of the span's line before, but not beside the span, has come past its
+  // end: it is in front of the cable, not in its way. What was beside it has been pushed into it by
+  // a repair. What touches the line does so to within_reach of the part's extent, and `in_touch` is
+  // far above that.
   constexpr double in_touch = 1e-6;
   const bool beside_before = along_before > 0.0 && along_before < length_before;
   if (locates_events(world.configuration) && !beside_before &&
@@ -125,9 +126,9 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   return hit;
 }
 
-/// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner side
-/// of the cable; likewise one that arrives, the corner before. A span whose other end has got into the
-/// polygon would meet them for ever, and meets none.
+/// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner
+/// side of the cable; likewise one that arrives, the corner before. A span whose other end has got
+/// into the polygon would meet them for ever, and meets none.
 Hit test_next_corner(const World& world, const Workspace& work, const CableState& cable,
                      std::size_t s, const Link& end, bool leaves) {
   const int count = static_cast<int>(at(world.bodies, end.body).corners.size());

@@ -17,7 +17,8 @@ struct Workspace;
 /// was before.
 void add_hit_links(World& world, const Workspace& work);
 
-/// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to `events`.
+/// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to
+/// `events`.
 void find_hits(const World& world, Workspace& work, std::vector<Happening>& events);
 
 /// How far the body of a hit, or its corner, is with its margin from the span's centre line, on the

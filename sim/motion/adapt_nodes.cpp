@@ -62,7 +62,8 @@ double curvature(const Line& line, const CableState& other) {
   return 2.0 * angle / (line.length + s.length);
 }
 
-/// m, by which cable between the line's ends would leave it; the line begins at the chain's piece `first`.
+/// m, by which cable between the line's ends would leave it; the line begins at the chain's piece
+/// `first`.
 double expected_sag(const Scene& scene, const World& world, const NodeChain& chain, int first,
                     const Line& line) {
   const double square = line.length * line.length;
@@ -85,8 +86,8 @@ bool holds_line(const World& world, const Line& line, int body) {
          line.to.body == mover;
 }
 
-/// Whether a body or wall is no further from the line than `times` what both may move in two steps, with what the
-/// cable may be off it.
+/// Whether a body or wall is no further from the line than `times` what both may move in two steps,
+/// with what the cable may be off it.
 bool is_near_something(const Scene& scene, const World& world, const NodeChain& chain,
                        const Line& line, double times) {
   const Vec2 start = link_centre(world, line.from);

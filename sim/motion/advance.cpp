@@ -33,8 +33,8 @@ namespace {
 constexpr int most_rebounds = 24;  // of a step's events: what comes after them does not rebound
 constexpr int most_events = 48;    // that are located in one step
 
-// Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round what they
-// are in without end, each change making more, and steps last minutes.
+// Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round
+// what they are in without end, each change making more, and steps last minutes.
 constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 
 /// Velocities at the positions' time, with what bears force now.
@@ -89,8 +89,8 @@ bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
   return false;
 }
 
-/// Contacts have been found for what bodies may do in a step at the speeds that they had, twice as much as
-/// that. Strikes a part; whether that has made a body of it faster still.
+/// Contacts have been found for what bodies may do in a step at the speeds that they had, twice as
+/// much as that. Strikes a part; whether that has made a body of it faster still.
 bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const Part& part,
                        double time, bool rebounds) {
   const std::span<const int> bodies = bodies_of(work.parts, part);
@@ -243,8 +243,8 @@ struct Round {
 bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch);
 
 /// Moves a neighbourhood by an interval, to its next event or to the end of the step; whether all
-/// velocities are finite. `begins` as for try_whole_interval. With `may_divide` its parts are divided
-/// first where that is not the whole step.
+/// velocities are finite. `begins` as for try_whole_interval. With `may_divide` its parts are
+/// divided first where that is not the whole step.
 bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins, const Round& round,
           Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
@@ -269,8 +269,8 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   return true;
 }
 
-/// Moves every neighbourhood that has not come to the end of the step by an interval, while all others wait.
-/// Whether all velocities are finite.
+/// Moves every neighbourhood that has not come to the end of the step by an interval, while all
+/// others wait. Whether all velocities are finite.
 bool move_one_by_one(const Scene& scene, World& world, Workspace& work, bool begins,
                      const Round& round, Stopwatch& watch) {
   const Neighbourhoods& near = work.neighbourhoods;
@@ -283,8 +283,8 @@ bool move_one_by_one(const Scene& scene, World& world, Workspace& work, bool beg
   return true;
 }
 
-/// A step that has just been divided, as something happens in it: neighbourhoods in which nothing does
-/// have come to its end, others begin it anew.
+/// A step that has just been divided, as something happens in it: neighbourhoods in which nothing
+/// does have come to its end, others begin it anew.
 bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
   keep_start(world, work);
@@ -314,8 +314,8 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   return move_one_by_one(scene, world, work, false, {true, false}, watch);
 }
 
-/// The next round: every neighbourhood that has not come to the end of the step moves by an interval. Whether all
-/// velocities are finite.
+/// The next round: every neighbourhood that has not come to the end of the step moves by an
+/// interval. Whether all velocities are finite.
 bool move_all(const Scene& scene, World& world, Workspace& work, const Round& round,
               Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
@@ -334,8 +334,8 @@ bool is_left(const Neighbourhoods& near) {
                      [](const Neighbourhood& course) { return course.left > 0.0; });
 }
 
-/// Neighbourhoods that have come to the end of a step by intervals of different lengths get velocities of
-/// one time, so that they may have contacts.
+/// Neighbourhoods that have come to the end of a step by intervals of different lengths get
+/// velocities of one time, so that they may have contacts.
 void reunite(const Scene& scene, World& world, Workspace& work) {
   Neighbourhoods& near = work.neighbourhoods;
   for (int n = 0; index(n) < near.list.size(); ++n) {
@@ -348,8 +348,8 @@ void reunite(const Scene& scene, World& world, Workspace& work) {
   near.divided = false;
 }
 
-/// What follows an interval: cables, contacts and pinches for where things are now, and velocities that
-/// fit them. Returns how many times links have come or gone by then; they had `changes` times.
+/// What follows an interval: cables, contacts and pinches for where things are now, and velocities
+/// that fit them. Returns how many times links have come or gone by then; they had `changes` times.
 int settle(const Scene& scene, World& world, Workspace& work, int changes, StageTimes* times) {
   Neighbourhoods& near = work.neighbourhoods;
   bool pairs_stand = true;

@@ -36,8 +36,8 @@ struct Workspace;
 /// StepStatus::failed: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
-/// Velocities of these parts' bodies at the time of their positions (`time`), `lag` after those that the world
-/// has, in their systems.
+/// Velocities of these parts' bodies at the time of their positions (`time`), `lag` after those
+/// that the world has, in their systems.
 void find_present_velocities(const Scene& scene, const World& world, std::span<const int> parts,
                              double time, double lag, Workspace& work);
 

@@ -28,8 +28,8 @@ Happening* find(std::span<Happening> events, const Happening& key) {
   return it == events.end() ? nullptr : std::to_address(it);
 }
 
-/// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0: or
-/// nearly there).
+/// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0:
+/// or nearly there).
 void measure(std::vector<Happening>& events, const Happening& key, double clearance, double late) {
   if (events.empty() && clearance >= -late) return;
   Happening* event = find(events, key);

@@ -11,8 +11,8 @@ namespace pinchlab {
 
 namespace {
 
-/// Of the contacts that may rebound the row of the one that closes fastest; or -1, if none closes faster than
-/// `least` (m/s).
+/// Of the contacts that may rebound the row of the one that closes fastest; or -1, if none closes
+/// faster than `least` (m/s).
 int fastest_approach(const Scene& scene, const World& world, const PartSystem& s, double least) {
   int fastest = -1;
   double speed = -least;

@@ -230,8 +230,8 @@ bool errs(const World& world, const Trial& trial) {
   return allowed > 0.0 && trial.met && trial.local_error > allowed;
 }
 
-/// Moves by the longest interval of at most `length`, which was just tried, that is exact at its end and errs
-/// by no more than the scene allows, whatever happens in it. Returns its length.
+/// Moves by the longest interval of at most `length`, which was just tried, that is exact at its
+/// end and errs by no more than the scene allows, whatever happens in it. Returns its length.
 double find_sound_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                            double length, Stopwatch& watch) {
   const Trial& trial = work.trial;
@@ -270,8 +270,8 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   return length;
 }
 
-/// Shortens the interval that was tried last, of `length`, to the first of its events. Returns its length;
-/// `met`: as for shorten_interval.
+/// Shortens the interval that was tried last, of `length`, to the first of its events. Returns its
+/// length; `met`: as for shorten_interval.
 double locate_first_event(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                           double length, bool& met, Stopwatch& watch) {
   double late = length, early = 0.0;

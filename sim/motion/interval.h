@@ -14,8 +14,8 @@ struct Trial;
 struct Workspace;
 
 /// The share of Configuration::error that one interval may err by. Intervals' errors add up, and an
-/// impact that comes a little late throws bodies apart: measured, so that demonstrations keep what they
-/// ask for (analysis/results/convergence.md).
+/// impact that comes a little late throws bodies apart: measured, so that demonstrations keep what
+/// they ask for (analysis/results/convergence.md).
 constexpr double share_of_error = 4e-5;
 
 /// What moves together by one interval: some parts, whose velocities are `lag` (s) behind.
@@ -27,20 +27,20 @@ struct Movers {
 /// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
-/// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact and the error is
-/// what the scene allows, so that this is the interval. `begins`: it is the first try since
-/// begin_interval.
+/// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact and the
+/// error is what the scene allows, so that this is the interval. `begins`: it is the first try
+/// since begin_interval.
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool begins, Stopwatch& watch);
 
-/// Moves them, where a whole interval of `length` has just been tried in vain, by the longest in which
-/// nothing happens but at its end; what happens there is in Workspace::events. Returns its length.
-/// `met`: lengths and gaps are exact there.
+/// Moves them, where a whole interval of `length` has just been tried in vain, by the longest in
+/// which nothing happens but at its end; what happens there is in Workspace::events. Returns its
+/// length. `met`: lengths and gaps are exact there.
 double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool& met, Stopwatch& watch);
 
-/// Moves them by an interval of `length` (s) whatever happens in it: constraints bear force as early
-/// as it takes. Whether lengths and gaps are exact at its end.
+/// Moves them by an interval of `length` (s) whatever happens in it: constraints bear force as
+/// early as it takes. Whether lengths and gaps are exact at its end.
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                     double length, Stopwatch& watch);
 

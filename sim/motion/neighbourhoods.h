@@ -7,8 +7,8 @@
 // divided: parts of which a body may reach a span of another's, at up to twice the speed that it
 // has, or presses on a static body over which another's cable runs, are one neighbourhood. (Bodies
 // that may meet have a contact, and are in one part.) Each then goes to the end of the step by
-// intervals of its own, round by round. Should two come together after all, as where an impact makes
-// a body far faster, the step is taken back and done with all together.
+// intervals of its own, round by round. Should two come together after all, as where an impact
+// makes a body far faster, the step is taken back and done with all together.
 
 #include <span>
 #include <vector>
@@ -65,8 +65,8 @@ void put_together(const World& world, Parts& parts, Neighbourhoods& near);
 /// together.
 bool divide(const Scene& scene, const World& world, Workspace& work);
 
-/// Lists the awake parts by neighbourhood anew. Of a divided step those wait whose neighbourhood has
-/// not moved in this round.
+/// Lists the awake parts by neighbourhood anew. Of a divided step those wait whose neighbourhood
+/// has not moved in this round.
 void list_parts(Parts& parts, Neighbourhoods& near);
 
 /// Keeps what a step starts from that has been divided after its first interval was tried:
@@ -82,8 +82,8 @@ int number_of(const Neighbourhoods& near, const Parts& parts, const Part& part);
 /// The awake parts of one.
 std::span<const int> parts_of(const Neighbourhoods& near, int number);
 
-/// What has become of a part in this round: that of its neighbourhood, or of all in which it has bodies or
-/// cables, now that they have come to one time.
+/// What has become of a part in this round: that of its neighbourhood, or of all in which it has
+/// bodies or cables, now that they have come to one time.
 Neighbourhood course_of(const Neighbourhoods& near, const Parts& parts, const Part& part);
 
 }  // namespace pinchlab

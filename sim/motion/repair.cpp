@@ -67,9 +67,9 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
     update_cable(world, at(world.cables, c), false, is_known(work));
 }
 
-/// Goes `share` of the way that was just solved for, or less where that makes nothing better than `before`: where
-/// a span hardly bends round a body, its direction turns much within the whole of the way. Returns whether
-/// it went at all.
+/// Goes `share` of the way that was just solved for, or less where that makes nothing better than
+/// `before`: where a span hardly bends round a body, its direction turns much within the whole of
+/// the way. Returns whether it went at all.
 bool go(const Scene& scene, World& world, Workspace& work, const Part& part, double share,
         const Violation& before) {
   const PartSystem& s = at(work.systems, part.system);

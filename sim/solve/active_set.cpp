@@ -38,8 +38,8 @@ void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
   }
 }
 
-/// Cable between two surfaces that press it, and over which it cannot slide, moves as both do: it is
-/// pushed as well as pulled.
+/// Cable between two surfaces that press it, and over which it cannot slide, moves as both do: it
+/// is pushed as well as pulled.
 void clamp_pinches(PartSystem& s) {
   for (const int r : s.pressed) {
     Row& row = at(s.rows, r);

@@ -29,8 +29,9 @@ void add_to(std::vector<Term>& expression, int unknown, double coefficient) {
   expression.push_back({unknown, coefficient});
 }
 
-/// Tension after a passage (sliding_terms) from that before it, or (upstream) the other way; s = +1 where the
-/// material slides forward. An arc has no pinch, nor a pinch an arc, so that the order does not matter.
+/// Tension after a passage (sliding_terms) from that before it, or (upstream) the other way; s = +1
+/// where the material slides forward. An arc has no pinch, nor a pinch an arc, so that the order
+/// does not matter.
 void pass(const SolveScratch& set, const Passage& passage, int s, bool upstream,
           std::vector<Term>& expression) {
   if (passage.factor != 1.0) {
@@ -67,8 +68,8 @@ void store(SolveScratch& set, int row, const std::vector<Term>& expression) {
 }
 
 /// The tension after the run if it slid in direction `way` everywhere, for the impulses just
-/// solved. Cable is pushed in pinches only: what would have to be pushed along an arc slides on to it
-/// or, seen from the other end, lies on it without tension.
+/// solved. Cable is pushed in pinches only: what would have to be pushed along an arc slides on to
+/// it or, seen from the other end, lies on it without tension.
 double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way) {
   const auto impulse = [&system](int row) { return row >= 0 ? at(system.rows, row).impulse : 0.0; };
   double t = impulse(run.row_in);
@@ -80,7 +81,8 @@ double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Ru
   return t;
 }
 
-/// Whether a segment bears more force than `tolerance` (N s): tension, or what it is pushed by in a pinch.
+/// Whether a segment bears more force than `tolerance` (N s): tension, or what it is pushed by in a
+/// pinch.
 bool bears(const Row& row, double tolerance) {
   return row.impulse > tolerance || (row.clamped && row.impulse < -tolerance);
 }
@@ -289,10 +291,10 @@ void express_impulses(SolveScratch& set) {
 // the rows from one sticking place to the next (with the middle rows at both ends) cancels every
 // sigma.
 //
-// That is the system of all tensions and sliding speeds, eliminated by hand: the row of a taut segment for the
-// sliding speed at its head, the law of a run for the tension after it, each with a pivot of 1, and
-// what is left for the first tension of the group. Factored as it stands, that system has zeros on its diagonal
-// wherever neither body of a span can give, and needs pivoting.
+// That is the system of all tensions and sliding speeds, eliminated by hand: the row of a taut
+// segment for the sliding speed at its head, the law of a run for the tension after it, each with a
+// pivot of 1, and what is left for the first tension of the group. Factored as it stands, that
+// system has zeros on its diagonal wherever neither body of a span can give, and needs pivoting.
 void add_group_equations(PartSystem& system, SolveScratch& set) {
   CapstanScratch& s = set.capstan;
   s.slack_terms.clear();

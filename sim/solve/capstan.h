@@ -19,8 +19,9 @@ struct World;
 struct CableState;
 
 /// All links of a cable on one body in succession: one link, or the parts into which pinches divide
-/// it, or those at a polygon's corners. Material slides over the body at one speed everywhere in the run. (The direct solver with
-/// three rows a pinch has a run for each link; the segments between them make the speeds equal.)
+/// it, or those at a polygon's corners. Material slides over the body at one speed everywhere in
+/// the run. (The direct solver with three rows a pinch has a run for each link; the segments
+/// between them make the speeds equal.)
 struct Run {
   int cable = 0, first_link = 0, last_link = 0;
   int row_in = -1, row_out = -1;  // segment rows before and after

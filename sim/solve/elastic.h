@@ -13,7 +13,8 @@
 //
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //
-// A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the lag.
+// A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the
+// lag.
 
 #include "sim/cable/cable.h"
 #include "sim/solve/part_system.h"
@@ -21,8 +22,8 @@
 namespace pinchlab {
 
 /// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
-/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without a
-/// damper the row idles.
+/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without
+/// a damper the row idles.
 void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
                   PartSystem& s, int number);
 

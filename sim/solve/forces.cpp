@@ -81,8 +81,8 @@ BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties no
   return now;
 }
 
-/// Whether a motor without a limit has left its body to the cables in the interval before an instant, `lag`
-/// after that interval's middle.
+/// Whether a motor without a limit has left its body to the cables in the interval before an
+/// instant, `lag` after that interval's middle.
 bool has_stalled(const Body& body, const TimeSpan& instant, double omega) {
   constexpr double rounding = 1e-9;
   if (body.torque_limit < infinity) return false;
@@ -168,8 +168,8 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
 
 /// Mobility and free velocity of a body that carries mass M beside its own,
 ///     (M_b + M + M_b after) v' = (M_b + M - M_b before) v + k f,   see Drag,
-/// where v' is given in what the body cannot do by itself. `kept`: the share of its own mass that its sleeves
-/// do not have.
+/// where v' is given in what the body cannot do by itself. `kept`: the share of its own mass that
+/// its sleeves do not have.
 void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
           double kept, int place, PartSystem& s) {
   const Eigen::Vector3d own(body.mass, body.mass, inertia_of(body));

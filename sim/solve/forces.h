@@ -14,8 +14,8 @@ struct World;
 /// Of a body by itself, for a velocity kick of `kick` seconds.
 Mobility mobility_of(const BodyProperties& body, double kick);
 
-/// Velocities of all bodies that are awake after forces alone have acted for the interval's kick, and
-/// what moves the bodies, into their parts' systems.
+/// Velocities of all bodies that are awake after forces alone have acted for the interval's kick,
+/// and what moves the bodies, into their parts' systems.
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   Workspace& work);
 
@@ -23,9 +23,9 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& interv
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   const Parts& parts, const Part& part, PartSystem& system);
 
-/// Takes the flow of cables with mass at the middle of the kick, the part's velocities after it being those
-/// just solved for, into the free velocities and those that follow from them: what this changes in its
-/// turn is of the third order of the kick.
+/// Takes the flow of cables with mass at the middle of the kick, the part's velocities after it
+/// being those just solved for, into the free velocities and those that follow from them: what this
+/// changes in its turn is of the third order of the kick.
 void follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& interval,
                  PartSystem& system);
 

@@ -36,9 +36,9 @@ inline bool is_arc(const Passage& p) {
   return p.normal < 0 && p.friction == 0.0 && p.middle < 0;
 }
 
-/// Tension after a passage over which the material slides forward (way = 1) or backward (-1) as a sum:
-/// of `before` times the tension before it and `pressed` times the force that presses, less the middle
-/// body's share.
+/// Tension after a passage over which the material slides forward (way = 1) or backward (-1) as a
+/// sum: of `before` times the tension before it and `pressed` times the force that presses, less
+/// the middle body's share.
 struct SlidingTerms {
   double before = 1.0, pressed = 0.0;
 };
@@ -46,8 +46,8 @@ inline SlidingTerms sliding_terms(const Passage& p, int way) {
   return {way > 0 ? p.factor : 1.0 / p.factor, way * p.friction};
 }
 
-/// That tension, from the tension before it, the force that presses and the middle body's share; all N,
-/// or all N s.
+/// That tension, from the tension before it, the force that presses and the middle body's share;
+/// all N, or all N s.
 inline double tension_after(const Passage& p, int way, double before, double force, double middle) {
   return (way > 0 ? before * p.factor : before / p.factor) + way * p.friction * force - middle;
 }

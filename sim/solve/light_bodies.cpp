@@ -40,8 +40,8 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, in
 }
 
 /// Along unit vector v: the share of the body's mass in max(m, h^2 k), and with it the free speed.
-/// The line's speed is the mean of its other ends' along v, each weighted by what its span does there:
-/// nearly parallel spans would else ask for any speed across v that fits their small angle.
+/// The line's speed is the mean of its other ends' along v, each weighted by what its span does
+/// there: nearly parallel spans would else ask for any speed across v that fits their small angle.
 double steady(const BodyProperties& body, const SpanMass& span, const Vec2& v, Vec2& velocity) {
   const double mass = v.dot(span.mass * v);
   if (mass <= body.mass) return 1.0;

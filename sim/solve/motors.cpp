@@ -42,8 +42,8 @@ double stretching(const PartSystem& s, const SolveScratch& set) {
   return most;
 }
 
-/// The speed that all of the part's moving bodies would have with the energy of motion that rows have
-/// given them (m/s); what they have taken counts against it.
+/// The speed that all of the part's moving bodies would have with the energy of motion that rows
+/// have given them (m/s); what they have taken counts against it.
 double speed_given(const World& world, std::span<const int> bodies, const PartSystem& s) {
   double energy = 0.0, mass = 0.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -16,8 +16,8 @@ namespace pinchlab {
 void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
                PartSystem& system);
 
-/// Adds one without a limit that stalls, and goes on to leave its body, of that angular velocity (rad/s), to
-/// the cables.
+/// Adds one without a limit that stalls, and goes on to leave its body, of that angular velocity
+/// (rad/s), to the cables.
 void add_stalled_motor(const BodyProperties& body, int place, double before, PartSystem& system);
 
 /// Whether it can hold its speed by itself, or gives all it can.

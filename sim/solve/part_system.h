@@ -30,8 +30,8 @@ struct Mobility {
 
 /// What drag takes in a kick, of the velocities before and after it:
 ///     (1 + after) v' = (1 - before) v + ...
-/// With `taken` = c k it is the mean of both (trapezoidal, of second order) as long as that does not turn
-/// the motion round, and else as much of the second as makes an end of the first.
+/// With `taken` = c k it is the mean of both (trapezoidal, of second order) as long as that does
+/// not turn the motion round, and else as much of the second as makes an end of the first.
 struct Drag {
   double before = 0.0, after = 0.0;
 
@@ -82,8 +82,8 @@ struct RowBodies {
   double curvature = 0.0;  // m/s, elastic: of the bias, by which C changes otherwise than by J v
 };
 
-/// What an impulse on a row does to its bodies. It has their places as well, so that whoever applies
-/// impulses reads nothing else, and whoever measures speeds none of this.
+/// What an impulse on a row does to its bodies. It has their places as well, so that whoever
+/// applies impulses reads nothing else, and whoever measures speeds none of this.
 struct RowResponse {
   int a = 0, b = 0;
   Eigen::Vector3d ra = Eigen::Vector3d::Zero(), rb = ra;  // mobility * J^T: m/s, or rad/s, a N s
@@ -163,7 +163,8 @@ struct Motor {
   MotorState state = MotorState::holds;
 };
 
-/// What friction on a sleeve is at most, one way, as a sum of the rows' impulses and of what is known: rubbing.h.
+/// What friction on a sleeve is at most, one way, as a sum of the rows' impulses and of what is
+/// known: rubbing.h.
 struct RubLaw {
   double in = 0.0, out = 0.0;          // of the tensions before and after it
   Vec2 carried = Vec2::Zero();         // kg, of the velocity that its centre gains
@@ -263,8 +264,8 @@ inline bool is_friction(const Row& row) {
   return row.friction >= 0;
 }
 
-/// Whether a row's state may contradict the solution at all: where that of none may, nobody needs to know
-/// how much of it would be round-off.
+/// Whether a row's state may contradict the solution at all: where that of none may, nobody needs
+/// to know how much of it would be round-off.
 inline bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
   if (row.clamped) return false;

@@ -11,8 +11,8 @@ struct Parts;
 struct PartSystem;
 struct SolveScratch;
 
-/// Whether the impulses p that were just solved for have given the bodies more energy than they had:
-/// sum p (J v- + J v+) / 2 > 0 beyond round-off and what is made up for of it. That is exactly
+/// Whether the impulses p that were just solved for have given the bodies more energy than they
+/// had: sum p (J v- + J v+) / 2 > 0 beyond round-off and what is made up for of it. That is exactly
 /// the change of (kinetic) energy that they made, with the work of motors taken out. Elastic
 /// segments may give back what they store: where one bears force, the answer is no.
 bool makes_energy(const PartSystem& system, const SolveScratch& scratch);

@@ -88,15 +88,16 @@ inline void set_clearance(double clearance, const TimeSpan& interval, Row& row) 
   row.bias = interval.length > 0.0 && clearance >= -interval.made_up ? clearance / time : 0.0;
 }
 
-/// What is left before a segment bears tension (m). Where plain cable joints have crossed bodies, rolling
-/// has moved material that no row has held; what is left of a segment is then at least nothing.
+/// What is left before a segment bears tension (m). Where plain cable joints have crossed bodies,
+/// rolling has moved material that no row has held; what is left of a segment is then at least
+/// nothing.
 double clearance_left(const Segment& segment, bool plain) {
   const double rest = plain ? std::max(segment.rest_length, 0.0) : segment.rest_length;
   return rest - segment.length;
 }
 
-/// A middle body's row is never idle: what material has gone astray in its pinch, either way, is made up for
-/// in time, or stays.
+/// A middle body's row is never idle: what material has gone astray in its pinch, either way, is
+/// made up for in time, or stays.
 inline void hold_middle(double clearance, const TimeSpan& interval, Row& row) {
   row.clearance = clearance;
   row.idle = false;
@@ -240,8 +241,8 @@ void set_tangent_bodies(const Scene& scene, const World& world, const Contact& c
   add_seats(world, contact, bodies);
 }
 
-/// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that cable's
-/// own rows have it.
+/// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that
+/// cable's own rows have it.
 double coefficient_of(const Scene& scene, const World& world, const Contact& contact) {
   if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
@@ -305,8 +306,9 @@ void begin_middles(PartSystem& s) {
   }
 }
 
-/// Notes what clamps the cable of a transitional pinch between two bodies both of which hold it by friction: the row
-/// of the force that presses; or, between axles that do not give way and without slip, whatever it takes.
+/// Notes what clamps the cable of a transitional pinch between two bodies both of which hold it by
+/// friction: the row of the force that presses; or, between axles that do not give way and without
+/// slip, whatever it takes.
 void clamp_in_pinch(const World& world, const SolveScratch& scratch, Row& row) {
   const CableState& cable = at(world.cables, row.index);
   if (row.idle || row.compliance > 0.0) return;
@@ -362,8 +364,8 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
   s.first_contact_row = static_cast<int>(s.rows.size());
 }
 
-/// Leaves of a part's rows those of segments, where they are for the same links and kick as before; else
-/// lists them.
+/// Leaves of a part's rows those of segments, where they are for the same links and kick as before;
+/// else lists them.
 void begin_segment_rows(const World& world, const Parts& parts, const Part& part, double kick,
                         PartSystem& s) {
   RowsMade made{0, kick};
@@ -427,8 +429,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       weigh(s, r);
       at(s.changed, r) = true;
     }
-    // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways would
-    // feed back as speed: there they only pull.
+    // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
+    // would feed back as speed: there they only pull.
     if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
     if (cable.elastic && !segment.pinched) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);

@@ -19,8 +19,8 @@ double restitution_of(const Scene& scene, const World& world, const Contact& con
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
 double speed_of(const World& world, int body, const Eigen::Vector3d& j);
 
-/// Rows of a part for one solve at the present positions: of its cables, then of its contacts. Notes
-/// in `scratch` what the solve must know of the interval.
+/// Rows of a part for one solve at the present positions: of its cables, then of its contacts.
+/// Notes in `scratch` what the solve must know of the interval.
 void make_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                const TimeSpan& interval, PartSystem& system, SolveScratch& scratch,
                Stopwatch& watch);

@@ -20,8 +20,8 @@ double radius_of(const World& world, const Sleeve& sleeve) {
   return at(at(world.cables, sleeve.cable).links, sleeve.first).signed_radius();
 }
 
-/// A disc that can move shares half of its mass evenly among its sleeves, which move with it: whatever lies
-/// on a sleeve, its matrix has an inverse then.
+/// A disc that can move shares half of its mass evenly among its sleeves, which move with it:
+/// whatever lies on a sleeve, its matrix has an inverse then.
 void share_masses(const World& world, PartSystem& s) {
   for (SleevePlace& one : s.sleeves) {
     const BodyProperties& body = at(world.bodies, one.sleeve.body);

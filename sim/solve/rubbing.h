@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Cables with mass that slip on bodies: a sleeve (cable/sleeve.h) is a body of the part, whose centre rows
-// hold at its disc's, and which spans pull at instead of the disc. Between sleeve and disc there is
-// friction by the capstan law with the rope's inertia.
+// Cables with mass that slip on bodies: a sleeve (cable/sleeve.h) is a body of the part, whose
+// centre rows hold at its disc's, and which spans pull at instead of the disc. Between sleeve and
+// disc there is friction by the capstan law with the rope's inertia.
 //
-// An element R dth of the rope, which moves at w over the rim about a centre with the acceleration a,
-// is pressed by N dth and rubbed by mu N dth against the way that it slips. With t its direction, n that to
-// the centre and b = a - g (Bechtel et al., "The stretching and slipping of belts and fibers on pulleys",
-// J. Appl. Mech. 67, 2000, for belts without weight)
+// An element R dth of the rope, which moves at w over the rim about a centre with the acceleration
+// a, is pressed by N dth and rubbed by mu N dth against the way that it slips. With t its
+// direction, n that to the centre and b = a - g (Bechtel et al., "The stretching and slipping of
+// belts and fibers on pulleys", J. Appl. Mech. 67, 2000, for belts without weight)
 //     N = X - rho R b.n,     X = T - rho w^2,
 //     dX/dth = rho R w' + rho R b.t +- mu N,
 // since w is one along the rim. Over an arc th, with m = +-mu, k = e^(m th)
 //     X_out = k X_in + rho R w' (k - 1) / m + rho R b.V,
 //     V = integral of e^(m (th - s)) (t - m n) ds,
-// and the spans' halves m_i, m_o, which move with it, add m_i (w' + b.e_i) to the tension before, and take
-// m_o (w' + b.e_o) from the one after it. All of it together moves by
+// and the spans' halves m_i, m_o, which move with it, add m_i (w' + b.e_i) to the tension before,
+// and take m_o (w' + b.e_o) from the one after it. All of it together moves by
 //     T_out - T_in = M w' + b.S + f,      f: what friction takes,
-// so that w' is known by f: eliminated, f is linear in the tensions, in what presses pinches on the way and in
-// the centre's velocity. Slipping, friction is that f; sticking, it is no more than that either way.
+// so that w' is known by f: eliminated, f is linear in the tensions, in what presses pinches on the
+// way and in the centre's velocity. Slipping, friction is that f; sticking, it is no more than that
+// either way.
 //
-// The force of a span's row is not its tension: what flows from one half of the span to the other takes
-// momentum along. A sleeve's turning feels the row's force with flow_tensions (mass.h) and the half's own
-// inertia; at the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more, where v is the centre's velocity
-// (from the momentum of the rope beyond; test MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
+// The force of a span's row is not its tension: what flows from one half of the span to the other
+// takes momentum along. A sleeve's turning feels the row's force with flow_tensions (mass.h) and
+// the half's own inertia; at the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more,
+// where v is the centre's velocity (from the momentum of the rope beyond; test
+// MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
 //
-// Where f comes out below zero, the rope does not press on the rim: then there is no friction. It does not
-// lift off.
+// Where f comes out below zero, the rope does not press on the rim: then there is no friction. It
+// does not lift off.
 
 #include <span>
 
@@ -72,7 +74,8 @@ struct Bounds {
 };
 Bounds bounds_of_rubbing(const PartSystem& system, const Row& row);
 
-/// Everything sticks that has changed in this step, for the rest of it; or all, until it is contradicted.
+/// Everything sticks that has changed in this step, for the rest of it; or all, until it is
+/// contradicted.
 void freeze_rubbing(PartSystem& system);
 void stick_rubbing(PartSystem& system);
 

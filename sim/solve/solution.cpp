@@ -22,7 +22,8 @@ void store_middle(const PartSystem& s, const CapstanScratch& capstan, const Row&
   link.slip_speed = sticks ? 0.0 : row.speed + run_speed(s, capstan, row);
 }
 
-/// What idles within reach of bearing force, as an elastic segment does at an instant, stays what it was.
+/// What idles within reach of bearing force, as an elastic segment does at an instant, stays what
+/// it was.
 void store_segment_row(const PartSystem& s, const CapstanScratch& capstan, const Row& row,
                        double kick, World& world) {
   CableState& cable = at(world.cables, row.index);

@@ -330,8 +330,8 @@ double find_missing(const PartSystem& s, SolveScratch& set) {
 }
 
 /// Makes up for what a solution of a regular symmetric system misses, as long as that helps: an
-/// error that has fallen by some factor will do so again, so that the last one need not be measured.
-/// Returns whether it has come down to round-off: next to singular matrices keep some.
+/// error that has fallen by some factor will do so again, so that the last one need not be
+/// measured. Returns whether it has come down to round-off: next to singular matrices keep some.
 bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
   constexpr double little = 1e-10;
   const std::size_t count = set.row_of_unknown.size();

@@ -54,7 +54,8 @@ TEST(AnswerFiles, SchemaAndReaderAgree) {
       EXPECT_TRUE(described["properties"].contains(key)) << key << " is not in the schema";
     }
     for (const auto& [key, unused] : described["properties"].items()) {
-      // Of attention trials only, and of other kinds of studies (test_comparisons.cpp, test_graded.cpp).
+      // Of attention trials only, and of other kinds of studies (test_comparisons.cpp,
+      // test_graded.cpp).
       static const std::set<std::string> elsewhere = {
           "expected",   "methods", "graded_hit", "adaptive", "level",   "preference",
           "confidence", "reason",  "where_side", "where_x",  "where_y", "where_time_s"};

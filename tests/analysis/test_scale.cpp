@@ -180,8 +180,8 @@ TEST(ScaleTests, CountsTheDogsCircularTriads) {
   EXPECT_NEAR(result.p.value, so_few, 1e-12);
 }
 
-// The score test of equal scales of a balanced design is the sum of squares of Durbin and of Bradley
-// and Terry (1952): 4 sum (wins - mean)^2 / (n m) for n rounds of all pairs.
+// The score test of equal scales of a balanced design is the sum of squares of Durbin and of
+// Bradley and Terry (1952): 4 sum (wins - mean)^2 / (n m) for n rounds of all pairs.
 TEST(ScaleTests, EqualScaleIsDurbinsStatistic) {
   const std::vector<PairChoices> choices = {{0, 0, 0, 1, 12, 3, 0}, {0, 0, 0, 2, 13, 2, 0},
                                             {0, 0, 0, 3, 13, 2, 0}, {0, 0, 1, 2, 4, 11, 0},

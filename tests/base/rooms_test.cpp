@@ -102,8 +102,9 @@ TEST(Rooms, TheTableHasNoCircles) {
   EXPECT_TRUE(rooms.empty()) << rooms.begin()->first;
 }
 
-// Inside of sim/: its data and their geometry, then what a step consists of, in the order of the step, then what
-// makes, steps and watches worlds. An arrow runs upward where a file includes one of a level above its own.
+// Inside of sim/: its data and their geometry, then what a step consists of, in the order of the
+// step, then what makes, steps and watches worlds. An arrow runs upward where a file includes one
+// of a level above its own.
 int level_in_sim(const std::string& file) {
   const std::map<std::string, int> of_room = {
       {"sim/cable", 1}, {"sim/detect", 2}, {"sim/solve", 3}, {"sim/thesis", 4}, {"sim/motion", 5}};

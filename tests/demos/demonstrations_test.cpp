@@ -132,8 +132,8 @@ TEST_P(Demonstration, DiffersWithinTheFirstSecond) {
   EXPECT_GT(apart, visible);
 }
 
-// The clips are shown in loops: at the end nothing moves by more than a pixel a frame, neither a centre
-// nor a rim.
+// The clips are shown in loops: at the end nothing moves by more than a pixel a frame, neither a
+// centre nor a rim.
 TEST_P(Demonstration, EndsCalmly) {
   const double pixel = set_scenery(scene_, file_.look).unit() / 9.6;  // m, of a clip of 960 px
   for (const Method method : {Method::pinch, scene_.baseline}) {
@@ -294,9 +294,9 @@ double largest_jump(const SceneFile& file, const Configuration& method) {
 }
 
 // Where a body is about to press a slack span against another, the slack is drawn on its way past
-// them, before the pinch moves it there at once; and where bodies clip, the rope stays where it is as
-// one of the wraps ends. What is left is a rope that goes taut (its sag is the root of its slack), and
-// in 05 slack that a pinch moves into a span that bore a load.
+// them, before the pinch moves it there at once; and where bodies clip, the rope stays where it is
+// as one of the wraps ends. What is left is a rope that goes taut (its sag is the root of its
+// slack), and in 05 slack that a pinch moves into a span that bore a load.
 TEST(Drawing, ARopeDoesNotJumpWhereItIsPinched) {
   const auto jump = [](const char* name, bool baseline) {
     const SceneFile file =
@@ -309,8 +309,8 @@ TEST(Drawing, ARopeDoesNotJumpWhereItIsPinched) {
   EXPECT_LT(jump("05-notch", false), 0.030);
 }
 
-// With pinch joints no rope is seen to cut into a body, slack or not: its centre line keeps outside of
-// the rims by its half width, within half a pixel. Bodies that hold its ends do not count.
+// With pinch joints no rope is seen to cut into a body, slack or not: its centre line keeps outside
+// of the rims by its half width, within half a pixel. Bodies that hold its ends do not count.
 TEST_P(Demonstration, RopesAreDrawnOutsideOfBodies) {
   const Scenery scenery = set_scenery(scene_, file_.look);
   const double pixel = scenery.unit() / 9.6;  // m, of a clip of 960 px

@@ -22,6 +22,7 @@ using Words = std::vector<std::string>;
 /// "Subcommands:".
 struct Help {
   std::set<std::string> options, commands;
+  std::string text;
 };
 
 Help help_of(const fs::path& folder, Words command) {
@@ -29,6 +30,7 @@ Help help_of(const fs::path& folder, Words command) {
   const RunResult run = run_program(folder, command);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   Help help;
+  help.text = run.out;
   std::istringstream lines(run.out);
   std::string part;
   for (std::string line; std::getline(lines, line);) {
@@ -134,6 +136,19 @@ TEST(HelpPages, ManualHasEveryOptionOfEveryCommand) {
       const std::string entry = std::regex_replace(name, std::regex("-"), "\\-");
       EXPECT_NE(section.find(entry), std::string::npos) << heading << ' ' << name;
     }
+  }
+}
+
+// Its own, not those of the command that it is one of.
+TEST(HelpPages, EveryCommandHasAnExample) {
+  std::map<Words, Help> all;
+  collect(scratch_folder(), {}, all);
+  for (const auto& [command, help] : all) {
+    if (command.empty()) continue;
+    const std::string typed = fmt::format("pinchlab {} ", fmt::join(command, " "));
+    const std::size_t usage = help.text.find(typed);
+    ASSERT_NE(usage, std::string::npos) << typed;
+    EXPECT_NE(help.text.find(typed, usage + 1), std::string::npos) << help.text;
   }
 }
 

@@ -436,6 +436,19 @@ TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
   EXPECT_THROW(with_timing(scene, {0, {}}), std::invalid_argument);
 }
 
+// However many sweeps it has, and whatever else is asked of it, thesis is what to type.
+TEST(Player, NamesTheThesisByItsWays) {
+  Configuration thesis = thesis_configuration();
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  thesis.iterations = 40;
+  thesis.sleep = true;
+  thesis.diagnostics = true;
+  EXPECT_STREQ(to_string(thesis), "thesis");
+  EXPECT_STREQ(in_words(thesis), "the thesis' pinch joints");
+  thesis.solver = Solver::direct;
+  EXPECT_STREQ(to_string(thesis), "pinch");
+}
+
 TEST(Player, FailureSaysHowToSeeItAgain) {
   // However many sweeps it has, and whatever else is asked of it, thesis is what to type.
   TEST(Player, NamesTheThesisByItsWays) {
@@ -504,6 +517,14 @@ TEST(Still, OneTimeIsAFrameSeveralAreASheet) {
   EXPECT_EQ(text_of(folder / "x.png"), list);
   still({"--time", "0.5,1.5", "--both"});
   EXPECT_NE(text_of(folder / "x.png"), list);
+}
+
+TEST(Bench, OddSizesAreRefusedAtTheDoor) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run =
+      run_program(folder, {"bench", "render", "01-small.json", "--size", "63x64"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "h264 needs an even size, not 63x64; change --size\n");
 }
 
 TEST(Bench, PrintsWhatAFrameCosts) {

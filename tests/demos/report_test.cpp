@@ -94,6 +94,7 @@ TEST(PairReport, IsATableAPageAndAManifestEntry) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(run.out.starts_with("pair ")) << run.out;
   EXPECT_NE(run.out.find("\n01-small "), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("()"), std::string::npos) << "of no body:\n" << run.out;
   const std::string page = text_of(folder / "clips/report.html");
   EXPECT_NE(page.find("Weights &amp; &lt;wheel&gt;"), std::string::npos);
   EXPECT_EQ(page.find("<wheel>"), std::string::npos);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// What is fuzzed: each function takes any bytes, and returns whether they were used (true) or refused
-// as they should be (false). It throws a Finding, or lets through an error that a reader does not
-// promise, if neither.
+// What is fuzzed: each function takes any bytes, and returns whether they were used (true) or
+// refused as they should be (false). It throws a Finding, or lets through an error that a reader
+// does not promise, if neither.
 
 #include <filesystem>
 #include <stdexcept>

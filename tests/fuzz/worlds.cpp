@@ -199,7 +199,8 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
-/// Cables with mass over bodies, of which discs alone let them slip; and those that hang bend. No bytes: none.
+/// Cables with mass over bodies, of which discs alone let them slip; and those that hang bend. No
+/// bytes: none.
 void add_heavy_cables(json& scene, Choices& choices) {
   bool any = false;
   for (json& cable : scene["cables"]) {
@@ -258,8 +259,8 @@ void add_joints(json& scene, Choices& choices) {
   }
 }
 
-/// Compounds of a body's outline and others about it, its centre of mass still its centre. What lies on
-/// the body lies on the outline that it had.
+/// Compounds of a body's outline and others about it, its centre of mass still its centre. What
+/// lies on the body lies on the outline that it had.
 void add_compounds(json& scene, Choices& choices) {
   for (json& body : scene["bodies"]) {
     const unsigned more = choices.below(4);

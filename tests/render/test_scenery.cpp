@@ -111,6 +111,20 @@ TEST(Scenery, LabelsCanBeSetHiddenAndPlaced) {
   EXPECT_EQ(scenery.labels[1].text, "1.05 kg");
 }
 
+// As wide on the picture, whatever the letters are: what the label keeps clear of is as wide, too.
+TEST(Scenery, LettersOfSeveralBytesAreAsWideAsOthers) {
+  const auto right_of_pulley = [](const std::string& text) {
+    const Scene scene = short_atwood();
+    SceneLook look;
+    look.bodies.resize(3);
+    look.bodies[0].label = text;
+    look.bodies[0].side = LabelSide::right;
+    return set_scenery(scene, look).labels[0].offset.x();
+  };
+  EXPECT_EQ(right_of_pulley("åäö €"), right_of_pulley("aao E"));
+  EXPECT_LT(right_of_pulley("åäö €"), right_of_pulley("aao EE"));
+}
+
 TEST(Scenery, ALabelMovesOffARope) {
   // A weight on a rope that goes on below it: below is taken, so that the label stands beside it.
   Scene scene = short_atwood();

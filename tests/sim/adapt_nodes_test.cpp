@@ -81,8 +81,8 @@ void expect_kept(const Whole& before, const Whole& after, double share) {
   EXPECT_GT(after.kinetic, share * before.kinetic);
 }
 
-// Each change, before an impact fits velocities to it and after: mass, centre and momentum stay, no cable is lost,
-// and no energy comes from it.
+// Each change, before an impact fits velocities to it and after: mass, centre and momentum stay, no
+// cable is lost, and no energy comes from it.
 TEST(AdaptNodes, EachChangeKeepsWhatItMust) {
   Scene scene = flying_chain(0.2, 2e-3);
   World world = make_world(scene, measured());
@@ -112,8 +112,8 @@ TEST(AdaptNodes, EachChangeKeepsWhatItMust) {
   EXPECT_NEAR(measure(scene, world).momentum.x(), start.momentum.x(), 1e-12);
 }
 
-// A straight cable that turns: where pieces become one the angular momentum stays, and what that takes of the
-// energy is lost; where one becomes two its motion stays.
+// A straight cable that turns: where pieces become one the angular momentum stays, and what that
+// takes of the energy is lost; where one becomes two its motion stays.
 TEST(AdaptNodes, MergingKeepsAngularMomentum) {
   Scene scene = flying_chain(0.0, 2e-2);
   for (Body& b : scene.bodies) b.velocity = 0.3 * left(b.position - Vec2(0.5, 0.05));
@@ -165,7 +165,8 @@ TEST(AdaptNodes, EnergyDoesNotRise) {
   }
 }
 
-// At rest pieces that hold their bends hang as their nodes did: sag 0.7963884, tension 1.0260286 rho g.
+// At rest pieces that hold their bends hang as their nodes did: sag 0.7963884, tension 1.0260286
+// rho g.
 TEST(AdaptNodes, ACatenaryHangsAsItHung) {
   for (const double tolerance : {5e-4, 2e-3, 1e-2}) {
     Scene scene = build::catenary(0, 4);
@@ -213,8 +214,8 @@ TEST(AdaptNodes, DrawnTautItIsOnePieceAndReleasedItHangsAgain) {
   EXPECT_EQ(world.diagnostics.fallbacks, 0);
 }
 
-// A bob on a straight cable moves as on one without mass whose half the bob bears: from rest, in as many steps as it
-// has levels.
+// A bob on a straight cable moves as on one without mass whose half the bob bears: from rest, in as
+// many steps as it has levels.
 TEST(AdaptNodes, AStraightSpanMovesAsOneWithoutNodes) {
   Scene scene;
   scene.steps_per_frame = 16;
@@ -239,7 +240,8 @@ TEST(AdaptNodes, AStraightSpanMovesAsOneWithoutNodes) {
   }
 }
 
-// Few nodes but at the bight: in the time of the finest, within a hundredth, with less than half of its pieces.
+// Few nodes but at the bight: in the time of the finest, within a hundredth, with less than half of
+// its pieces.
 TEST(AdaptNodes, AFoldedChainFallsAsTheFinest) {
   constexpr int pieces = 128, steps = 64;
   double times[2] = {};

@@ -75,8 +75,8 @@ TEST(Compounds, PlatesAddUp) {
   EXPECT_EQ(scene.apart.size(), 6u);
 }
 
-/// A body of 2 kg that falls on a slack cable and on a wall, once as it is and once as the only shape of
-/// a compound: the shape's index.
+/// A body of 2 kg that falls on a slack cable and on a wall, once as it is and once as the only
+/// shape of a compound: the shape's index.
 int add_faller(Scene& scene, const Shape& shape, bool as_compound) {
   if (as_compound) {
     const int compound =
@@ -115,8 +115,8 @@ TEST(Compounds, OfOneShapeIsThatShape) {
   }
 }
 
-// Two discs on a bar that has no mass of its own, hung up by one of them: a pendulum whose period is
-// 4 sqrt(I / (m g d)) K(sin(th0 / 2)).
+// Two discs on a bar that has no mass of its own, hung up by one of them: a pendulum whose period
+// is 4 sqrt(I / (m g d)) K(sin(th0 / 2)).
 TEST(Compounds, ADumbbellSwingsInItsTime) {
   const double half = 0.5, radius = 0.1, start = 1.0, mass = 2.0;
   const double inertia = mass * (0.5 * radius * radius + half * half) + mass * half * half;
@@ -176,8 +176,9 @@ Scene unwinding(bool as_compound, int steps_per_frame) {
   return scene;
 }
 
-// A cable about four discs at the corners of a drum runs as it does about the square that is rounded
-// there. Corners of the one come and go within a step, and links of the other at their time.
+// A cable about four discs at the corners of a drum runs as it does about the square that is
+// rounded there. Corners of the one come and go within a step, and links of the other at their
+// time.
 TEST(Compounds, FourDiscsAreARoundedSquare) {
   double before = 0.0;
   for (const int steps : {4, 16}) {
@@ -225,8 +226,8 @@ TEST(Compounds, ABlockHangsOnAllFallsOfItsCable) {
   }
 }
 
-// The capstan law over two discs of one body: both turnings count, and the span between them has what
-// one leaves to the other.
+// The capstan law over two discs of one body: both turnings count, and the span between them has
+// what one leaves to the other.
 TEST(Compounds, TheCapstanLawHoldsOverShapes) {
   const double mu = 0.25, light = 1.0, heavy = 4.0, k = std::exp(mu * pi);
   Scene scene;
@@ -245,8 +246,8 @@ TEST(Compounds, TheCapstanLawHoldsOverShapes) {
   EXPECT_NEAR(s[2].tension / s[1].tension, std::sqrt(k), 1e-9);
 }
 
-// A car, its body of two boxes and its wheels hinged to it, rolls down a slope: M g sin s = (M + 2 I /
-// r^2) a, M with the wheels.
+// A car, its body of two boxes and its wheels hinged to it, rolls down a slope: M g sin s = (M + 2
+// I / r^2) a, M with the wheels.
 TEST(Compounds, ACarRollsDownASlope) {
   const double slope = 0.2, r = 0.15, wheel = 0.5, chassis = 4.0;
   const Vec2 along(std::cos(slope), -std::sin(slope)), up(std::sin(slope), std::cos(slope));
@@ -341,8 +342,8 @@ Scene falling_compounds(unsigned seed) {
   return scene;
 }
 
-// Energy may rise by leapfrog's own swing alone, which falls with the square of the step, and shows where
-// a body rolls on to the cable without loss before anything else has taken energy.
+// Energy may rise by leapfrog's own swing alone, which falls with the square of the step, and shows
+// where a body rolls on to the cable without loss before anything else has taken energy.
 TEST(RandomCompounds, StayFiniteAndMakeNoEnergy) {
   int ran = 0, squeezed = 0, stretched = 0, rises = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {

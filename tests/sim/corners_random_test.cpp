@@ -10,7 +10,8 @@
 namespace pinchlab::testing {
 namespace {
 
-/// Of 3 to 6 corners on a circle, in no regular places; their plate's centre is moved to the origin.
+/// Of 3 to 6 corners on a circle, in no regular places; their plate's centre is moved to the
+/// origin.
 void make_random_polygon(Random& random, double radius, Body& b) {
   const int corners = 3 + random.below(4);
   std::vector<Vec2> points;
@@ -82,8 +83,8 @@ Course run_measured(const Scene& scene, World& world) {
   return course;
 }
 
-// What is counted is a share that may still fail (sim/README.md, "Limits"); energy and finiteness must
-// hold in every one.
+// What is counted is a share that may still fail (sim/README.md, "Limits"); energy and finiteness
+// must hold in every one.
 TEST(RandomCorners, StayFiniteAndMakeNoEnergy) {
   int ran = 0, squeezed = 0, stretched = 0;
   for (int seed = 0; seed < 400; ++seed) {

@@ -241,8 +241,9 @@ TEST(Corners, TenBoxesStandOnOneAnother) {
   }
 }
 
-// A cable that starts on a square winch, lies over two of its corners and then slides over a pulley: the
-// pulley's two tensions are e^(mu theta) apart while the winch holds and the weight is let down.
+// A cable that starts on a square winch, lies over two of its corners and then slides over a
+// pulley: the pulley's two tensions are e^(mu theta) apart while the winch holds and the weight is
+// let down.
 TEST(Corners, ACableWoundOverCornersSlidesElsewhere) {
   const double mu = 0.3;
   for (const bool from_start : {true, false}) {
@@ -281,8 +282,8 @@ Scene disc_on_cable_on_box(double slope, double friction) {
   return scene;
 }
 
-// At a pinch a cable rolls by its centre line: without slip v = omega (r + w), and a = g sin(slope) /
-// (1 + I / m (r + w)^2); with little friction it slides, at a = g (sin - mu cos).
+// At a pinch a cable rolls by its centre line: without slip v = omega (r + w), and a = g sin(slope)
+// / (1 + I / m (r + w)^2); with little friction it slides, at a = g (sin - mu cos).
 TEST(Corners, WhatPressesACableOnASideRollsOnItOrRubs) {
   const double slope = 0.3, inertia = 0.5 * 2.0 * 0.3 * 0.3, lever = 0.35;
   for (const double friction : {infinity, 0.5, 0.04, 0.0}) {

@@ -50,8 +50,8 @@ Drive run_drive(double radius, int steps_per_frame) {
   return drive;
 }
 
-// w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA): of spans of 200 and 100 N at EA = 10 kN, 0.98 % of the
-// speed are lost, at whatever step.
+// w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA): of spans of 200 and 100 N at EA = 10 kN, 0.98 %
+// of the speed are lost, at whatever step.
 TEST(Creep, ABeltLosesSpeedByTheRatioOfItsStrains) {
   for (const double radius : {0.2, 0.35}) {
     for (const int steps : {1, 4, 16}) {
@@ -60,16 +60,16 @@ TEST(Creep, ABeltLosesSpeedByTheRatioOfItsStrains) {
       EXPECT_NEAR(drive.loss, 1.0 - (1.0 + slack) / (1.0 + taut), 1e-9);
       EXPECT_NEAR(drive.loss, 0.0098, 1e-4);
       EXPECT_NEAR(drive.taut, 200.0, 10.0);
-      // What is given off at another strain than the span's loses 1/2 EA (e1 - e2)^2 of each metre, on either
-      // pulley.
+      // What is given off at another strain than the span's loses 1/2 EA (e1 - e2)^2 of each metre,
+      // on either pulley.
       const double metres = 6.0 * 0.21 / (1.0 + taut);
       EXPECT_NEAR(drive.power_lost, stiffness * std::pow(taut - slack, 2) * metres, 1e-6);
     }
   }
 }
 
-/// A load on a rope that a drum without slip hauls up, the rope soft enough for the load to swing by a part of
-/// a metre.
+/// A load on a rope that a drum without slip hauls up, the rope soft enough for the load to swing
+/// by a part of a metre.
 Scene hoist(int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;
@@ -97,8 +97,8 @@ TEST(Creep, IsOfSecondOrder) {
   }
 }
 
-// Energy may rise by leapfrog's own swing alone (the stiffest rope with the lightest pulley: omega h = 0.6 at 4
-// steps a frame), which falls with the square of the step.
+// Energy may rise by leapfrog's own swing alone (the stiffest rope with the lightest pulley: omega
+// h = 0.6 at 4 steps a frame), which falls with the square of the step.
 TEST(Creep, MakesNoEnergy) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     for (const int steps : {4, 16, 64}) {

@@ -119,8 +119,8 @@ TEST(Defects, AVeryStiffCableIsLikeAnInextensibleOne) {
   }
 }
 
-// Links of a closed cable are counted round its end, and it never lies on one body only; what was counted wrongly lost
-// cable, or links.
+// Links of a closed cable are counted round its end, and it never lies on one body only; what was
+// counted wrongly lost cable, or links.
 TEST(Defects, ClosedCablesStayWithinBounds) {
   for (const char* name : {"10-open-and-closed-cable", "12-closed-cable-out-of-bounds"}) {
     const Scene scene = read(name);

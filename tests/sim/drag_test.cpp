@@ -49,8 +49,9 @@ TEST(Drag, IsOfSecondOrder) {
   }
 }
 
-// However strong, drag brings a body to its terminal velocity and never turns it round: a step too long to
-// follow that (c h > 2) takes what speed there was at once. What it goes by less is v h at most.
+// However strong, drag brings a body to its terminal velocity and never turns it round: a step too
+// long to follow that (c h > 2) takes what speed there was at once. What it goes by less is v h at
+// most.
 TEST(Drag, NeverTurnsABodyRound) {
   for (const double drag : {100.0, 479.0, 481.0, 1e3, 1e4}) {
     for (const int steps_per_frame : {1, 4, 16}) {

@@ -75,8 +75,8 @@ TEST(Events, NewtonsCradlePassesItsImpulseOn) {
   EXPECT_NEAR(world.velocity[4].x(), 2.0, 1e-12);
 }
 
-// A weight m falls by the slack s and pulls M over a pulley without inertia: v = sqrt(2 g s) becomes
-// v m / (m + M), and then both move with the acceleration g (m - M) / (m + M).
+// A weight m falls by the slack s and pulls M over a pulley without inertia: v = sqrt(2 g s)
+// becomes v m / (m + M), and then both move with the acceleration g (m - M) / (m + M).
 TEST(Events, ACatchIsExactAtAnyStep) {
   const double m = 3.0, M = 1.0, slack = 0.37;
   for (const int steps : {1, 4}) {

@@ -279,7 +279,8 @@ TEST(Exact, RollerRestsOnTheWrapAndLeavesExactlyTheCableBetween) {
   EXPECT_NEAR(world.contacts[0].gap, 0.1, 1e-13);
   EXPECT_NEAR(world.contacts[0].normal_force, 2.0 * g, 1e-9);
   EXPECT_LT(std::abs(world.velocity[1].y()), 1e-12);
-  // Horizontals are a quarter turn from the y axis, in doubles off by 6e-17: this is of second order in it.
+  // Horizontals are a quarter turn from the y axis, in doubles off by 6e-17: this is of second
+  // order in it.
   EXPECT_LT(std::abs(world.angle[0]), 1e-28);
 }
 

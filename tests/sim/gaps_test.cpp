@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gaps between bodies, with a cable between them or none: the least scenes of what made them fall short
-// in random ones.
+// Gaps between bodies, with a cable between them or none: the least scenes of what made them fall
+// short in random ones.
 
 #include "sim/outline.h"
 #include "sim/touch.h"
@@ -9,8 +9,8 @@
 namespace pinchlab::testing {
 namespace {
 
-// A disc touches a box with its centre: whether the box is over a span that leaves the disc is a matter of
-// the box's nearest place, not of that centre.
+// A disc touches a box with its centre: whether the box is over a span that leaves the disc is a
+// matter of the box's nearest place, not of that centre.
 TEST(Gaps, ABoxOverTheSpanThatLeavesAPulleyKeepsTheCablesWidth) {
   Scene scene;
   scene.bodies.push_back(body("pulley", BodyKind::fixed, 0.0, 0.0, 0.4));
@@ -62,7 +62,8 @@ TEST(Gaps, AContactThatIsMeasuredAnewIsWhereItsBodiesAre) {
   EXPECT_EQ(measured, 2);
 }
 
-// Contacts are found for the speeds that bodies have. An impact that makes one faster finds them anew.
+// Contacts are found for the speeds that bodies have. An impact that makes one faster finds them
+// anew.
 TEST(Gaps, ABodyThatIsStruckWithinTheStepMeetsTheNext) {
   Scene scene;
   scene.gravity = Vec2::Zero();

@@ -109,8 +109,8 @@ TEST(Joints, HingedDiscIsAPendulum) {
   for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_GT(errors[i - 1] / errors[i], 3.5) << i;
 }
 
-/// Two discs, the first hinged to the world at its rim, the second to the first one's other side, so
-/// that they overlap.
+/// Two discs, the first hinged to the world at its rim, the second to the first one's other side,
+/// so that they overlap.
 Scene double_pendulum(int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;
@@ -123,8 +123,8 @@ Scene double_pendulum(int steps_per_frame) {
   return scene;
 }
 
-// Lagrange's equations of two equal discs with their hinges d before and behind their centres, q the
-// angles from the start's.
+// Lagrange's equations of two equal discs with their hinges d before and behind their centres, q
+// the angles from the start's.
 TEST(Joints, DoublePendulumFollowsLagrange) {
   const double d = 0.2, own = 0.5 * 0.25 * 0.25;
   const auto exact = runge_kutta<2>({0.0, 0.0}, 0.8, 8000, [&](const auto& q, const auto& v) {
@@ -224,8 +224,8 @@ TEST(Joints, StiffSpringsAndDampersAreStable) {
   }
 }
 
-// A ball thrown up a slanting rail reaches the upper stop with v^2 = v0^2 - 2 g s h, stays until it falls,
-// from rest, and ends on the lower one.
+// A ball thrown up a slanting rail reaches the upper stop with v^2 = v0^2 - 2 g s h, stays until it
+// falls, from rest, and ends on the lower one.
 TEST(Joints, StopsEndTravelWhenItIsReached) {
   const double slope = 0.6, a = g * std::sin(slope), up = 1.0, down = -0.5, fast = 5.0;
   const Vec2 axis(std::cos(slope), std::sin(slope));
@@ -290,9 +290,9 @@ TEST(Joints, AJammedMotorStalls) {
   EXPECT_GT(world.position[1].x(), 0.99);
 }
 
-// What swings on joints alone loses energy where springs are damped and bodies meet, and gains none: by
-// how much it rises above its least so far is leapfrog's own swing, which falls with the square of the
-// step (the lightest body on the stiffest spring: omega h = 0.2 at 4 steps a frame).
+// What swings on joints alone loses energy where springs are damped and bodies meet, and gains
+// none: by how much it rises above its least so far is leapfrog's own swing, which falls with the
+// square of the step (the lightest body on the stiffest spring: omega h = 0.2 at 4 steps a frame).
 TEST(Joints, RandomLinkagesMakeNoEnergy) {
   int runs = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {

@@ -98,8 +98,8 @@ TEST(Layers, WindOnAsTheyWindOff) {
   EXPECT_NEAR(world.cables[0].links[1].radius, radius, 1e-12);
 }
 
-// It rolls on the outermost layer, omega (r + w) = Omega R, with its centre (r + w) + R from the drum's, or
-// is dragged along by mu N.
+// It rolls on the outermost layer, omega (r + w) = Omega R, with its centre (r + w) + R from the
+// drum's, or is dragged along by mu N.
 TEST(Layers, WhatIsPressedOnThemRollsOnTheOutermost) {
   for (const double friction : {infinity, 0.1}) {
     for (const Method method : {Method::pinch, Method::pinch_no_contact}) {

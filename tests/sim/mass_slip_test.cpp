@@ -24,7 +24,8 @@ using std::numbers::pi;
 
 constexpr double rope_radius = 0.2, rope_density = 0.8;  // m, of the centre line on the peg; kg/m
 
-/// Two weights on a rope over a peg: the left one hangs by `left` m of rope, the right one by `right`.
+/// Two weights on a rope over a peg: the left one hangs by `left` m of rope, the right one by
+/// `right`.
 Scene rope_over_peg(int steps, double mu, double left, double right, double m_left, double m_right,
                     BodyKind kind = BodyKind::fixed) {
   Scene scene;
@@ -38,8 +39,8 @@ Scene rope_over_peg(int steps, double mu, double left, double right, double m_le
   return scene;
 }
 
-// x'' = k^2 x, for x = half the difference of the ends: (rho L + m1 + m2) x'' = 2 rho g x. What is left is
-// leapfrog's own error, as of the rope of Mass.ARopeOverAPulleyFallsAsItsWeightMovesOver.
+// x'' = k^2 x, for x = half the difference of the ends: (rho L + m1 + m2) x'' = 2 rho g x. What is
+// left is leapfrog's own error, as of the rope of Mass.ARopeOverAPulleyFallsAsItsWeightMovesOver.
 TEST(MassSlip, ARopeSlidesOffASmoothPeg) {
   for (const BodyKind kind : {BodyKind::fixed, BodyKind::fixed_axle}) {
     for (const int steps : {1, 2, 4, 8, 16}) {
@@ -57,8 +58,8 @@ TEST(MassSlip, ARopeSlidesOffASmoothPeg) {
   }
 }
 
-/// Independent of the solver: acceleration of the rope over the peg, from its elements on the rim. Slips to
-/// the right at w, with a of span on the left and b on the right.
+/// Independent of the solver: acceleration of the rope over the peg, from its elements on the rim.
+/// Slips to the right at w, with a of span on the left and b on the right.
 struct PegRope {
   double mu, m_left, m_right, rho = rope_density, radius = rope_radius;
 
@@ -120,8 +121,8 @@ TEST(MassSlip, ARopeRubsOnAPegAsItsElementsDo) {
   }
 }
 
-/// A bob of 0.5 kg on a rope that a drum winds up as it swings: the rope lies over it, with a weight
-/// beyond.
+/// A bob of 0.5 kg on a rope that a drum winds up as it swings: the rope lies over it, with a
+/// weight beyond.
 Scene swinging_over_drum(int steps, double mu) {
   Scene scene;
   scene.steps_per_frame = steps;
@@ -210,8 +211,9 @@ TEST(MassSlip, SwingsOnSecondOrder) {
   }
 }
 
-// A drum that turns fast drags a belt round, and a second one that the belt turns along on a rail, which gravity
-// pulls away from the first. With T the tension at the tangents of drum 2, strand 1 going to the first:
+// A drum that turns fast drags a belt round, and a second one that the belt turns along on a rail,
+// which gravity pulls away from the first. With T the tension at the tangents of drum 2, strand 1
+// going to the first:
 //     (I / R^2 + rho pi R) w' = T1 - T2,   T1 + T2 = (m + rho pi R) g + 2 rho w^2.
 TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
   constexpr double mu = 0.25, rho = 0.7, radius = 0.15, apart = 1.1, mass = 2.0, inertia = 0.02;
@@ -229,7 +231,8 @@ TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
     // X1 + rho d (g + w') k ... solved for w' with T1 = (sum + m' w') / 2, T2 = (sum - m' w') / 2
     const double sum = (mass + rho * pi * radius) * g + 2.0 * rho * w * w;
     const double m = inertia / (radius * radius) + rho * pi * radius, d = rho * apart;
-    // (sum - m w') / 2 + d (g - w') - rho w^2 = k ((sum + m w') / 2 + d (g + w') - rho w^2) + c0 + c1 w'
+    // (sum - m w') / 2 + d (g - w') - rho w^2 = k ((sum + m w') / 2 + d (g + w') - rho w^2) + c0 +
+    // c1 w'
     const double left = 0.5 * sum + d * g - rho * w * w, right = k * left + c0;
     return (left - right) / (0.5 * m + d + k * (0.5 * m + d) + c1);
   };
@@ -260,8 +263,8 @@ TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
   }
 }
 
-// With the scene as a whole in uniform motion the rope moves as without: over a heavy peg, from which springs
-// pull the weights away.
+// With the scene as a whole in uniform motion the rope moves as without: over a heavy peg, from
+// which springs pull the weights away.
 TEST(MassSlip, MovesAlongWithItsFrame) {
   const Vec2 speed(3.0, -2.0);
   for (const double mu : {0.0, 0.15, infinity}) {
@@ -293,7 +296,8 @@ TEST(MassSlip, MovesAlongWithItsFrame) {
   }
 }
 
-// A disc without friction that falls on a rope takes up what moves across it only: the rope moves on.
+// A disc without friction that falls on a rope takes up what moves across it only: the rope moves
+// on.
 TEST(MassSlip, ASmoothDiscDoesNotStopTheRopeThatItMeets) {
   Scene scene;
   scene.bodies.push_back(body("light", BodyKind::free, -0.5, -0.7, 0.05));

@@ -23,8 +23,8 @@ namespace {
 
 using std::numbers::pi;
 
-// x'' = (dm g + 2 rho g x) / (m1 + m2 + rho L + I / R^2). What is left is leapfrog's own error of a motion
-// cosh k t, A sinh(k t) k t (k h)^2 / 24, where the half kick of the first step starts it.
+// x'' = (dm g + 2 rho g x) / (m1 + m2 + rho L + I / R^2). What is left is leapfrog's own error of a
+// motion cosh k t, A sinh(k t) k t (k h)^2 / 24, where the half kick of the first step starts it.
 TEST(Mass, ARopeOverAPulleyFallsAsItsWeightMovesOver) {
   const double k = std::sqrt(0.8 * g / 4.35);
   for (const int steps : {1, 2, 4, 8, 16}) {
@@ -275,8 +275,8 @@ TEST(Mass, MomentumIsKeptWhoeverJoinsTheCable) {
   }
 }
 
-// What leapfrog swings by falls with the square of the step. Elastic cables over rims have an error of their own
-// (sim/README.md, "Limits").
+// What leapfrog swings by falls with the square of the step. Elastic cables over rims have an error
+// of their own (sim/README.md, "Limits").
 TEST(RandomMass, StayFiniteAndMakeNoEnergy) {
   int ran = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
@@ -326,8 +326,8 @@ TEST(Mass, WhatWouldHangBreaksAPromise) {
   }
 }
 
-// A disc that leaves the rope has its own mass again, though a slack string to the weight keeps it in the
-// part: the string's catch must not know of the rope.
+// A disc that leaves the rope has its own mass again, though a slack string to the weight keeps it
+// in the part: the string's catch must not know of the rope.
 TEST(Mass, WhoLeavesTheCableIsRidOfIt) {
   Scene scene;
   scene.bodies.push_back(body("weight", BodyKind::free, 1.42, -1.0, 0.1, 2.0));

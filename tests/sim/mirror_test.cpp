@@ -42,7 +42,8 @@ void mirror(CableState& cable) {
   }
 }
 
-/// A contact's tangent is to the left of its normal: sliding forward is sliding backward in a mirror.
+/// A contact's tangent is to the left of its normal: sliding forward is sliding backward in a
+/// mirror.
 void mirror(Contact& contact) {
   contact.normal = mirror(contact.normal);
   contact.slip = static_cast<Slip>(-static_cast<int>(contact.slip));
@@ -65,8 +66,8 @@ bool is_image(World world, World other) {
   return same_state(world, other);
 }
 
-/// The first of so many steps after which scene and image are no images of each other (0: before any), or
-/// -1.
+/// The first of so many steps after which scene and image are no images of each other (0: before
+/// any), or -1.
 int first_parted(const Scene& scene, const Configuration& configuration, int steps) {
   const Scene image = mirrored(scene);
   World world = make_world(scene, configuration), other = make_world(image, configuration);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts that cannot meet within a step are divided each by its own events: sim/motion/neighbourhoods.h.
+// Parts that cannot meet within a step are divided each by its own events:
+// sim/motion/neighbourhoods.h.
 
 #include "sim/motion/neighbourhoods.h"
 
@@ -56,9 +57,9 @@ TEST(Neighbourhoods, HoweverManyLandInOneStepAllRebound) {
   EXPECT_EQ(world.diagnostics.clusters, 0);
 }
 
-// A body of 1 kg hits one of 1 g, which flies twice as fast and meets a third far out of the first's reach, all
-// in one step; far off a ball bounces, so that the step is divided. By then the third has come to the
-// step's end, and is taken back.
+// A body of 1 kg hits one of 1 g, which flies twice as fast and meets a third far out of the
+// first's reach, all in one step; far off a ball bounces, so that the step is divided. By then the
+// third has come to the step's end, and is taken back.
 TEST(Neighbourhoods, ThoseThatMeetAfterAllAreTakenBack) {
   Scene scene;
   scene.gravity = Vec2::Zero();
@@ -130,8 +131,8 @@ TEST(Neighbourhoods, ReachOverStaticPulleys) {
   EXPECT_EQ(neighbourhoods_of_bodies(scene), (std::vector<int>{-1, 0, 0, 0, 1}));
 }
 
-// Its velocities are brought to the steps' ends where others need that, which is no more than a kick in
-// two halves.
+// Its velocities are brought to the steps' ends where others need that, which is no more than a
+// kick in two halves.
 TEST(Neighbourhoods, APendulumSwingsAsBesideNothing) {
   Scene scene;
   add_pendulum(scene, 0.0);

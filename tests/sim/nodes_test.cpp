@@ -23,8 +23,8 @@ double sag_of(const World& world) {
   return -lowest;
 }
 
-// Sags of the lumped chain of N pieces; the catenary's is 0.7963884, its tension at the end 1.0260286 rho
-// g. The first piece bears all of that but for half a piece's weight.
+// Sags of the lumped chain of N pieces; the catenary's is 0.7963884, its tension at the end
+// 1.0260286 rho g. The first piece bears all of that but for half a piece's weight.
 TEST(Nodes, StartWhereTheChainHangs) {
   for (const auto& [pieces, sag] : {std::pair(20, 0.798273), {50, 0.796685}, {100, 0.796462}}) {
     Scene scene = catenary(pieces, 1);
@@ -51,8 +51,9 @@ TEST(Nodes, AreAsManyAsStepsCanFollow) {
   EXPECT_NEAR(sag_of(make_world(scene, Method::pinch)), 0.7963884, 1e-4);
 }
 
-// Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g / l
-// times the zeros of the Laguerre polynomial L_N. For L = 1 and N = 10 the lowest is 3.67662 rad/s.
+// Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g
+// / l times the zeros of the Laguerre polynomial L_N. For L = 1 and N = 10 the lowest is 3.67662
+// rad/s.
 TEST(Nodes, HangingChainSwingsAsItShould) {
   const double length = 1.0, frequency = 3.67662;
   constexpr int pieces = 10;
@@ -86,8 +87,8 @@ TEST(Nodes, HangingChainSwingsAsItShould) {
   }
 }
 
-// It falls faster than freely: in 0.847213 sqrt(2 L / g) if no energy is lost (Calkin & March 1989). The
-// lumped chain differs from that as 1 / N.
+// It falls faster than freely: in 0.847213 sqrt(2 L / g) if no energy is lost (Calkin & March
+// 1989). The lumped chain differs from that as 1 / N.
 TEST(Nodes, FoldedChainFallsFasterThanFreely) {
   const double unit = std::sqrt(2.0 / g);
   for (const int pieces : {20, 50, 100}) {
@@ -152,8 +153,8 @@ std::vector<Vec2> swing_flexibly(int pieces, int steps, std::vector<double> time
   return tips;
 }
 
-// Another program's rod of so many pieces, by Runge and Kutta's method, and the authors' own finite elements
-// (Westin and Irani's code, 10 elements), which rods tend to.
+// Another program's rod of so many pieces, by Runge and Kutta's method, and the authors' own finite
+// elements (Westin and Irani's code, 10 elements), which rods tend to.
 TEST(Nodes, AFlexiblePendulumSwingsAsOthersDo) {
   double change = 0.0;
   const Vec2 twenty = swing_flexibly(20, 64, {1.0}, change)[0];

@@ -297,8 +297,8 @@ TEST(Pinch, SlippingCableUnderARollerTurnsTheDrum) {
   EXPECT_EQ(world.diagnostics.fallbacks, 0);
 }
 
-/// A drum that turns clockwise under a roller of 2 kg on an upright rail: slack cable runs over the drum
-/// and, from a transitional pinch at its top on, round the roller's underside.
+/// A drum that turns clockwise under a roller of 2 kg on an upright rail: slack cable runs over the
+/// drum and, from a transitional pinch at its top on, round the roller's underside.
 Scene feeding(double of_drum, double of_roller) {
   Scene scene;
   scene.gravity = {0.0, -g};
@@ -312,9 +312,9 @@ Scene feeding(double of_drum, double of_roller) {
   return scene;
 }
 
-/// Cable that nothing pulls is pushed through the pinch by what presses on it, and turns the roller by the
-/// friction of whichever body holds it less: a constant force F = mu N on its lever, until both rims are
-/// equally fast.
+/// Cable that nothing pulls is pushed through the pinch by what presses on it, and turns the roller
+/// by the friction of whichever body holds it less: a constant force F = mu N on its lever, until
+/// both rims are equally fast.
 class Feed : public ::testing::TestWithParam<std::tuple<double, double, int>> {};
 
 TEST_P(Feed, PushesSlackCableByFrictionOfThePressingForce) {

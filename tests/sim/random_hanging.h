@@ -9,8 +9,9 @@
 
 namespace pinchlab::testing {
 
-/// A hanging cable whose number of nodes adapts: between two posts, and blown at; with a weight that is let go at
-/// its end; or held by a counterweight over a pulley. Its steps are short enough for its whipping.
+/// A hanging cable whose number of nodes adapts: between two posts, and blown at; with a weight
+/// that is let go at its end; or held by a counterweight over a pulley. Its steps are short enough
+/// for its whipping.
 inline Scene random_hanging(int seed) {
   Random random(static_cast<unsigned>(seed));
   const auto uniform = [&](double low, double high) { return random.uniform(low, high); };

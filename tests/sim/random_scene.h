@@ -68,7 +68,8 @@ inline Scene random_elastic(unsigned seed) {
   return scene;
 }
 
-/// A linkage: discs of all weights hinged, barred and sprung to one another and to the world, at random.
+/// A linkage: discs of all weights hinged, barred and sprung to one another and to the world, at
+/// random.
 inline Scene linkage(unsigned seed) {
   std::uint64_t state = 0x9e3779b97f4a7c15ULL * (seed + 1);
   const auto random = [&state] {  // 0 to 1, xorshift64*
@@ -105,8 +106,8 @@ inline Scene linkage(unsigned seed) {
   return scene;
 }
 
-/// Pulleys in a row, over and under which one heavy rope runs with weights at its ends, and discs that fall
-/// on it.
+/// Pulleys in a row, over and under which one heavy rope runs with weights at its ends, and discs
+/// that fall on it.
 inline Scene falling_on_rope(unsigned seed) {
   Random random(seed);
   Scene scene;

@@ -53,8 +53,8 @@ TEST(ProfileLu, FindsRepeatedRows) {
   EXPECT_NEAR(x[0] + 3 * x[1], 5.0, 1e-14);
 }
 
-// One profile that is wider by a zero keeps a tridiagonal matrix off its shorter way: rows that nothing
-// couples, and one that repeats another, too.
+// One profile that is wider by a zero keeps a tridiagonal matrix off its shorter way: rows that
+// nothing couples, and one that repeats another, too.
 TEST(ProfileLdl, ATridiagonalMatrixHasTheBitsOfAWiderOne) {
   constexpr int n = 40, repeated = 21;
   Random random(1);

@@ -25,8 +25,8 @@ TEST(State, AClearedWorkspaceChangesNoBit) {
   }
 }
 
-// Pinches of pulleys that only turn are kept while one disc falls on to a wall of its own, and found anew
-// once another falls on to them.
+// Pinches of pulleys that only turn are kept while one disc falls on to a wall of its own, and
+// found anew once another falls on to them.
 TEST(State, PinchesAreKeptWhereNothingMoves) {
   Scene scene = stress_scene(3, pinched_spacing);
   Body disc;

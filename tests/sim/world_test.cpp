@@ -130,7 +130,7 @@ TEST(MakeWorld, RefusesTooNarrowACrossing) {
 TEST(MakeWorld, RefusesAWrapTheWrongWayRound) {
   Scene scene = drum_scene();
   scene.cables[0] = cable(at(-2.0, 0.6), {{0, -1, 0}}, at(2.0, 0.6));
-  expect_refused(scene, "/cables/0/wraps/0", "turn the orientation round");
+  expect_refused(scene, "/cables/0/wraps/0", "the other `turn`");
 }
 
 TEST(MakeWorld, RefusesAnEndOffTheRimItIsWoundOn) {

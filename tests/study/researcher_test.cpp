@@ -120,6 +120,23 @@ TEST(Researcher, WithdrawsByCodeAndDownloads) {
   EXPECT_EQ(running.desk.overview().finished, 1U);
 }
 
+// The page says that there is a problem, the terminal which.
+TEST(Researcher, FaultsAreToldOnTheTerminal) {
+  const fs::path folder = scratch_folder();
+  RunningServer running(desk_options(folder));
+  take_part(running.desk, "left");
+  write_text(answer_files(folder / "answers").front(), "{");
+  HttpClient client(running.server.address());
+  testing::internal::CaptureStderr();
+  const auto reply =
+      client.get("/api/download/answers.csv", bearer(running.server.researcher_token()));
+  const std::string told = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(reply->status, 500);
+  EXPECT_EQ(reply->body.find("JSON"), std::string::npos) << reply->body;
+  EXPECT_NE(told.find(" GET /api/download/answers.csv: "), std::string::npos) << told;
+  EXPECT_NE(told.find("not JSON"), std::string::npos) << told;
+}
+
 TEST(Researcher, APilotIsMarkedAndKeptApart) {
   const fs::path folder = scratch_folder();
   const auto options = [&](bool is_pilot) {

@@ -18,6 +18,7 @@
 #include "study/answers.h"
 #include "study/connections.h"
 #include "study/http_client.h"
+#include "study/http_server.h"
 #include "study/page_assets.h"
 #include "tests/study/support.h"
 
@@ -374,6 +375,28 @@ TEST(Http, AnAddressForAllIsToldAsOneThatCanBeOpened) {
     EXPECT_EQ(raw_status(server.address(), "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"), 200);
     server.stop();
     thread.join();
+  }
+}
+
+// What would help is told, and no more.
+TEST(Http, AnAddressThatCannotBeHadSaysWhatHelps) {
+  const auto why = [](const std::string& host, int port) -> std::string {
+    try {
+      const HttpServer server(host, port, {}, [](const HttpRequest&) { return HttpReply(); });
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const RunningServer running(desk_options(scratch_folder()));
+  const std::string address = running.server.address();
+  const int port = std::stoi(address.substr(address.rfind(':') + 1));
+  EXPECT_NE(why("127.0.0.1", port).find("is another server running? Use another --port"),
+            std::string::npos)
+      << why("127.0.0.1", port);
+  for (const char* host : {"300.1.1.1", "192.0.2.1"}) {
+    EXPECT_EQ(why(host, 0).find("another server"), std::string::npos) << why(host, 0);
+    EXPECT_NE(why(host, 0).find("use another --host"), std::string::npos) << why(host, 0);
   }
 }
 

@@ -228,6 +228,43 @@ TEST(Simulate, TheExportOfAllThatCanBeAskedIsRead) {
     EXPECT_EQ(again[key], report[key]) << key;
 }
 
+TEST(Simulate, LogsHaveNoLinesThatAreWrittenAnew) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder / "clips");
+  write_text(folder / "study.json",
+             json{{"format", "pinchlab-study 1"}, {"demonstrations", demonstrations}}.dump());
+  write_text(folder / "truth.json", json{{"format", "pinchlab-truth 1"}}.dump());
+  run(folder,
+      "study simulate --clips clips --answers answers --truth truth.json --config study.json "
+      "--participants 3");
+  EXPECT_EQ(read_whole(folder / "err.txt").find('\r'), std::string::npos);
+}
+
+TEST(Simulate, NamesThatTheStudyDoesNotHaveAreRefused) {
+  const fs::path folder = scratch_folder();
+  Desk desk(desk_options(folder));
+  const auto why = [&](const Truth& truth) -> std::string {
+    try {
+      simulate(desk, truth, {});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Truth truth;
+  truth.shares = {{"01-fisrt", 0.9}};
+  EXPECT_EQ(why(truth),
+            "the truth's `shares`: the study has no demonstration `01-fisrt` (did you mean "
+            "`01-first`?)");
+  truth.shares = {{"01-first", 0.9}};
+  EXPECT_EQ(why(truth), "");
+  truth.methods = {{"pinch", 1.0}};
+  EXPECT_EQ(why(truth), "the truth's `methods`: the study has no method `pinch`");
+  truth.methods.clear();
+  truth.series["squeeze"];
+  EXPECT_EQ(why(truth), "the truth's `series`: the study has no series `squeeze`");
+}
+
 TEST(Simulate, TruthsAreCheckedWholly) {
   const fs::path folder = scratch_folder();
   const auto why = [&](const json& truth) -> std::string {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A cable as a chain of small rigid links on Box2D: the lumped-mass model of thesis 2.1. Nodes of a cable with
-// mass are point masses between distance joints.
+// A cable as a chain of small rigid links on Box2D: the lumped-mass model of thesis 2.1. Nodes of a
+// cable with mass are point masses between distance joints.
 
 #include "analysis/experiments/work_precision.h"
 

@@ -29,7 +29,8 @@ struct Peer {
   bool present() const { return !version.empty(); }
 };
 
-/// Whether the problem is a cable with mass that hangs, and nothing else: nodes and the pieces between them.
+/// Whether the problem is a cable with mass that hangs, and nothing else: nodes and the pieces
+/// between them.
 bool is_chain(const Problem& problem);
 
 /// All known peers, present or not.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "analysis/experiments/steady_times.h"
 #include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
@@ -98,6 +99,49 @@ TEST_F(Advise, NamesTheFewestStepsThatMeetTheError) {
             static_cast<std::ptrdiff_t>(advice.rungs.size() - contenders().size() - 1));
 }
 
+// The iterative solver can be cheaper, but simulate has no name for it.
+TEST_F(Advise, RecommendsWhatCanBeTyped) {
+  const Question question = ask("atwood", atwood_json, 1e-2);
+  Advice advice = advise(question);
+  for (Rung& rung : advice.rungs) {
+    const bool is_named = rung.setting.find("iterative") == std::string::npos;
+    rung.trial.cpu_s_per_s = (is_named ? 10.0 : 1.0) * rung.steps_per_frame;
+  }
+  const int any = cheapest(advice.problem, advice.rungs, question.error_m, true);
+  ASSERT_GE(any, 0);
+  EXPECT_NE(advice.rungs[static_cast<std::size_t>(any)].setting.find("iterative"),
+            std::string::npos);
+  advice.best = best_to_type(question, advice);
+  ASSERT_GE(advice.best, 0);
+  EXPECT_EQ(advice.rungs[static_cast<std::size_t>(advice.best)].setting, "pinch direct");
+  const std::string text = advice_text(question, advice);
+  EXPECT_NE(text.find("Try it: pinchlab simulate "), std::string::npos) << text;
+  EXPECT_NE(text.find("* for comparison only"), std::string::npos) << text;
+}
+
+// Two that cost the same but for a machine that is now and then busy.
+TEST(SteadyTimes, AreMediansOfAsManySamplesAsTheirScatterNeeds) {
+  unsigned state = 1;
+  const auto noise = [&state] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(state >> 8U) / static_cast<double>(1U << 24U);
+  };
+  int calls = 0;
+  const auto busy = [&] {
+    ++calls;
+    return 1.0 + 0.3 * noise() + (noise() < 0.05 ? 20.0 : 0.0);
+  };
+  const std::vector<double> noisy = steady_times({busy, busy}, 1e6);
+  EXPECT_NEAR(noisy[0], 1.15, 0.07);
+  EXPECT_NEAR(noisy[1], 1.15, 0.07);
+  EXPECT_GT(calls, 2 * 15);
+  calls = 0;
+  const std::vector<double> same = steady_times({[&] { return ++calls, 2.0; }}, 1e6);
+  EXPECT_EQ(same, std::vector<double>{2.0});
+  EXPECT_EQ(calls, 15);
+  EXPECT_EQ(steady_times({[] { return 3.0; }}, 1e-9), std::vector<double>{3.0});
+}
+
 TEST_F(Advise, RefusesWhatTheReferenceCannotVouchFor) {
   Question question = ask("pendulum", pendulum_json, 1e-11);
   question.most_reference_steps = 128;
@@ -145,7 +189,9 @@ TEST_F(Advise, SaysWhereNothingMeetsTheError) {
   EXPECT_EQ(advice.best, -1);
   EXPECT_FALSE(advice.rungs.empty());
   const std::string text = advice_text(question, advice);
-  EXPECT_NE(text.find("None of these keeps within 1e-06 m"), std::string::npos) << text;
+  EXPECT_NE(text.find("None of these, but for what is marked *, keeps within 1e-06 m"),
+            std::string::npos)
+      << text;
 }
 
 TEST_F(Advise, NamesTheFileThatIsWrong) {

@@ -158,8 +158,8 @@ Scene driven_on_to_moving_cable() {
 struct EdgeCase {
   const char* name;
   std::function<Scene()> scene;
-  /// Of the most kinetic energy, that a leapfrog's energy swings by on curved ways, times the square
-  /// of the steps a frame.
+  /// Of the most kinetic energy, that a leapfrog's energy swings by on curved ways, times the
+  /// square of the steps a frame.
   double swing = 0.0;
   int followed_from = 1;    ///< steps a frame; a body may be too light for fewer (sim/README.md)
   double asymmetry = 1e-9;  ///< m, that round-off grows to in a second

@@ -89,7 +89,8 @@ TEST(Peers, Box2dLinksRunRoundCorners) {
   EXPECT_LT(best_error(peer, known("square-unwinding"), 64), 0.02);
 }
 
-// Another program, other coordinates, a method of fourth order: it comes to where our own solution does.
+// Another program, other coordinates, a method of fourth order: it comes to where our own solution
+// does.
 TEST(Peers, MujocoLinksAgreeThatAFoldedChainFallsLikeThis) {
   const Peer peer = peer_called("MuJoCo");
   if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";

@@ -42,8 +42,8 @@ TEST(Population, NoSpanIsTooLongWithoutTension) {
   }
 }
 
-// Bodies on taut spans that several of them press, or that have just come off one: what a repair pushes
-// into a span is met there. These sank into it by 2 mm to 0.3 m, and fell through.
+// Bodies on taut spans that several of them press, or that have just come off one: what a repair
+// pushes into a span is met there. These sank into it by 2 mm to 0.3 m, and fell through.
 TEST(Population, NoBodySinksThroughASpan) {
   for (const int seed : {216, 424, 446, 477, 573, 600}) {
     const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
@@ -53,9 +53,10 @@ TEST(Population, NoBodySinksThroughASpan) {
   }
 }
 
-// Seeds in which gaps fell short: discs let down on to pulleys by taut spans (10, 1031, 1225), that meet on
-// spans that cannot give (433, 650), moved apart by a repair that then stood as they had been (689), and
-// struck (719); and repairs whose whole way made nothing better, so that nothing was repaired.
+// Seeds in which gaps fell short: discs let down on to pulleys by taut spans (10, 1031, 1225), that
+// meet on spans that cannot give (433, 650), moved apart by a repair that then stood as they had
+// been (689), and struck (719); and repairs whose whole way made nothing better, so that nothing
+// was repaired.
 TEST(Population, GapsAreKept) {
   for (const int seed : {10, 433, 650, 689, 717, 719, 1031, 1225, 2725, 4065, 4803}) {
     const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));

@@ -443,8 +443,8 @@ TEST(Compose, CablesWithMassAreOneBand) {
   EXPECT_TRUE(picture.labels.empty());
 }
 
-// A bar and a spring are lines with a pin at either end, a hinge is one pin with a bracket in the world, a
-// stop a block; none of them is drawn as a cable.
+// A bar and a spring are lines with a pin at either end, a hinge is one pin with a bracket in the
+// world, a stop a block; none of them is drawn as a cable.
 TEST(Compose, JointsAreNoCables) {
   Scene scene;
   scene.view = {Vec2(-2.0, -2.0), Vec2(2.0, 2.0)};
