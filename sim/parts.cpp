@@ -162,7 +162,8 @@ const Part* predecessor(const Parts& before, const Parts& parts, const Part& par
   const bool has_bodies = !bodies.empty();
   const int first = has_bodies ? bodies.front() : cables.front();
   const std::vector<int>& of = has_bodies ? before.of_body : before.of_cable;
-  if (index(first) >= of.size()) return nullptr;
+  // A node that has come was in none: it was fixed.
+  if (index(first) >= of.size() || at(of, first) < 0) return nullptr;
   const Part& old = at(before.list, at(of, first));
   const bool stands = same(bodies, bodies_of(before, old)) && same(cables, cables_of(before, old));
   return stands ? &old : nullptr;
