@@ -222,16 +222,6 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
       }
     }
     Config config = read_or_default(options->config);
-    const fs::path csv = options->csv.empty() && options->json.empty() ? "-" : options->csv;
-    if (is_same_file(csv, options->json)) {
-      throw std::invalid_argument("--csv and --json must be different files");
-    }
-    for (const fs::path& out : {csv, options->json}) {
-      if (!out.empty() && is_same_file(out, options->config)) {
-        throw std::invalid_argument(
-            fmt::format("{}: is the configuration; give the plan another name", out.string()));
-      }
-    }
     if (config.demonstrations.empty()) {
       config.demonstrations = stimuli.demonstrations();
     }

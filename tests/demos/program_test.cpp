@@ -450,19 +450,6 @@ TEST(Player, NamesTheThesisByItsWays) {
 }
 
 TEST(Player, FailureSaysHowToSeeItAgain) {
-  // However many sweeps it has, and whatever else is asked of it, thesis is what to type.
-  TEST(Player, NamesTheThesisByItsWays) {
-    Configuration thesis = thesis_configuration();
-    EXPECT_STREQ(to_string(thesis), "thesis");
-    thesis.iterations = 40;
-    thesis.sleep = true;
-    thesis.diagnostics = true;
-    EXPECT_STREQ(to_string(thesis), "thesis");
-    EXPECT_STREQ(in_words(thesis), "the thesis' pinch joints");
-    thesis.solver = Solver::direct;
-    EXPECT_STREQ(to_string(thesis), "pinch");
-  }
-
   Scene scene;
   World world;
   world.configuration.method = Method::cable;
