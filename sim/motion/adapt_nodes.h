@@ -14,13 +14,14 @@
 // No less can be lost: two points have the moment of inertia of three about their common centre
 // only if none of them is the middle one; they have m c^2 / 4 more, and at one angular momentum the
 // energy falls as that rises.
-//     Where one becomes two, a and b keep their velocities and give m/2 each, and the node moves as the middle between
-// them does. Mass and momentum are kept again, the energy falls by 1/2 m |v_b - v_a|^2 / 4, and the
-// angular momentum by as much as the two had too much of inertia: at one angular momentum the
-// energy would rise. An end that cannot move takes its share out of the system, and gives it back,
-// at rest.
-//     Afterwards an impact (impact.h) fits velocities to the pieces that there are: along them, and only ever
-// losing. Positions are not touched, nor is the potential energy.
+//     Where one becomes two, a and b keep their velocities and give m/2 each, and the node moves as
+// the middle between them does. Mass and momentum are kept again, the energy falls by
+//     1/2 m |v_b - v_a|^2 / 4,
+// and the angular momentum by as much as the two had too much of inertia: at one angular momentum
+// the energy would rise. An end that cannot move takes its share out of the system, and gives it
+// back, at rest.
+//     Afterwards an impact (impact.h) fits velocities to the pieces that there are: along them, and
+// only ever losing. Positions are not touched, nor is the potential energy.
 //
 // When. A piece of the length c under the curvature kappa sags by kappa c^2 / 8, where chords of
 // lengths c_1 and c_2 that meet at the angle theta tell kappa = 2 theta / (c_1 + c_2); one that is

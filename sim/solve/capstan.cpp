@@ -70,12 +70,13 @@ void store(SolveScratch& set, int row, const std::vector<Term>& expression) {
 /// The tension after the run if it slid in direction `way` everywhere, for the impulses just
 /// solved. Cable is pushed in pinches only: what would have to be pushed along an arc slides on to
 /// it or, seen from the other end, lies on it without tension.
-double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way) {
+double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way,
+                     double tolerance) {
   const auto impulse = [&system](int row) { return row >= 0 ? at(system.rows, row).impulse : 0.0; };
   double t = impulse(run.row_in);
   for (int k = run.passages_begin; k < run.passages_end; ++k) {
     const Passage& p = at(s.passages, k);
-    if (is_arc(p) && t < 0.0) t = way > 0 ? -infinity : 0.0;
+    if (is_arc(p) && t < -tolerance) t = way > 0 ? -infinity : 0.0;
     t = tension_after(p, way, t, impulse(p.normal), impulse(p.middle));
   }
   return t;
@@ -445,9 +446,9 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
       if (rubs && against) set.flips.push_back({number, true, true, Slip::stick});
       continue;
     }
-    if (out > sliding_limit(system, s, run, 1) + impulse_tolerance) {
+    if (out > sliding_limit(system, s, run, 1, impulse_tolerance) + impulse_tolerance) {
       set.flips.push_back({number, true, true, Slip::forward});
-    } else if (out < sliding_limit(system, s, run, -1) - impulse_tolerance) {
+    } else if (out < sliding_limit(system, s, run, -1, impulse_tolerance) - impulse_tolerance) {
       set.flips.push_back({number, true, true, Slip::backward});
     }
   }
