@@ -66,7 +66,7 @@ Configuration thesis_configuration();
 /// "thesis", or the name of a method with our own choices for the rest; nothing for other names.
 std::optional<Configuration> configuration_from_string(std::string_view name);
 
-/// The name that configuration_from_string knows it by; of any other one its method's.
+/// The name that configuration_from_string knows it by, any number of sweeps; or its method's.
 const char* to_string(const Configuration& configuration);
 
 const char* to_string(Solver solver);
