@@ -12,20 +12,11 @@ namespace pinchlab {
 
 namespace {
 
-/// Beyond this exponent no double tells the ratio from infinity in a sum with another tension. The
-/// product of those along a cable must not overflow.
-constexpr double largest_exponent = 40.0;
-
 /// With three rows the middle body of a pinch holds the cable like an arc of this much on it (rad).
 constexpr double middle_arc = 1.0;
 
 double capstan_factor(double mu, double arc) {
   return std::exp(std::min(mu * arc, largest_exponent));
-}
-
-/// A contact's coefficient for one of the cables that lie in it.
-double share(double mu, const Contact& contact) {
-  return mu / std::max(1, contact.pinch_points);
 }
 
 /// The transitional pinch of a segment, as seen by a body whose friction there is mu at one of its
@@ -40,6 +31,10 @@ void append_pressed_end(const World& world, const SolveScratch& scratch, const S
 }
 
 }  // namespace
+
+double share(double mu, const Contact& contact) {
+  return mu / std::max(1, contact.pinch_points);
+}
 
 double friction_in_pinch(const World& world, const CableState& cable, int body) {
   if (cable.grip == 0.0) return 0.0;  // of no slip too: 0 times infinity

@@ -52,6 +52,13 @@ inline double tension_after(const Passage& p, int way, double before, double for
   return (way > 0 ? before * p.factor : before / p.factor) + way * p.friction * force - middle;
 }
 
+/// Beyond this exponent no double tells the ratio from infinity in a sum with another tension. The
+/// product of those along a cable must not overflow.
+constexpr double largest_exponent = 40.0;
+
+/// A contact's coefficient for one of the cables that lie in it.
+double share(double mu, const Contact& contact);
+
 /// What a body that presses the cable in a pinch holds it by, as a share of the force that presses;
 /// infinity: without slip.
 double friction_in_pinch(const World& world, const CableState& cable, int body);
@@ -63,9 +70,9 @@ double contact_coefficient(double mu_a, double mu_b);
 /// Friction of a bare contact of the given coefficient, pressed by row `normal`.
 Friction contact_friction(int row, int normal, double coefficient);
 
-/// Friction of the middle body of the pinch at link `middle` of cable `cable` (its row is `row`):
-/// by the contact that presses it. Without slip it holds whatever it must, where the bodies are
-/// axles that do not give way, or where (thesis) contacts have no rows.
+/// Friction of the middle body of a pinch, which row `row` is for, by the contact that presses it.
+/// Without slip it holds whatever it must, where the bodies are axles that do not give way, or
+/// where (thesis) contacts have no rows.
 Friction middle_friction(const World& world, const PartSystem& system, const SolveScratch& scratch,
                          int row);
 

@@ -121,8 +121,6 @@ struct Way {
   double exponent = 0.0;      // of `in`
 };
 
-constexpr double largest_exponent = 40.0;  // as in friction.cpp
-
 /// Goes on by an arc of `angle` (rad) with friction m, forward positive.
 void pass_arc(const CableState& cable, const Link& link, const Vec2& e_in, const Vec2& e_out,
               double mu, RubLaw& law, Way& way, std::vector<Term>& terms) {
@@ -149,8 +147,7 @@ void pass_pinch(const World& world, const SolveScratch& scratch, int contact, do
                 std::vector<Term>& terms) {
   if (contact < 0 || mu == 0.0) return;
   const int normal = at(scratch.normal_row_of_contact, contact);
-  const int shared = std::max(1, at(world.contacts, contact).pinch_points);
-  if (normal >= 0) terms.push_back({normal, mu / shared});
+  if (normal >= 0) terms.push_back({normal, share(mu, at(world.contacts, contact))});
 }
 
 /// The law for slipping forward (sign = 1) or backward (-1).
@@ -158,7 +155,7 @@ void find_law(const World& world, const SolveScratch& scratch, const SleevePlace
               PartSystem& s, RubLaw& law) {
   const CableState& cable = at(world.cables, one.sleeve.cable);
   const double mu = sign * at(world.bodies, one.sleeve.body).cable_friction;
-  const double pinched = cable.grip * mu;
+  const double pinched = sign * friction_in_pinch(world, cable, one.sleeve.body);
   std::vector<Term>& terms = s.rub_terms;
   law = {};
   law.terms_begin = static_cast<int>(terms.size());

@@ -14,6 +14,7 @@
 #include "sim/outline.h"
 #include "sim/promises.h"
 #include "sim/scene_error.h"
+#include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
@@ -74,43 +75,6 @@ TEST(Mass, AMotorWithALimitBearsTheRope) {
   const double k = std::sqrt(0.8 * g / 4.35), start = (4.0 / 0.2 - 0.5 * g) / 4.35;
   const double expected = start / (k * k) * (std::cosh(0.1 * k) - 1.0);
   EXPECT_NEAR(from - world.position[0].y(), expected, 1e-5 * expected);
-}
-
-struct Course {
-  std::vector<double> end;             // of all bodies: m, m, rad
-  double energy = 0.0;                 // J, its largest change since the second step's start
-  double gained = 0.0, at_play = 0.0;  // J, since the start
-  double gap = 0.0, stretch = 0.0;     // m
-};
-
-Course run_measured(const Scene& scene, double seconds) {
-  Course course;
-  World world = make_world(scene, measured());
-  Workspace work;
-  double first = 0.0, start = 0.0;
-  for (int i = 0; i < seconds * 60 * scene.steps_per_frame; ++i) {
-    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-    if (!world.failure.empty()) break;
-    const Diagnostics& d = world.diagnostics;
-    if (i == 0) start = d.energy;
-    if (i < 2) first = d.energy;
-    course.energy = std::max(course.energy, std::abs(d.energy - first));
-    course.gained = std::max(course.gained, d.energy - start);
-    course.at_play = std::max(course.at_play, start - potential_energy(scene, world));
-    course.gap = std::max(course.gap, d.largest_gap_violation);
-    course.stretch = std::max(course.stretch, d.largest_stretch);
-  }
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    course.end.insert(course.end.end(),
-                      {world.position[b].x(), world.position[b].y(), world.angle[b]});
-  }
-  return course;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
 }
 
 /// A bob of 0.5 kg on a rope of 0.25 kg that a drum winds up as it swings, or lets it turn.

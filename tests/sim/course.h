@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "sim/diagnostics.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+
+/// What came of a run.
+struct Course {
+  std::vector<double> end;             // of all bodies: m, m, rad
+  double energy = 0.0;                 // J, its largest change since the second step's start
+  double gained = 0.0, at_play = 0.0;  // J, since the start
+  double gap = 0.0, stretch = 0.0;     // m
+};
+
+inline Course run_measured(const Scene& scene, double seconds) {
+  Course course;
+  World world = make_world(scene, measured());
+  Workspace work;
+  double first = 0.0, start = 0.0;
+  for (int i = 0; i < seconds * 60 * scene.steps_per_frame; ++i) {
+    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    if (!world.failure.empty()) break;
+    const Diagnostics& d = world.diagnostics;
+    if (i == 0) start = d.energy;
+    if (i < 2) first = d.energy;
+    course.energy = std::max(course.energy, std::abs(d.energy - first));
+    course.gained = std::max(course.gained, d.energy - start);
+    course.at_play = std::max(course.at_play, start - potential_energy(scene, world));
+    course.gap = std::max(course.gap, d.largest_gap_violation);
+    course.stretch = std::max(course.stretch, d.largest_stretch);
+  }
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    course.end.insert(course.end.end(),
+                      {world.position[b].x(), world.position[b].y(), world.angle[b]});
+  }
+  return course;
+}
+
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+}  // namespace pinchlab::testing
