@@ -10,6 +10,7 @@
 #include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "render/picture/chain_path.h"
+#include "render/picture/polygon_outline.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/outline.h"
@@ -309,44 +310,17 @@ class Composer {
     return paint;
   }
 
-  /// Where corner k of a polygon is, with all sides moved inwards by `inset` (m).
-  Vec2 corner(std::size_t i, std::size_t k, double inset) const {
-    const std::vector<Vec2>& corners = scene_.bodies[i].corners;
-    const std::size_t count = corners.size();
-    const Vec2& here = corners[k % count];
-    const Vec2 before = (here - corners[(k + count - 1) % count]).normalized();
-    const Vec2 after = (corners[(k + 1) % count] - here).normalized();
-    const Vec2 inwards = (left(before) + left(after)) / (1.0 + before.dot(after));
-    return world_.position[i] + turned(here + inset * inwards, world_.angle[i]);
+  PolygonOutline polygon(std::size_t i) const {
+    return {scene_.bodies[i], world_.position[i], world_.angle[i]};
   }
 
   /// A patch whose sides lie `inset` (m) within those of the core of a polygon.
   void add_patch(std::size_t i, const Vec2& shift, double inset, Colour colour) {
     const std::size_t count = scene_.bodies[i].corners.size();
     for (std::size_t k = 0; k < count; ++k) {
-      picture_.corners.push_back(corner(i, k, inset) + shift);
+      picture_.corners.push_back(polygon(i).corner(k, inset) + shift);
     }
     picture_.add(Patch{picture_.corners.size() - count, count, colour});
-  }
-
-  /// Visits the points of a polygon's outline moved inwards by `depth` (m), with the outline's
-  /// direction, and once for each where it has no rounding left.
-  template <class Visit>
-  void trace(std::size_t i, double depth, Visit visit) const {
-    const double rounding = scene_.bodies[i].corner_radius;
-    const double inset = std::max(0.0, depth - rounding), radius = std::max(0.0, rounding - depth);
-    const std::size_t count = scene_.bodies[i].corners.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const Vec2 centre = corner(i, k, inset);
-      const Vec2 before = (centre - corner(i, k + count - 1, inset)).normalized();
-      const Vec2 after = (corner(i, k + 1, inset) - centre).normalized();
-      const double bend = std::atan2(cross(before, after), before.dot(after));
-      const int pieces = static_cast<int>(std::ceil(bend / most_turn));
-      for (int piece = 0; piece <= pieces; ++piece) {
-        const Vec2 e = turned(before, bend * piece / pieces);
-        visit(Vec2(centre - radius * left(e)), e, piece == 0 || radius > 0.0);
-      }
-    }
   }
 
   /// A polygon's band along its outline, which hides the sides of the patch that fills it.
@@ -358,7 +332,7 @@ class Composer {
     Patch patch;
     patch.first = picture_.corners.size();
     patch.fill = fill;
-    trace(i, 0.5 * band, [this](const Vec2& point, const Vec2& e, bool is_new) {
+    polygon(i).trace(0.5 * band, [this](const Vec2& point, const Vec2& e, bool is_new) {
       picture_.points.push_back({point, e, 0.0});
       if (is_new) picture_.corners.push_back(point);
     });
@@ -384,7 +358,7 @@ class Composer {
       return;
     }
     const std::size_t first = picture_.corners.size();
-    trace(i, band, [this](const Vec2& point, const Vec2&, bool is_new) {
+    polygon(i).trace(band, [this](const Vec2& point, const Vec2&, bool is_new) {
       if (is_new) picture_.corners.push_back(point);
     });
     picture_.add(Patch{first, picture_.corners.size() - first, fill});
