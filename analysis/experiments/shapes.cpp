@@ -345,35 +345,63 @@ Csv csv_of(const Shapes& shapes) {
   return csv;
 }
 
+using Table = std::vector<std::vector<std::string>>;
+
+std::string polygon_table(const std::vector<Polygon>& polygons) {
+  Table rows;
+  for (const Polygon& p : polygons) {
+    rows.push_back({fmt::format("{}", p.corners), fmt::format("{:.2e}", p.error_m),
+                    fmt::format("{:.2f}", p.error_m * p.corners * p.corners)});
+  }
+  return markdown_table({"corners n", "distance, m", "distance × n²"}, rows);
+}
+
+std::string hanging_table(const std::vector<Hanging>& hanging) {
+  Table rows;
+  for (const Hanging& h : hanging) {
+    rows.push_back({fmt::format("{}", h.pieces), fmt::format("{:.7f}", h.sag_m),
+                    fmt::format("{:.7f}", h.end_tension), time_text(h.cost_s)});
+  }
+  rows.push_back({"the catenary", "0.7963884", "1.0260286", ""});
+  return markdown_table({"pieces", "sag, m", "tension at the end, of rho g", "a second costs"},
+                        rows);
+}
+
+std::string fall_table(const std::vector<Fall>& falls) {
+  Table rows;
+  for (const Fall& f : falls) {
+    rows.push_back({fmt::format("{}", f.pieces), fmt::format("{:.5f}", f.time),
+                    fmt::format("{:.2f}", (f.time - 0.847213) * f.pieces),
+                    fmt::format("{:.1e}", f.energy_made)});
+  }
+  return markdown_table(
+      {"pieces N", "time, of sqrt(2 L / g)", "(time - 0.847213) N", "energy made, J"}, rows);
+}
+
+std::string pendulum_table(const std::vector<Pendulum>& pendulums) {
+  Table rows;
+  for (const Pendulum& p : pendulums) {
+    rows.push_back({fmt::format("{}", p.pieces), fmt::format("{}", p.steps_per_frame),
+                    fmt::format("{:.6f}", p.tip.x()), fmt::format("{:.6f}", p.tip.y()),
+                    time_text(p.cost_s)});
+  }
+  rows.push_back({"finite elements", "", "-0.994295", "0.037633", ""});
+  return markdown_table({"pieces", "steps a frame", "x, m", "y, m", "a second costs"}, rows);
+}
+
+std::string creep_table(const std::vector<Creep>& creeps) {
+  Table rows;
+  for (const Creep& c : creeps) {
+    rows.push_back({fmt::format("{}", c.steps_per_frame), fmt::format("{:.3f}", c.taut),
+                    fmt::format("{:.3f}", c.slack), fmt::format("{:.7f} %", 100.0 * c.loss),
+                    fmt::format("{:.1e}", std::abs(c.loss - c.known))});
+  }
+  return markdown_table({"steps a frame", "T1, N", "T2, N", "speed lost", "error of the loss"},
+                        rows);
+}
+
 std::string page_text(const Shapes& shapes) {
   const auto& [ladders, polygons, hanging, falls, adapting, pendulums, creeps, cost] = shapes;
-  std::vector<std::vector<std::string>> polygon_rows, hanging_rows, fall_rows, creep_rows,
-      pendulum_rows;
-  for (const Pendulum& p : pendulums) {
-    pendulum_rows.push_back({fmt::format("{}", p.pieces), fmt::format("{}", p.steps_per_frame),
-                             fmt::format("{:.6f}", p.tip.x()), fmt::format("{:.6f}", p.tip.y()),
-                             time_text(p.cost_s)});
-  }
-  pendulum_rows.push_back({"finite elements", "", "-0.994295", "0.037633", ""});
-  for (const Creep& c : creeps) {
-    creep_rows.push_back({fmt::format("{}", c.steps_per_frame), fmt::format("{:.3f}", c.taut),
-                          fmt::format("{:.3f}", c.slack), fmt::format("{:.7f} %", 100.0 * c.loss),
-                          fmt::format("{:.1e}", std::abs(c.loss - c.known))});
-  }
-  for (const Polygon& p : polygons) {
-    polygon_rows.push_back({fmt::format("{}", p.corners), fmt::format("{:.2e}", p.error_m),
-                            fmt::format("{:.2f}", p.error_m * p.corners * p.corners)});
-  }
-  for (const Hanging& h : hanging) {
-    hanging_rows.push_back({fmt::format("{}", h.pieces), fmt::format("{:.7f}", h.sag_m),
-                            fmt::format("{:.7f}", h.end_tension), time_text(h.cost_s)});
-  }
-  hanging_rows.push_back({"the catenary", "0.7963884", "1.0260286", ""});
-  for (const Fall& f : falls) {
-    fall_rows.push_back({fmt::format("{}", f.pieces), fmt::format("{:.5f}", f.time),
-                         fmt::format("{:.2f}", (f.time - 0.847213) * f.pieces),
-                         fmt::format("{:.1e}", f.energy_made)});
-  }
   return fmt::format(
       "# Corners, layers, cables with mass\n\n"
       "What bodies and cables of more than discs and massless lines come to, against solutions of "
@@ -406,17 +434,8 @@ std::string page_text(const Shapes& shapes) {
       "## Cost\n\nA step of a swinging cable of 100 nodes: {}, {:.1f} times the {} of a bare pass "
       "(directions, a "
       "tridiagonal matrix, its elimination, speeds; nothing else).\n",
-      ladder_table(ladders),
-      markdown_table({"corners n", "distance, m", "distance × n²"}, polygon_rows),
-      markdown_table({"pieces", "sag, m", "tension at the end, of rho g", "a second costs"},
-                     hanging_rows),
-      markdown_table(
-          {"pieces N", "time, of sqrt(2 L / g)", "(time - 0.847213) N", "energy made, J"},
-          fall_rows),
-      adapting_text(adapting),
-      markdown_table({"pieces", "steps a frame", "x, m", "y, m", "a second costs"}, pendulum_rows),
-      markdown_table({"steps a frame", "T1, N", "T2, N", "speed lost", "error of the loss"},
-                     creep_rows),
+      ladder_table(ladders), polygon_table(polygons), hanging_table(hanging), fall_table(falls),
+      adapting_text(adapting), pendulum_table(pendulums), creep_table(creeps),
       time_text(cost.step_s), cost.step_s / cost.bare_s, time_text(cost.bare_s));
 }
 
