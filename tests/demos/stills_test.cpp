@@ -8,20 +8,13 @@
 #include "demos/playback.h"
 #include "demos/scenes/player.h"
 #include "demos/scenes/theme.h"
-#include "run_program.h"
-#include "tests/demos/scenes/scene_files.h"
+#include "tests/demos/scene_folders.h"
 
 namespace pinchlab {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-fs::path folder_with_scene() {
-  fs::path folder = scratch_folder();
-  std::ofstream(folder / "01-small.json") << small_scene();
-  return folder;
-}
 
 Scene small() {
   return parse_scene(small_scene().dump(), "01-small.json").scene;
