@@ -21,8 +21,9 @@ class PolygonOutline {
   /// Where corner k of its core is, with all sides moved inwards by `inset` (m).
   Vec2 corner(std::size_t k, double inset) const;
 
-  /// Visits the points of the outline moved inwards by `depth` (m), as visit(point, direction, whether
-  /// it is another point than the last): once for each corner where it has no rounding left.
+  /// Visits the points of the outline moved inwards by `depth` (m), as visit(point, direction,
+  /// whether it is another point than the last): once for each corner where it has no rounding
+  /// left.
   template <class Visit>
   void trace(double depth, Visit visit) const {
     const double rounding = body_.corner_radius;
