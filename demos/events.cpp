@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "base/at.h"
 #include "sim/cable/cable.h"
 
 namespace pinchlab {
@@ -49,15 +50,19 @@ void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
   }
 }
 
+std::string EventWatch::name_of_other(const World& world, const Contact& contact) const {
+  if (contact.b >= 0) return scene_.bodies[static_cast<std::size_t>(contact.b)].name;
+  const int cable = at(world.obstacles, contact.wall).cable;
+  if (cable < 0) return "a wall";
+  return fmt::format("the end of {}", scene_.cables[static_cast<std::size_t>(cable)].name);
+}
+
 void EventWatch::look(const World& world, double time) {
-  static const std::string a_wall = "a wall";
   for (std::size_t c = 0; c < world.cables.size(); ++c) look_at_cable(world, c, time);
   for (const Contact& contact : world.contacts) {
     if (!contact.touching || contact.pinch_points > 0) continue;
     const std::string& a = scene_.bodies[static_cast<std::size_t>(contact.a)].name;
-    const std::string& b =
-        contact.b < 0 ? a_wall : scene_.bodies[static_cast<std::size_t>(contact.b)].name;
-    hold(fmt::format("{} touches {}", a, b), time);
+    hold(fmt::format("{} touches {}", a, name_of_other(world, contact)), time);
   }
 }
 

@@ -33,6 +33,7 @@ class EventWatch {
 
  private:
   void hold(const std::string& what, double time);
+  std::string name_of_other(const World& world, const Contact& contact) const;
   void look_at_cable(const World& world, std::size_t cable, double time);
 
   const Scene& scene_;

@@ -18,12 +18,12 @@ enum class Touch : std::int8_t {
   end_of_wall,  // meets the outline of a
 };
 
-/// Two bodies, or a body and a wall, that touch or may touch within the next step. Where one of
-/// them is a polygon there may be several of a pair.
+/// Two bodies, or a body and an obstacle, that touch or may touch within the next step. Where one
+/// of them is a polygon there may be several of a pair.
 struct Contact {
   int a = -1;     // body index
-  int b = -1;     // body index > a, or -1: a wall
-  int wall = -1;  // index into Scene::walls, or -1
+  int b = -1;     // body index > a, or -1: an obstacle
+  int wall = -1;  // index into World::obstacles, or -1
   Touch touch = Touch::circles;
   std::int8_t point = 0;       // corner of the polygon, or end of the wall; 0 of a disc
   Vec2 normal = Vec2::Zero();  // unit, from a towards b

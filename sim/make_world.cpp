@@ -7,7 +7,9 @@
 #include <stdexcept>
 
 #include "base/at.h"
+#include "sim/cable/cable.h"
 #include "sim/cable/lay.h"
+#include "sim/cable/mass.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/detect/contacts.h"
@@ -16,6 +18,7 @@
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"
 #include "sim/step.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 
@@ -24,6 +27,7 @@ namespace {
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
+  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall});
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);
@@ -53,6 +57,39 @@ void lay_cables(const Scene& scene, World& world) {
   // Copies made at once lie next to each other. With what laying leaves between them the steps of a
   // scene of many cables would go through a third more pages of memory.
   world.cables = laid;
+}
+
+/// Whether a body that can move is where the last obstacle is, by more than `allowed` (m).
+bool is_covered(const World& world, double allowed) {
+  Contact with_obstacle;
+  with_obstacle.wall = static_cast<int>(world.obstacles.size()) - 1;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    if (!can_move(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b])) continue;
+    with_obstacle.a = static_cast<int>(b);
+    with_obstacle.touch = is_polygon(world.bodies[b]) ? Touch::end_of_wall : Touch::circles;
+    if (gap_of(world, with_obstacle) < -allowed) return true;
+  }
+  return false;
+}
+
+/// Ends of cables that are held in the world bar the way as their cables do; but for one over which
+/// a body starts. At the end of a cable with mass a span would shrink to nothing, whose turning,
+/// and with it what flows along it, has no bound.
+void add_ends(const Scene& scene, World& world) {
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const Cable& cable = scene.cables[c];
+    if (cable.closed || is_passed(world.cables[c]) || is_massed(world.cables[c])) continue;
+    for (const Attachment& end : {cable.start, cable.end}) {
+      if (end.body >= 0) continue;
+      Obstacle obstacle;
+      obstacle.a = obstacle.b = end.point;
+      obstacle.contact_friction = 0.0;
+      obstacle.radius = cable.half_width;
+      obstacle.cable = static_cast<int>(c);
+      world.obstacles.push_back(obstacle);
+      if (is_covered(world, overlap_allowed(scene))) world.obstacles.pop_back();
+    }
+  }
 }
 
 /// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not
@@ -98,6 +135,9 @@ World make_world(const Scene& scene, Configuration configuration) {
   find_body_pairs(scene, world, work);
   refuse_overlaps(scene, world, work.broad_phase);
   lay_cables(scene, world);
+  if (configuration.method == Method::pinch && locates_events(configuration)) {
+    add_ends(scene, world);
+  }
   find_body_pairs(scene, world, work);
   find_span_pairs(world, work);
   refuse_cables_through_bodies(scene, world, work.broad_phase);

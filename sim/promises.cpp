@@ -27,9 +27,11 @@ std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
-std::string name_of_side(const Scene& scene, int side) {
-  return side < 0 ? fmt::format("wall {}", -1 - side)
-                  : fmt::format("body '{}'", at(scene.bodies, side).name);
+std::string name_of_side(const Scene& scene, const World& world, int side) {
+  if (side >= 0) return fmt::format("body '{}'", at(scene.bodies, side).name);
+  const int cable = at(world.obstacles, -1 - side).cable;
+  return cable < 0 ? fmt::format("wall {}", -1 - side)
+                   : fmt::format("the end of cable '{}'", at(scene.cables, cable).name);
 }
 
 }  // namespace
@@ -164,7 +166,7 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
         what = fmt::format(
             "body '{}' and {} came too near by {} of the cable between them, or of "
             "the smaller radius (limit {})",
-            at(scene.bodies, w.item).name, name_of_side(scene, w.other), percent(w.value),
+            at(scene.bodies, w.item).name, name_of_side(scene, world, w.other), percent(w.value),
             percent(limits_.squeeze));
         break;
       case Promise::length:

@@ -43,7 +43,7 @@ class Promises {
     std::int64_t step = 0;          // after which it was so
     std::int64_t first_step = 0;    // after which the limit was first exceeded
     std::int64_t steps_broken = 0;  // 0: the promise has held
-    int item = -1, other = -1;      // cable; or bodies, `other` -1 - wall for a wall
+    int item = -1, other = -1;      // cable; or bodies, `other` -1 - wall for an obstacle
   };
 
   void note_value(Promise promise, double value, double limit, std::int64_t step, int item,

@@ -74,22 +74,40 @@ struct Apart {
   double gap = 0.0;       // m
 };
 
-Apart circles_apart(const Scene& scene, const World& world, const Contact& contact) {
+/// Whether what is on the contact's far side now, `way` (m) from a to b, has come there through b
+/// rather than past it. `radii` (m) of both in sum.
+bool has_gone_through(const World& world, const Contact& contact, const Vec2& way, double radii) {
+  if (contact.b < 0 && !is_end_of_cable(world, contact)) return true;  // of a wall
+  const Vec2 way_before = (contact.gap + radii) * contact.normal;
+  return distance_from_line(way_before, way, Vec2::Zero()) < radii;
+}
+
+Apart circles_apart(const World& world, const Contact& contact) {
   const Vec2& a = at(world.position, contact.a);
-  const Vec2 b = contact.b >= 0 ? at(world.position, contact.b)
-                                : nearest_on_line(at(scene.walls, contact.wall).a,
-                                                  at(scene.walls, contact.wall).b, a);
-  const double radii = at(world.bodies, contact.a).radius +
-                       (contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0);
   Apart apart;
-  apart.way = b - a;
+  double radii = at(world.bodies, contact.a).radius;
+  if (contact.b >= 0) {
+    apart.way = at(world.position, contact.b) - a;
+    radii += at(world.bodies, contact.b).radius;
+  } else {
+    const Obstacle& obstacle = at(world.obstacles, contact.wall);
+    apart.way = nearest_on_line(obstacle.a, obstacle.b, a) - a;
+    radii += obstacle.radius;
+  }
   const double length = apart.way.norm();
-  apart.distance = apart.way.dot(contact.normal) < 0.0 ? -length : length;
+  apart.distance = length;
+  if (apart.way.dot(contact.normal) < 0.0 && has_gone_through(world, contact, apart.way, radii)) {
+    apart.distance = -length;
+  }
   apart.gap = apart.distance - radii;
   return apart;
 }
 
 }  // namespace
+
+bool is_end_of_cable(const World& world, const Contact& contact) {
+  return contact.b < 0 && at(world.obstacles, contact.wall).cable >= 0;
+}
 
 Vec2 place_of_point(const World& world, int body, int point) {
   const BodyProperties& b = at(world.bodies, body);
@@ -108,24 +126,24 @@ Vec2 nearest_place(const World& world, const Contact& contact, int body) {
   return point + (of_a ? way : -way) * contact.normal;
 }
 
-void measure(const Scene& scene, const World& world, Contact& contact) {
+void measure(const World& world, Contact& contact) {
   if (contact.touch != Touch::circles) {
-    const Meeting meeting = meeting_of(scene, world, contact);
+    const Meeting meeting = meeting_of(world, contact);
     contact.gap = meeting.gap;
     contact.normal = meeting.normal;
     return;
   }
-  const Apart apart = circles_apart(scene, world, contact);
+  const Apart apart = circles_apart(world, contact);
   contact.gap = apart.gap;
   if (apart.distance != 0.0) contact.normal = apart.way / apart.distance;
 }
 
-double gap_of(const Scene& scene, const World& world, const Contact& contact) {
-  if (contact.touch != Touch::circles) return meeting_of(scene, world, contact).gap;
-  return circles_apart(scene, world, contact).gap;
+double gap_of(const World& world, const Contact& contact) {
+  if (contact.touch != Touch::circles) return meeting_of(world, contact).gap;
+  return circles_apart(world, contact).gap;
 }
 
-Meeting meeting_of(const Scene& scene, const World& world, const Contact& contact) {
+Meeting meeting_of(const World& world, const Contact& contact) {
   const bool of_a = contact.touch == Touch::point_of_a;
   const int owner = of_a ? contact.a : contact.b;                   // of the point
   const int other = contact.touch == Touch::point_of_b ? contact.a  // the outline
@@ -135,15 +153,16 @@ Meeting meeting_of(const Scene& scene, const World& world, const Contact& contac
   double radius = 0.0, other_radius = 0.0;
   Outside out;
   if (contact.touch == Touch::end_of_wall) {
-    const Wall& wall = at(scene.walls, contact.wall);
-    point = contact.point == 0 ? wall.a : wall.b;
+    const Obstacle& obstacle = at(world.obstacles, contact.wall);
+    point = contact.point == 0 ? obstacle.a : obstacle.b;
+    radius = obstacle.radius;
     out = outside_of_body(world, other, point);
     other_radius = rim_radius(at(world.bodies, other));
   } else {
     point = place_of_point(world, owner, contact.point);
     radius = rim_radius(at(world.bodies, owner));
     if (other < 0) {
-      out = outside_of_wall(at(scene.walls, contact.wall), at(world.position, owner), point);
+      out = outside_of_wall(at(world.obstacles, contact.wall), at(world.position, owner), point);
     } else {
       out = outside_of_body(world, other, point);
       other_radius = rim_radius(at(world.bodies, other));
@@ -156,7 +175,7 @@ Meeting meeting_of(const Scene& scene, const World& world, const Contact& contac
   return meeting;
 }
 
-void append_touches(const Scene& scene, const World& world, int a, int b, int wall, double most,
+void append_touches(const World& world, int a, int b, int wall, double most,
                     std::vector<Contact>& to) {
   const auto first = static_cast<std::ptrdiff_t>(to.size());
   Contact contact;
@@ -166,7 +185,7 @@ void append_touches(const Scene& scene, const World& world, int a, int b, int wa
   const auto append = [&](Touch touch, int point) {
     contact.touch = touch;
     contact.point = static_cast<std::int8_t>(point);
-    const Meeting meeting = meeting_of(scene, world, contact);
+    const Meeting meeting = meeting_of(world, contact);
     if (meeting.gap > most) return;
     contact.gap = meeting.gap;
     contact.normal = meeting.normal;
@@ -174,11 +193,13 @@ void append_touches(const Scene& scene, const World& world, int a, int b, int wa
   };
   const BodyProperties& body = at(world.bodies, a);
   if (b < 0) {
-    const Wall& line = at(scene.walls, wall);
-    for (int k = 0; k < points_of(body); ++k) {
-      if (is_beside(line, place_of_point(world, a, k))) append(Touch::point_of_a, k);
+    const Obstacle& obstacle = at(world.obstacles, wall);
+    const bool is_point = obstacle.cable >= 0;
+    for (int k = 0; !is_point && k < points_of(body); ++k) {
+      if (is_beside(obstacle, place_of_point(world, a, k))) append(Touch::point_of_a, k);
     }
-    for (const int end : {0, 1}) append(Touch::end_of_wall, end);
+    append(Touch::end_of_wall, 0);
+    if (!is_point) append(Touch::end_of_wall, 1);
     return;
   }
   const BodyProperties& other = at(world.bodies, b);

@@ -23,8 +23,11 @@ struct Meeting {
   Vec2 point = Vec2::Zero();   // m, midway between the surfaces
 };
 
+/// Whether it is with the end of a cable that is held in the world.
+bool is_end_of_cable(const World& world, const Contact& contact);
+
 /// Of a contact that is not of circles.
-Meeting meeting_of(const Scene& scene, const World& world, const Contact& contact);
+Meeting meeting_of(const World& world, const Contact& contact);
 
 /// Where a corner of a polygon is, or the centre of a disc (whatever `point`).
 Vec2 place_of_point(const World& world, int body, int point);
@@ -35,14 +38,14 @@ Vec2 place_of_point(const World& world, int body, int point);
 Vec2 nearest_place(const World& world, const Contact& contact, int body);
 
 /// Brings a contact's gap and normal up to the bodies' present positions.
-void measure(const Scene& scene, const World& world, Contact& contact);
+void measure(const World& world, Contact& contact);
 
 /// That gap alone (m).
-double gap_of(const Scene& scene, const World& world, const Contact& contact);
+double gap_of(const World& world, const Contact& contact);
 
 /// Appends the contacts of a pair one of which is a polygon, of gaps up to `most` (m), in the order
 /// of world.contacts.
-void append_touches(const Scene& scene, const World& world, int a, int b, int wall, double most,
+void append_touches(const World& world, int a, int b, int wall, double most,
                     std::vector<Contact>& to);
 
 /// By how much the outlines of two bodies one of which is a polygon are apart along the direction

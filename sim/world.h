@@ -154,6 +154,13 @@ inline double stored_length(const Link& link) {
   return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
 }
 
+/// What stands for good and bodies cannot pass: a wall of the scene; or the end of a cable that is
+/// held in the world, a smooth point with the cable's half width about it.
+struct Obstacle : Wall {
+  double radius = 0.0;  // m, how far from its line its surface is
+  int cable = -1;       // whose end it is, or -1: a wall
+};
+
 /// What came of a step. It fails where a value is not finite, or where cables bend round more
 /// corners, or meet and leave bodies more often, than anything real: World::failure.
 enum class StepStatus { ok, failed };
@@ -191,6 +198,7 @@ struct World {
 
   std::vector<BodyProperties> bodies;  // by make_world; masses, kinds and seats of what belongs to
                                        // chains whose number of nodes adapts, by adapt_nodes
+  std::vector<Obstacle> obstacles;     // walls as in Scene, then ends of cables; by make_world
   std::vector<int> carried;    // bodies that are shapes of others (compound.h), by make_world
   std::vector<Vec2> position;  // m, one a body, at `time()`; by move_bodies
   std::vector<double> angle;   // rad, likewise

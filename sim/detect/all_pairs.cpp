@@ -22,12 +22,14 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
   broad.wall_pairs.clear();
   update_boxes(scene, world, 0.0, broad.boxes);
   const int count = static_cast<int>(world.bodies.size());
-  const int walls = static_cast<int>(scene.walls.size());
+  const int walls = static_cast<int>(world.obstacles.size());
   for (int a = 0; a < count; ++a) {
     const auto i = index(a);
     const Box box = broad.boxes[i];
     if (!world.bodies[i].outlined) continue;
-    for (int w = 0; w < walls; ++w) broad.wall_pairs.push_back({a, w});
+    for (int w = 0; w < walls; ++w) {
+      if (bars(at(world.obstacles, w), world.bodies[i])) broad.wall_pairs.push_back({a, w});
+    }
     for (int b = a + 1; b < count; ++b) {
       const auto j = index(b);
       if (!overlap(box, broad.boxes[j])) continue;

@@ -117,16 +117,18 @@ void visit_overlapping(const BroadPhase& broad, const Box& box, Visit visit) {
   }
 }
 
-void list_wall_pairs(const Scene& scene, const World& world, BroadPhase& broad) {
+void list_wall_pairs(const World& world, BroadPhase& broad) {
   broad.wall_pairs.clear();
-  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-    const Wall& wall = scene.walls[w];
-    visit_overlapping(broad, {wall.a.cwiseMin(wall.b), wall.a.cwiseMax(wall.b)}, [&](int body) {
+  for (std::size_t w = 0; w < world.obstacles.size(); ++w) {
+    const Obstacle& wall = world.obstacles[w];
+    const Vec2 thick = Vec2::Constant(wall.radius);
+    const Box box_of_wall{wall.a.cwiseMin(wall.b) - thick, wall.a.cwiseMax(wall.b) + thick};
+    visit_overlapping(broad, box_of_wall, [&](int body) {
       const Box& box = at(broad.boxes, body);  // the circle round it is nearer to slanting walls
       const Vec2 centre = 0.5 * (box.low + box.high);
-      const double reach = 0.5 * (box.high - box.low).norm();
-      if (distance_from_line(wall.a, wall.b, centre) > reach || !at(world.bodies, body).outlined)
-        return;
+      const double reach = wall.radius + 0.5 * (box.high - box.low).norm();
+      if (distance_from_line(wall.a, wall.b, centre) > reach) return;
+      if (!bars(wall, at(world.bodies, body))) return;
       broad.wall_pairs.push_back({body, static_cast<int>(w)});
     });
   }
@@ -252,7 +254,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   update_boxes(scene, world, broad.skin, broad.boxes);
   sort_bodies(broad);
   list_body_pairs(scene, world, broad);
-  list_wall_pairs(scene, world, broad);
+  list_wall_pairs(world, broad);
 }
 
 void find_span_pairs(const World& world, Workspace& work) {

@@ -4,19 +4,17 @@
 
 #include <vector>
 
-#include "sim/scene.h"
+#include "sim/world.h"
 
 namespace pinchlab {
 
-struct Segment;
 struct Workspace;
-struct World;
 
 struct BodyPair {
   int a, b;  // a < b
 };
 struct WallPair {
-  int body, wall;
+  int body, wall;  // of World::obstacles
 };
 struct SpanPair {
   int cable, segment, body;
@@ -47,6 +45,11 @@ struct BroadPhase {
 inline bool never_touch(const BodyProperties& a, const BodyProperties& b) {
   return (a.kind == BodyKind::fixed && b.kind == BodyKind::fixed) || (a.node && b.node) ||
          !a.outlined || !b.outlined;
+}
+
+/// Whether the body can come upon the obstacle: nodes do not, upon the ends of cables.
+inline bool bars(const Obstacle& obstacle, const BodyProperties& body) {
+  return body.outlined && !(body.node && obstacle.cable >= 0);
 }
 
 /// Whether spans run into the body: it is no node of a cable, and has an outline.

@@ -37,7 +37,7 @@ bool comes_before(const Contact& p, const Contact& q) {
   return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
 }
 
-/// Old contacts of pairs, or of bodies and walls, that are asked for in their order.
+/// Old contacts of pairs, or of bodies and obstacles, that are asked for in their order.
 class Kept {
  public:
   explicit Kept(const std::vector<Contact>& old) : next_(old.begin()), end_(old.end()) {}
@@ -74,15 +74,14 @@ double way_left(const Scene& scene, const World& world, const Neighbourhoods& ne
   return 2.0 * near.left_of(body) * (speed_of(world, body) + gained);
 }
 
-/// The contacts of body `a` with body `b`, or with a wall (b = -1), whose nearest point or centre
-/// lies by `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer than
-/// `most` (m).
-void add_contacts(const Scene& scene, World& world, int a, int b, int wall, const Vec2& d,
-                  double radii, double most) {
+/// The contacts of body `a` with body `b`, or with an obstacle (b = -1), whose nearest point or
+/// centre lies by `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer
+/// than `most` (m).
+void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double radii, double most) {
   const double distance = d.norm();
   if (distance - radii > most) return;
   if (is_polygon(at(world.bodies, a)) || (b >= 0 && is_polygon(at(world.bodies, b)))) {
-    append_touches(scene, world, a, b, wall, most, world.contacts);
+    append_touches(world, a, b, wall, most, world.contacts);
     return;
   }
   const Vec2 somewhere = b >= 0 ? Vec2(1.0, 0.0) : Vec2(0.0, -1.0);
@@ -150,7 +149,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       near.crossed = near.crossed || d.norm() - a - b <= left;
       continue;
     }
-    add_contacts(scene, world, pair.a, pair.b, -1, d, a + b, most);
+    add_contacts(world, pair.a, pair.b, -1, d, a + b, most);
   }
   for (const WallPair& pair : broad.wall_pairs) {
     if (!can_move(at(world.bodies, pair.body))) continue;
@@ -158,12 +157,12 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
       continue;
     }
-    const Wall& wall = at(scene.walls, pair.wall);
+    const Obstacle& obstacle = at(world.obstacles, pair.wall);
     const Vec2& x = at(world.position, pair.body);
-    const Vec2 d = nearest_on_line(wall.a, wall.b, x) - x;
+    const Vec2 d = nearest_on_line(obstacle.a, obstacle.b, x) - x;
     const double radius = at(world.bodies, pair.body).radius;
     const double most = reach(scene, world, speed_of(world, pair.body), radius);
-    add_contacts(scene, world, pair.body, -1, pair.wall, d, radius, most);
+    add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
   }
   if (!broad.wall_pairs.empty()) {
     std::sort(world.contacts.begin(), world.contacts.end(), comes_before);

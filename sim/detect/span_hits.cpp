@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/detect/span_hits.h"
 
+#include <algorithm>
+
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
@@ -23,6 +25,7 @@ struct Hit {
   int body = -1;
   int corner = -1;
   int orientation = 0;
+  int over_end = 0;  // as in Happening
   std::size_t segment = 0;
 };
 
@@ -76,6 +79,22 @@ bool just_left(const World& world, const Workspace& work, const CableState& cabl
   return false;
 }
 
+/// Whether a link is an end of its cable that bars the way.
+bool is_solid_end(const World& world, const CableState& cable, const Link& link) {
+  if (link.body >= 0) return false;
+  return std::any_of(world.obstacles.begin(), world.obstacles.end(), [&](const Obstacle& o) {
+    return o.cable >= 0 && &at(world.cables, o.cable) == &cable && o.a == link.offset;
+  });
+}
+
+/// Over which end of the span, an end of its cable that bars the way, something has come that was
+/// so far along it before (m), as in Happening; or 0.
+int end_passed(const World& world, const CableState& cable, std::size_t s, double along_before) {
+  const int head = static_cast<int>(s), tail = previous_link(cable, head);
+  const int end = along_before <= 0.0 ? -1 : 1;
+  return is_solid_end(world, cable, at(cable.links, end < 0 ? tail : head)) ? end : 0;
+}
+
 Hit test_circle(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
                 const Circle& circle) {
   const Segment& segment = cable.segments[s];
@@ -98,14 +117,15 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double side_before = cross(direction_before, before);
 
   // What was within reach of the span's line before, but not beside the span, has come past its
-  // end: it is in front of the cable, not in its way. What was beside it has been pushed into it by
-  // a repair. What touches the line does so to within_reach of the part's extent, and `in_touch` is
-  // far above that.
+  // end: it is in front of the cable, not in its way, but where the end bars the way; then it has
+  // come round that. What was beside it has been pushed into it by a repair. What touches the line
+  // does so to within_reach of the part's extent, and `in_touch` is far above that.
   constexpr double in_touch = 1e-6;
   const bool beside_before = along_before > 0.0 && along_before < length_before;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
-    return hit;
+    hit.over_end = within ? end_passed(world, cable, s, along_before) : 0;
+    if (hit.over_end == 0) return hit;
   }
   bool reached = within;
   if (!reached && side * side_before < 0.0) {
@@ -115,7 +135,7 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
     reached = along_then > 0.0 && along_then < length_then;
   }
   if (!reached) return hit;
-  const double old_side = side_before != 0.0 ? side_before : side;
+  const double old_side = side_before != 0.0 && hit.over_end == 0 ? side_before : side;
   const double approach = old_side > 0.0 ? old_side - side : side - old_side;
   hit.found = true;
   hit.body = circle.body;
@@ -200,7 +220,10 @@ double span_clearance(const World& world, const Happening& hit) {
   Vec2 x = at(world.position, hit.body) - segment.tail;
   if (hit.corner >= 0) x += turned(at(body.corners, hit.corner), at(world.angle, hit.body));
   const double margin = rim_radius(body) + cable.half_width;
-  return hit.orientation * cross(segment.direction, x) - margin;
+  const double clearance = hit.orientation * cross(segment.direction, x) - margin;
+  if (hit.over_end == 0) return clearance;
+  const double along = segment.direction.dot(x);
+  return std::max(clearance, hit.over_end < 0 ? -along : along - segment.length);
 }
 
 void find_hits(const World& world, Workspace& work, std::vector<Happening>& events) {
@@ -220,6 +243,7 @@ void find_hits(const World& world, Workspace& work, std::vector<Happening>& even
     event.body = pair.body;
     event.corner = hit.corner;
     event.orientation = hit.orientation;
+    event.over_end = hit.over_end;
     events.push_back(event);
   }
 }

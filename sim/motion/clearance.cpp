@@ -7,8 +7,8 @@
 
 namespace pinchlab {
 
-double clearance_of(const Scene& scene, const World& world, const Contact& contact) {
-  return gap_of(scene, world, contact) - target_of(world, contact);
+double clearance_of(const World& world, const Contact& contact) {
+  return gap_of(world, contact) - target_of(world, contact);
 }
 
 double reach_at(const World& world, int body) {

@@ -41,7 +41,7 @@ void measure(std::vector<Happening>& events, const Happening& key, double cleara
 
 }  // namespace
 
-void find_catches(const Scene& scene, const World& world, Workspace& work, int number) {
+void find_catches(const World& world, Workspace& work, int number) {
   const Part& part = at(work.parts.list, number);
   const PartSystem& s = at(work.systems, part.system);
   const CapstanScratch& capstan = work.solve.capstan;
@@ -56,7 +56,7 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
     const auto r = static_cast<std::size_t>(&row - s.rows.data());
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     key.row = static_cast<int>(r);
-    const double clearance = clearance_of(scene, world, row);
+    const double clearance = clearance_of(world, row);
     measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
   }
   if (!slides) return;
@@ -68,7 +68,7 @@ void find_catches(const Scene& scene, const World& world, Workspace& work, int n
       const Row& row = at(s.rows, term.index);
       if (row.compliance > 0.0) continue;
       before += term.coefficient * row.clearance;
-      now += term.coefficient * clearance_of(scene, world, row);
+      now += term.coefficient * clearance_of(world, row);
     }
     key.row = at(capstan.members, group.slack);
     if (before > s.reach) measure(work.events, key, now, -late);

@@ -13,13 +13,13 @@ namespace {
 
 /// Of the contacts that may rebound the row of the one that closes fastest; or -1, if none closes
 /// faster than `least` (m/s).
-int fastest_approach(const Scene& scene, const World& world, const PartSystem& s, double least) {
+int fastest_approach(const World& world, const PartSystem& s, double least) {
   int fastest = -1;
   double speed = -least;
   for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
     const Row& row = at(s.rows, r);
     if (row.kind != RowKind::normal || row.clearance > s.reach) continue;
-    if (restitution_of(scene, world, at(world.contacts, row.index)) == 0.0) continue;
+    if (restitution_of(world, at(world.contacts, row.index)) == 0.0) continue;
     const double approach = row_speed(s, index(r));
     if (approach < speed) {
       speed = approach;
@@ -58,7 +58,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
   const double least = rounding * greatest_speed(s);
   bool rebounded = false;
   for (int blow = 0; blow < most_blows; ++blow) {
-    const int struck = fastest_approach(scene, world, s, least);
+    const int struck = fastest_approach(world, s, least);
     if (struck < 0) break;
     for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
       Row& row = at(s.rows, r);
@@ -68,7 +68,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     }
     Row& row = at(s.rows, struck);
     row.bias = 0.0;
-    const double e = restitution_of(scene, world, at(world.contacts, row.index));
+    const double e = restitution_of(world, at(world.contacts, row.index));
     row.bias = e * row_speed(s, index(struck));
     forget_flips(s);
     solve_passively(world, work.parts, part, s, set);

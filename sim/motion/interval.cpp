@@ -75,8 +75,8 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
 
 /// Adds to the rows' biases what their conditions have missed at the present positions; returns the
 /// most (m).
-double add_missed(const Scene& scene, const World& world, const CapstanScratch& capstan,
-                  const TimeSpan& t, PartSystem& s, Trial& trial) {
+double add_missed(const World& world, const CapstanScratch& capstan, const TimeSpan& t,
+                  PartSystem& s, Trial& trial) {
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   double most = 0.0;
@@ -96,7 +96,7 @@ double add_missed(const Scene& scene, const World& world, const CapstanScratch& 
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
-    double missed = clearance_of(scene, world, row) - left;
+    double missed = clearance_of(world, row) - left;
     if (row.compliance > 0.0) {
       if (!row.on || group >= 0) continue;
       // The stretch over the interval's end is the real one.
@@ -159,7 +159,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(scene, world, set.capstan, t, s, trial);
+    const double missed = add_missed(world, set.capstan, t, s, trial);
     const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
     if (follows) follow_flow(work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
@@ -209,7 +209,7 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
     add(trial, work.trial);
     if (!attempt.locates) continue;
-    find_catches(scene, world, work, p);
+    find_catches(world, work, p);
     find_gone_links(world, work, p);
   }
   if (attempt.locates) find_span_hits(scene, world, work);

@@ -26,12 +26,12 @@ struct Violation {
   double most() const { return std::max(lengths, gaps); }
 };
 
-Violation violation(const Scene& scene, const World& world, const PartSystem& s) {
+Violation violation(const World& world, const PartSystem& s) {
   Violation v;
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
     if (is_of_sleeve(row) || row.compliance > 0.0) continue;
-    const double clearance = clearance_of(scene, world, row);
+    const double clearance = clearance_of(world, row);
     double& most = row.kind == RowKind::normal ? v.gaps : v.lengths;
     most = std::max(most, row.clamped ? std::abs(clearance) : -clearance);
   }
@@ -70,12 +70,11 @@ void displace(World& world, Workspace& work, const Part& part, double share) {
 /// Goes `share` of the way that was just solved for, or less where that makes nothing better than
 /// `before`: where a span hardly bends round a body, its direction turns much within the whole of
 /// the way. Returns whether it went at all.
-bool go(const Scene& scene, World& world, Workspace& work, const Part& part, double share,
-        const Violation& before) {
+bool go(World& world, Workspace& work, const Part& part, double share, const Violation& before) {
   const PartSystem& s = at(work.systems, part.system);
   displace(world, work, part, share);
   for (int halvings = 0;; ++halvings) {
-    const Violation now = violation(scene, world, s);
+    const Violation now = violation(world, s);
     if (now.most() < before.most() && now.gaps <= std::max(before.gaps, s.reach)) return true;
     if (halvings == most_halvings) break;
     share *= 0.5;
@@ -146,7 +145,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   for (int k = 0; k < most_repairs; ++k) {
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
-    const Violation before = violation(scene, world, s);
+    const Violation before = violation(world, s);
     if (before.most() <= s.reach) break;
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
     for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
@@ -160,11 +159,11 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
                    way = s.velocity[i].head<2>().norm();
       if (way * share > longest * radius) share = longest * radius / way;
     }
-    if (!go(scene, world, work, part, share, before)) break;
+    if (!go(world, work, part, share, before)) break;
     any = true;
   }
   if (!any) return false;
-  for (const int c : contacts_of(work.parts, part)) measure(scene, world, at(world.contacts, c));
+  for (const int c : contacts_of(work.parts, part)) measure(world, at(world.contacts, c));
   return true;
 }
 

@@ -155,8 +155,8 @@ double radius_of_layers(const World& world, const Link& drum, double later) {
 }
 
 /// Levers of a row's forces where a contact's surfaces meet, on bodies one of which is a polygon.
-void set_levers(const Scene& scene, const World& world, const Contact& contact, RowBodies& bodies) {
-  Vec2 point = meeting_of(scene, world, contact).point;
+void set_levers(const World& world, const Contact& contact, RowBodies& bodies) {
+  Vec2 point = meeting_of(world, contact).point;
   if (contact.layers_cable >= 0) {  // on the centre line of the outermost
     const Link& drum = pressed_layers(world, contact);
     const double way = drum.body == contact.a ? 1.0 : -1.0;
@@ -182,7 +182,7 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
   if (contact.touch != Touch::circles) {
-    set_levers(scene, world, contact, bodies);
+    set_levers(world, contact, bodies);
   } else {
     add_seats(world, contact, bodies);
   }
@@ -194,13 +194,16 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   }
   const double clearance = contact.gap - target_of(world, contact);
   set_clearance(clearance, interval, row);
-  if (contact.rebounds && interval.reach < infinity) {
+  // Where events are not located contacts bar half a plane: of a point, what only passes it too.
+  const bool is_passing =
+      interval.reach == infinity && is_end_of_cable(world, contact) && clearance > interval.made_up;
+  if (is_passing || (contact.rebounds && interval.reach < infinity)) {
     row.idle = true;
     row.on = false;
   }
   // Rebounds are impacts (impact.h), and positions that are repaired do not rebound.
   if (locates_events(world.configuration) || interval.length == 0.0) return;
-  const double restitution = restitution_of(scene, world, contact);
+  const double restitution = restitution_of(world, contact);
   if (restitution == 0.0) return;
   const double speed =
       speed_of(world, contact.a, bodies.ja) + speed_of(world, contact.b, bodies.jb);
@@ -214,13 +217,13 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
 
 /// Both forces of bare friction act at one point, a share of the gap off the surfaces, so that they
 /// have no moment.
-void set_tangent_bodies(const Scene& scene, const World& world, const Contact& contact,
-                        const TimeSpan& interval, RowBodies& bodies) {
+void set_tangent_bodies(const World& world, const Contact& contact, const TimeSpan& interval,
+                        RowBodies& bodies) {
   const Vec2 t = left(contact.normal);
   if (contact.touch != Touch::circles) {
     bodies.ja = {-t.x(), -t.y(), 0.0};
     bodies.jb = {t.x(), t.y(), 0.0};
-    set_levers(scene, world, contact, bodies);
+    set_levers(world, contact, bodies);
     return;
   }
   const double radius_a = at(world.bodies, contact.a).radius;
@@ -243,10 +246,10 @@ void set_tangent_bodies(const Scene& scene, const World& world, const Contact& c
 
 /// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that
 /// cable's own rows have it.
-double coefficient_of(const Scene& scene, const World& world, const Contact& contact) {
+double coefficient_of(const World& world, const Contact& contact) {
   if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
-                                      : at(scene.walls, contact.wall).contact_friction;
+                                      : at(world.obstacles, contact.wall).contact_friction;
   return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);
 }
 
@@ -277,14 +280,14 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
   weigh(s, normal);
 
-  const double mu = coefficient_of(scene, world, contact);
+  const double mu = coefficient_of(world, contact);
   if (mu == 0.0) return;
   const int tangent = append_row(s, a, b);
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
   row.index = number;
   row.slip = contact.slip;
-  set_tangent_bodies(scene, world, contact, interval, s.bodies.back());
+  set_tangent_bodies(world, contact, interval, s.bodies.back());
   weigh(s, tangent);
   add_friction(s, contact_friction(tangent, normal, mu));
 }
@@ -402,9 +405,9 @@ double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
   return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
 }
 
-double restitution_of(const Scene& scene, const World& world, const Contact& contact) {
+double restitution_of(const World& world, const Contact& contact) {
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution
-                                      : at(scene.walls, contact.wall).restitution;
+                                      : at(world.obstacles, contact.wall).restitution;
   return std::max(at(world.bodies, contact.a).restitution, other);
 }
 

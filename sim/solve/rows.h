@@ -14,7 +14,7 @@ struct World;
 
 /// Restitution of two bodies, or of a body and a wall: the greater of the two, so that who asks for
 /// a rebound gets it.
-double restitution_of(const Scene& scene, const World& world, const Contact& contact);
+double restitution_of(const World& world, const Contact& contact);
 
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
 double speed_of(const World& world, int body, const Eigen::Vector3d& j);

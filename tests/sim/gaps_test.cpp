@@ -50,7 +50,7 @@ TEST(Gaps, AContactThatIsMeasuredAnewIsWhereItsBodiesAre) {
   int measured = 0;
   for (Contact contact : world.contacts) {
     if (contact.a != 0) continue;
-    measure(scene, world, contact);
+    measure(world, contact);
     const bool discs = contact.b == 1;
     const double gap = discs ? std::hypot(0.381, 0.003) - 0.4 : 0.351 - 0.003 - 0.1 - 0.05 - 0.2;
     const Vec2 normal = discs ? Vec2(0.381, -0.003).normalized() : Vec2(0.0, 1.0);
