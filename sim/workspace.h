@@ -20,7 +20,7 @@ namespace pinchlab {
 
 /// A body that has just left a cable.
 struct Release {
-  int cable, body;
+  int cable, body, orientation;
 };
 
 /// What may happen within an interval, and then ends it: advance.h.

@@ -101,7 +101,7 @@ bool remove_links(World& world, Workspace& work) {
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         const Link& link = cable.links[i];
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
-          work.released.push_back({static_cast<int>(c), link.body});
+          work.released.push_back({static_cast<int>(c), link.body, link.orientation});
           leave_body(world, cable, static_cast<int>(i));
           changed = any = true;
           break;

@@ -19,6 +19,10 @@ namespace {
 /// round-off must not make links.
 constexpr double graze = 1e-10;
 
+/// The same share, of what has been in touch: far above what touching bodies overlap by, which is
+/// within_reach of the part's extent.
+constexpr double in_touch = 1e-6;
+
 struct Hit {
   bool found = false;
   double time = 0.0;  // of the touch, in steps; -1 is the last step's position, 0 the present
@@ -67,16 +71,33 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   return beside(tail, before) || beside(head, after);
 }
 
-/// A body that has just left the cable was on the other side of the span that closed up behind it:
-/// the cable then ran round it. It has not crossed.
-bool just_left(const World& world, const Workspace& work, const CableState& cable,
-               const Segment& segment, int body) {
+/// How a body that has just left the cable lay on it, where the span has closed up behind it; else
+/// 0.
+int orientation_left(const World& world, const Workspace& work, const CableState& cable,
+                     const Segment& segment, int body) {
   const bool fresh = segment.previous_tail == segment.tail && segment.previous_head == segment.head;
-  if (!fresh) return false;
+  if (!fresh) return 0;
   for (const Release& release : work.released) {
-    if (&at(world.cables, release.cable) == &cable && release.body == body) return true;
+    if (&at(world.cables, release.cable) == &cable && release.body == body) {
+      return release.orientation;
+    }
   }
-  return false;
+  return 0;
+}
+
+/// Such a body was on the other side of the span that closed up behind it, since the cable ran
+/// round it: it has not crossed. It has left the cable, unless it is in the way of that span, as
+/// another body that lay between them has left as well.
+Hit test_left(const Segment& segment, std::size_t s, const Circle& circle, int orientation) {
+  const Vec2 x = circle.now - segment.tail;
+  const double along = segment.direction.dot(x);
+  Hit hit;
+  hit.found = along > 0.0 && along < segment.length &&
+              std::abs(cross(segment.direction, x)) < circle.margin * (1.0 - in_touch);
+  hit.body = circle.body;
+  hit.orientation = orientation;
+  hit.segment = s;
+  return hit;
 }
 
 /// Whether a link is an end of its cable that bars the way.
@@ -118,9 +139,7 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
 
   // What was within reach of the span's line before, but not beside the span, has come past its
   // end: it is in front of the cable, not in its way, but where the end bars the way; then it has
-  // come round that. What was beside it has been pushed into it by a repair. What touches the line
-  // does so to within_reach of the part's extent, and `in_touch` is far above that.
-  constexpr double in_touch = 1e-6;
+  // come round that. What was beside it has been pushed into it by a repair.
   const bool beside_before = along_before > 0.0 && along_before < length_before;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
@@ -185,8 +204,11 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   if (to.body == body && to.corner >= 0) {
     return test_next_corner(world, work, cable, s, to, false);
   }
-  if (just_left(world, work, cable, segment, body)) return {};
   const int corners = static_cast<int>(at(world.bodies, body).corners.size());
+  if (const int left = orientation_left(world, work, cable, segment, body); left != 0) {
+    if (corners > 0 || pinched_beside(cable, s, body)) return {};
+    return test_left(segment, s, circle_of(world, work, cable, body, -1), left);
+  }
   if (corners == 0) {
     if (pinched_beside(cable, s, body)) return {};
     return test_circle(world, work, cable, s, circle_of(world, work, cable, body, -1));

@@ -137,7 +137,8 @@ void change_courses(World& world, Workspace& work) {
     CableState& cable = at(world.cables, event.cable);
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     if (event.kind == EventKind::link_gone) {
-      work.released.push_back({event.cable, at(cable.links, event.item).body});
+      const Link& link = at(cable.links, event.item);
+      work.released.push_back({event.cable, link.body, link.orientation});
       leave_body(world, cable, event.item);
     } else {
       meet_body(world, cable, index(event.item), event.body, event.corner, event.orientation);

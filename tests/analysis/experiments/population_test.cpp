@@ -56,6 +56,27 @@ TEST(Population, NoBodySinksThroughASpan) {
   }
 }
 
+// Discs that come upon the ends of cables from beyond, and sank up to their radius into the span.
+TEST(Population, NoBodySinksOverAnEnd) {
+  for (const int seed : {1, 371, 717, 1494, 1899, 1968}) {
+    const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
+    for (const int steps : {1, 4, 16}) {
+      const Soundness run = run_scene(scene, watched(), steps, 60);
+      EXPECT_LE(run.depth, 1e-6) << seed << " at " << steps;
+      EXPECT_LE(run.loose_span, 1e-9) << seed << " at " << steps;
+    }
+  }
+}
+
+// A pulley and a disc that pinched a slack cable on it leave the cable within a step, the pulley
+// first: then it lies deep in the span that closes up behind the disc, and has not left.
+TEST(Population, APulleyIsMetAgainOnceWhatHidItHasLeft) {
+  for (const int seed : {1076, 1241}) {
+    const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
+    EXPECT_LE(run_scene(scene, watched(), 1, 60).depth, 1e-6) << seed;
+  }
+}
+
 // Seeds in which gaps fell short: discs let down on to pulleys by taut spans (10, 1031, 1225), that
 // meet on spans that cannot give (433, 650), moved apart by a repair that then stood as they had
 // been (689), and struck (719); and repairs whose whole way made nothing better, so that nothing
