@@ -93,6 +93,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
         "the configuration");
   }
   config.is_pilot = options.pilot;
+  check_address(options.server.host, options.server.port);
   desk_options.clips = prepare(config, stimuli, options.clips, options.no_webm);
   desk_options.answers = options.answers;
   if (options.has_seed) {

@@ -137,6 +137,22 @@ const char* cure_of(const error_code& error) {
   return "use another --host: an address or name of this computer, or 0.0.0.0 for all of them";
 }
 
+void listen_at(const std::string& host, int port, std::size_t connections,
+               asio::io_context& context, tcp::acceptor& acceptor) {
+  try {
+    const auto found = tcp::resolver(context).resolve(
+        host, std::to_string(port), tcp::resolver::passive | tcp::resolver::numeric_service);
+    const tcp::endpoint endpoint = found.begin()->endpoint();
+    acceptor.open(endpoint.protocol());
+    acceptor.set_option(tcp::acceptor::reuse_address(true));
+    acceptor.bind(endpoint);
+    acceptor.listen(static_cast<int>(connections));
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("{}:{} cannot be listened on: {}; {}", host, port,
+                                         error.code().message(), cure_of(error.code())));
+  }
+}
+
 }  // namespace
 
 struct HttpServer::Implementation {
@@ -155,18 +171,7 @@ struct HttpServer::Implementation {
         connections(std::min(limits.connections,
                              std::max(raise_file_limit(), 2 * other_files) - other_files),
                     limits.connections_of_address) {
-    try {
-      const auto found = tcp::resolver(context).resolve(
-          host, std::to_string(port), tcp::resolver::passive | tcp::resolver::numeric_service);
-      const tcp::endpoint endpoint = found.begin()->endpoint();
-      acceptor.open(endpoint.protocol());
-      acceptor.set_option(tcp::acceptor::reuse_address(true));
-      acceptor.bind(endpoint);
-      acceptor.listen(static_cast<int>(limits.connections));
-    } catch (const boost::system::system_error& error) {
-      throw std::runtime_error(fmt::format("{}:{} cannot be listened on: {}; {}", host, port,
-                                           error.code().message(), cure_of(error.code())));
-    }
+    listen_at(host, port, limits.connections, context, acceptor);
   }
 
   asio::awaitable<void> accept_all() {
@@ -338,6 +343,12 @@ struct HttpServer::Implementation {
   asio::io_context context;  // its coroutines use all of the above
   tcp::acceptor acceptor{asio::make_strand(context)};
 };
+
+void check_address(const std::string& host, int port) {
+  asio::io_context context;
+  tcp::acceptor acceptor{context};
+  listen_at(host, port, 1, context, acceptor);
+}
 
 HttpServer::HttpServer(const std::string& host, int port, HttpLimits limits, Handler handler)
     : implementation_(std::make_unique<Implementation>(host, port, limits, std::move(handler))) {}

@@ -23,6 +23,10 @@ struct HttpLimits {
   int threads = 32;                           ///< that wait for the disk at most
 };
 
+/// Whether the address can be listened on now, before work that would be for nothing else. Throws
+/// std::runtime_error with the cure.
+void check_address(const std::string& host, int port);
+
 class HttpServer {
  public:
   /// Answers a request; called by many threads at once. What it throws becomes status 500.

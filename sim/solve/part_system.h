@@ -211,27 +211,29 @@ struct PartSystem {
   std::vector<Motor> motors;                   // of its driven bodies
   std::vector<Eigen::Matrix3d> carried;        // by its bodies; empty: cables without mass
   double mobility_kick = 0.0;                  // s, what the mobilities are for
-  bool mobility_changed = true;                // since the step before
   double extent_of_still = 0.0;                // m, coordinates of bodies that cannot move at most
   double extent = 0.0;                         // m, coordinates and cable lengths at most
   double reach = 0.0;                          // m, TimeSpan::reach where events are located
+  bool mobility_changed = true;                // since the step before
 
   // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
   std::vector<RowBodies> bodies;
   std::vector<RowResponse> responses;
   std::vector<Row> rows;
   std::vector<Friction> frictions;
+  std::vector<char> changed;  // of each row: its bodies or diagonal are not those of the step
+                              // before
+  RowsMade made;              // what they are for
   int first_contact_row = 0;
   int first_sleeve_row = 0;     // of those before the contacts'
-  std::vector<int> middles;     // rows of kind pinch_middle
-  std::vector<int> pressed;     // rows of transitional pinches that a contact presses
-  RowsMade made;                // what they are for
   bool same_segments = false;   // rows of segments are of what they were of when last made
   bool segments_stand = false;  // and so are their bodies and diagonals
-  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending
   bool same_rows = false;       // all rows are of what they were of in the step before
-  bool rows_stand = false;      // bodies and diagonals of all rows are those of the step before
-  std::vector<char> changed;    // of each row: they are not
+  bool rows_stand = false;      // and so are their bodies and diagonals
+  bool factored = false;        // `ldl` has factors of its matrix, and no row repeats others
+  std::vector<int> middles;     // rows of kind pinch_middle
+  std::vector<int> pressed;     // rows of transitional pinches that a contact presses
+  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.
   std::vector<int> structure, order;
@@ -240,7 +242,6 @@ struct PartSystem {
   // solve_for_states.
   ProfileLdl ldl;
   std::vector<int> assembled;  // rows that the matrix is for, one an unknown; empty: no matrix
-  bool factored = false;       // the factors are the matrix's, and no row repeats others
   std::vector<double> scale;   // diagonals
 
   // Beside what every step reads.

@@ -394,6 +394,8 @@ TEST(Http, AnAddressThatCannotBeHadSaysWhatHelps) {
   EXPECT_NE(why("127.0.0.1", port).find("is another server running? Use another --port"),
             std::string::npos)
       << why("127.0.0.1", port);
+  EXPECT_THROW(check_address("127.0.0.1", port), std::runtime_error);
+  EXPECT_NO_THROW(check_address("127.0.0.1", 0));
   for (const char* host : {"300.1.1.1", "192.0.2.1"}) {
     EXPECT_EQ(why(host, 0).find("another server"), std::string::npos) << why(host, 0);
     EXPECT_NE(why(host, 0).find("use another --host"), std::string::npos) << why(host, 0);

@@ -125,7 +125,7 @@ Peer mujoco() {
 #ifdef PINCHLAB_MUJOCO
   peer.version = mj_versionString();
   peer.cannot = [](const Problem& problem) {
-    const std::string why = cannot_by_shape(problem);
+    std::string why = cannot_by_shape(problem);
     if (!why.empty()) return why;
     if (has_mass(problem)) return std::string("a tendon has no mass");
     const std::vector<Body>& bodies = problem.scene.bodies;
