@@ -292,6 +292,9 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   for (const Happening& event : work.events) {
     const int part = event.part >= 0 ? event.part : at(work.parts.of_cable, event.cable);
     at(near.list, number_of(near, work.parts, at(work.parts.list, part))).happened = true;
+    if (event.kind == EventKind::hit && near.separate_from_cable(event.body, event.cable)) {
+      near.crossed = true;
+    }
   }
   for (int n = 0; n < count; ++n) {
     Neighbourhood& course = at(near.list, n);
