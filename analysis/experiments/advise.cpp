@@ -157,6 +157,7 @@ std::string how_to_use(const Question& question, const Rung& rung) {
 int best_to_type(const Question& question, const Advice& advice) {
   const std::vector<std::size_t> rows = finalists(question, advice);
   std::vector<Rung> rungs;
+  rungs.reserve(rows.size());
   for (const std::size_t row : rows) rungs.push_back(advice.rungs[row]);
   const int best = cheapest(advice.problem, rungs, question.error_m, true);
   return best < 0 ? -1 : static_cast<int>(rows[static_cast<std::size_t>(best)]);

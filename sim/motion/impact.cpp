@@ -29,14 +29,6 @@ int fastest_approach(const World& world, const PartSystem& s, double least) {
   return fastest;
 }
 
-double greatest_speed(const PartSystem& s) {
-  double speed = 0.0;
-  for (const Eigen::Vector3d& v : s.free_velocity) {
-    speed = std::max({speed, std::abs(v.x()), std::abs(v.y())});
-  }
-  return speed;
-}
-
 }  // namespace
 
 void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds) {
@@ -55,7 +47,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
   const int most_blows = rebounds ? 4 * contact_rows : 0;
   constexpr double rounding = 1e-12;
   s.velocity = s.free_velocity;
-  const double least = rounding * greatest_speed(s);
+  const double least = rounding * greatest_speed(s.free_velocity);
   bool rebounded = false;
   for (int blow = 0; blow < most_blows; ++blow) {
     const int struck = fastest_approach(world, s, least);

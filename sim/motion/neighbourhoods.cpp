@@ -25,7 +25,8 @@ Reach reach_of(const Scene& scene, const World& world, const Start& start, int b
   return reach;
 }
 
-/// The same of a link, with its cable: what comes upon that from outside is off by all of its width.
+/// The same of a link, with its cable: what comes upon that from outside is off by all of its
+/// width.
 Reach reach_of(const Scene& scene, const World& world, const Start& start, const CableState& cable,
                const Link& link) {
   if (link.body < 0) return {-1, link.offset, cable.half_width};

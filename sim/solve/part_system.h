@@ -300,6 +300,15 @@ inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return a.x() * b.x() + a.y() * b.y() + a.z() * b.z();
 }
 
+/// Of the centres, along an axis (m/s).
+inline double greatest_speed(const std::vector<Eigen::Vector3d>& velocity) {
+  double greatest = 0.0;
+  for (const Eigen::Vector3d& v : velocity) {
+    greatest = std::max({greatest, std::abs(v.x()), std::abs(v.y())});
+  }
+  return greatest;
+}
+
 /// J v + bias at the present velocities (m/s).
 inline double row_speed(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];

@@ -14,12 +14,15 @@ namespace pinchlab {
 namespace {
 
 /// Whether that follows without a sum: with A = J M^-1 J^T, where each impulse is an unknown of its
-/// own, J v- = -bias - A p, and sum p (J v- + J v+) = -p A p - 2 p bias.
+/// own, J v- = -bias - A p, and sum p (J v- + J v+) = -p A p - 2 p bias; unless impulses are so
+/// large that what the solution leaves of these equations counts, on spans that hardly can give.
 bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
   if (!set.direct) return false;
   const double round_off = s.reach / set.step_length;  // m/s
+  constexpr double residual = 1e-15;  // of a row's equation, as a share of its own impulse's part
   return std::all_of(s.rows.begin(), s.rows.end(), [round_off](const Row& row) {
-    return !row.on || std::abs(row.bias) <= round_off;
+    return !row.on || (std::abs(row.bias) <= round_off &&
+                       residual * row.diagonal * std::abs(row.impulse) <= round_off);
   });
 }
 
@@ -49,13 +52,17 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
                      SolveScratch& set) {
   const bool settled = solve_direct(world, parts, part, s, set);
   if (!makes_energy(s, set)) return settled;
+  const double fastest = std::max(greatest_speed(s.velocity), greatest_speed(s.free_velocity));
   forget_flips(s);
   for (Friction& friction : s.frictions) friction.dropped = true;
   for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
   Part held = part;
   held.may_slide = false;
   const bool held_settled = solve_direct(world, parts, held, s, set);
-  if (!makes_energy(s, set)) return held_settled;
+  // A motor may wind in what cannot slide any more, and throw what hardly bends the cable.
+  constexpr double thrown = 10.0;
+  const bool throws = !s.motors.empty() && greatest_speed(s.velocity) > thrown * fastest;
+  if (!throws && !makes_energy(s, set)) return held_settled;
   for (Row& row : s.rows) row.impulse = 0.0;
   sweep_rows(s, set.capstan);
   return false;

@@ -94,7 +94,7 @@ const Golden goldens[] = {
     {"02-stack", 0xf8feeadc69e97f5b, 0x99bc292537cdf6b7},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
     {"04-two-blocking", 0xf768d3970f7f99d9, 0x1bbf2106bc0d404f},
-    {"05-notch", 0xbd228a6bb64d46d4, 0x76ccafe5515e46a7},
+    {"05-notch", 0x21e1bdd1f284f664, 0xcb73a0473485c56a},
     {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0x68ce6a0b5241b8e1, 0xc7e6b5b7a971fe87},
     {"08-driven-roller-weights", 0x2765e3feb278ad96, 0x1a76d10c5b042e67},

@@ -68,6 +68,23 @@ TEST(Population, NoBodySinksOverAnEnd) {
   }
 }
 
+// A disc on a span that cannot give, which a motor winds in: it threw the disc at 1e6 m/s.
+TEST(Population, SpansThatCannotGiveThrowNothing) {
+  const Scene scene = dropped_discs(1252);
+  for (const int steps : {16, 64}) {
+    EXPECT_TRUE(run_scene(scene, watched(), steps, 40).finite) << steps;
+  }
+}
+
+// A disc that hits a span of another part, from outside: that it does was found where the step had
+// been divided already, and repaired.
+TEST(Population, HitsAreMetAtTheirTime) {
+  for (const int seed : {205, 1278}) {
+    const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
+    EXPECT_LE(run_scene(scene, watched(), 16, 60).loose_span, 1e-9) << seed;
+  }
+}
+
 // A pulley and a disc that pinched a slack cable on it leave the cable within a step, the pulley
 // first: then it lies deep in the span that closes up behind the disc, and has not left.
 TEST(Population, APulleyIsMetAgainOnceWhatHidItHasLeft) {
