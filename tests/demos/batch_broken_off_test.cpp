@@ -42,11 +42,15 @@ fs::path folder_with_long_demo() {
   return folder;
 }
 
+// Waits until the first clip is being written; likewise.
+bool wait_for_first_clip(pid_t process, const fs::path& folder) {
+  return wait_for_file(process, folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial");
+}
+
 TEST(Batch, KilledRunLeavesNoHalfFile) {
   const fs::path folder = folder_with_long_demo();
   const pid_t process = start_program(folder, render);
-  ASSERT_TRUE(
-      wait_for_file(process, folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
+  ASSERT_TRUE(wait_for_first_clip(process, folder));
   ::kill(process, SIGKILL);
   EXPECT_EQ(wait_for_program(folder, process).signal, SIGKILL);
   EXPECT_FALSE(fs::exists(folder / "clips/01-long.pinch.mp4"));
@@ -66,8 +70,7 @@ TEST(Batch, InterruptedRunCleansUpAndDiesOfTheSignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const fs::path folder = folder_with_long_demo();
     const pid_t process = start_program(folder, render);
-    ASSERT_TRUE(
-        wait_for_file(process, folder / "clips", "01-long.pinch.mp4.unpadded.partial.partial"));
+    ASSERT_TRUE(wait_for_first_clip(process, folder));
     ::kill(process, signal);
     EXPECT_EQ(wait_for_program(folder, process).signal, signal);
     for (const std::string& name : names_in(folder / "clips")) {

@@ -391,9 +391,8 @@ TEST(Http, AnAddressThatCannotBeHadSaysWhatHelps) {
   const RunningServer running(desk_options(scratch_folder()));
   const std::string address = running.server.address();
   const int port = std::stoi(address.substr(address.rfind(':') + 1));
-  EXPECT_NE(why("127.0.0.1", port).find("is another server running? Use another --port"),
-            std::string::npos)
-      << why("127.0.0.1", port);
+  const std::string cure = "is another server running? Use another --port";
+  EXPECT_NE(why("127.0.0.1", port).find(cure), std::string::npos) << why("127.0.0.1", port);
   EXPECT_THROW(check_address("127.0.0.1", port), std::runtime_error);
   EXPECT_NO_THROW(check_address("127.0.0.1", 0));
   for (const char* host : {"300.1.1.1", "192.0.2.1"}) {
