@@ -33,6 +33,7 @@ std::vector<double> steady_times(const std::vector<std::function<double()>>& sam
     }
   }
   std::vector<double> medians;
+  medians.reserve(times.size());
   for (const std::vector<double>& of_one : times) medians.push_back(spread(of_one).median);
   return medians;
 }

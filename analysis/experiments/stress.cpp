@@ -84,11 +84,15 @@ SleepResult measure_sleep(int load, double awake_s, const Effort& effort) {
   configuration.sleep = true;
   World world = make_world(scene, configuration);
   Workspace work;
-  const double settling_s = 2.0;
-  while (world.time() < settling_s) step_or_throw(scene, world, work);
+  SleepResult result{load, infinity, awake_s, 0.0};
+  while (!result.asleep() && world.time() < SleepResult::most_s) {
+    step_or_throw(scene, world, work);
+    if (std::ranges::all_of(work.parts.list, &Part::asleep)) result.after_s = world.time();
+  }
   const Effort little{0.2 * effort.seconds, effort.samples};
-  const CallCost asleep = measure_call([&] { step_or_throw(scene, world, work); }, little);
-  return {load, awake_s, asleep.seconds.median};
+  const CallCost cost = measure_call([&] { step_or_throw(scene, world, work); }, little);
+  result.asleep_s = cost.seconds.median;
+  return result;
 }
 
 /// Rough processor time of a case, for telling the time left; all-pairs detection is quadratic.

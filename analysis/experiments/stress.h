@@ -49,10 +49,15 @@ struct SlackResult {
   std::int64_t fallbacks_without = 0;
 };
 
-/// A step of a scene at rest, with sleep.
+/// The stress scene at rest, with sleep: when all of it had fallen asleep (s of its own time;
+/// infinity: not within `most_s`), and the processor time of a step awake and after that.
 struct SleepResult {
+  static constexpr double most_s = 2.0;
   int load = 0;
+  double after_s = 0.0;
   double awake_s = 0.0, asleep_s = 0.0;
+
+  bool asleep() const { return after_s <= most_s; }
 };
 
 struct StressResults {

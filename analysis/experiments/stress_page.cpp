@@ -98,6 +98,11 @@ std::string asked_and_measured(const StressResults& results) {
                     fmt::format("at most {:g}", growth_limit), fmt::format("{:.3f}", *exponent),
                     verdict(*exponent <= growth_limit)});
   }
+  const SleepResult& sleep = results.sleep.back();
+  rows.push_back({fmt::format("load {} at rest falls asleep", sleep.load),
+                  fmt::format("within {:g} s", SleepResult::most_s),
+                  sleep.asleep() ? fmt::format("after {:.2f} s", sleep.after_s) : "never",
+                  verdict(sleep.asleep())});
   for (const BareResult& bare : {results.bare.front(), results.bare.back()}) {
     rows.push_back({fmt::format("{}: step / bare pass", bare.scene),
                     fmt::format("at most {:g}", bare_limit), fmt::format("{:.2f}", bare.ratio()),
@@ -341,10 +346,11 @@ std::string bare(const StressResults& results) {
 
 std::string sleeping(const StressResults& results) {
   const SleepResult& r = results.sleep.back();
-  return fmt::format(
-      "\n## Asleep\n\nWith sleep on, once the scene has come to rest, a step at load {} costs {} "
-      "instead of {}.\n",
-      r.load, time_text(r.asleep_s), time_text(r.awake_s));
+  const std::string text =
+      r.asleep() ? fmt::format("falls asleep after {:.2f} s; then a step costs", r.after_s)
+                 : fmt::format("is not asleep after {:g} s; a step costs", SleepResult::most_s);
+  return fmt::format("\n## Asleep\n\nWith sleep on, load {} at rest {} {} instead of {}.\n", r.load,
+                     text, time_text(r.asleep_s), time_text(r.awake_s));
 }
 
 Spread scaled(const Spread& s, double factor) {

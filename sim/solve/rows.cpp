@@ -422,6 +422,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     const CableState& cable = at(world.cables, row.index);
     const Segment& segment = at(cable.segments, row.item);
     set_segment_values(segment, plain, interval, row);
+    // Round-off of a pinch's material would add up to motion along a chain of pinched pulleys.
+    const bool rounded = segment.pinched && std::abs(row.clearance) <= material_rounding(cable);
+    if (exact && rounded) row.bias = 0.0;
     // The lever of a circle off its body's centre turns with the body, moved or not.
     const bool moved = segment.moved || row.turns || row.is_new || (plain && segment.pinched);
     if (moved) {
