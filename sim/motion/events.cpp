@@ -2,6 +2,8 @@
 #include "sim/motion/events.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -51,22 +53,36 @@ void find_catches(const World& world, Workspace& work, int number) {
   key.part = number;
   key.reach = s.reach;
   for (const Row& row : s.rows) {
-    if (!row.idle || row.compliance > 0.0) continue;
+    const bool releases = row.compliance > 0.0 && row.on && !row.clamped;
+    if (!row.idle && !releases) continue;
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
     const auto r = static_cast<std::size_t>(&row - s.rows.data());
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     key.row = static_cast<int>(r);
     const double clearance = clearance_of(world, row);
-    measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
+    if (releases) {
+      if (row.clearance < -s.reach) measure(work.events, key, -clearance, late);
+    } else {
+      measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
+    }
   }
   if (!slides) return;
   for (const Group& group : capstan.groups) {
-    if (group.slack < 0) continue;
     double before = 0.0, now = 0.0;
+    if (group.slack < 0) {
+      if (s.elastic_ends.empty()) continue;
+      for (int m = group.begin; m < group.end; ++m) {
+        const Row& row = at(s.rows, at(capstan.members, m));
+        before += row.clearance;
+        now += clearance_of(world, row);
+      }
+      key.row = at(capstan.members, group.begin);
+      if (before < -s.reach) measure(work.events, key, -now, late);
+      continue;
+    }
     for (int k = group.slack_begin; k < group.slack_end; ++k) {
       const Term& term = at(capstan.slack_terms, k);
       const Row& row = at(s.rows, term.index);
-      if (row.compliance > 0.0) continue;
       before += term.coefficient * row.clearance;
       now += term.coefficient * clearance_of(world, row);
     }
@@ -112,6 +128,9 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
     event.clearance = span_clearance(world, event);
     event.seen = true;
     const bool met = event.clearance < -0.5 * event.reach;
+    if (getenv("DBG"))
+      fprintf(stderr, "  event b%d clearance %.3e reach %.2e o %d over %d\n", event.body,
+              event.clearance, event.reach, event.orientation, event.over_end);
     if (met && !find(std::span(work.events).first(known), event)) work.events[kept++] = event;
   }
   work.events.resize(kept);

@@ -26,11 +26,18 @@ struct Violation {
   double most() const { return std::max(lengths, gaps); }
 };
 
+/// Whether it is of a segment that may stretch: forces act on it in time, none in a repair.
+bool is_elastic(const World& world, const Row& row) {
+  if (row.kind != RowKind::segment) return false;
+  const CableState& cable = at(world.cables, row.index);
+  return cable.elastic && !at(cable.segments, row.item).pinched;
+}
+
 Violation violation(const World& world, const PartSystem& s) {
   Violation v;
   for (const Row& row : s.rows) {
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
-    if (is_of_sleeve(row) || row.compliance > 0.0) continue;
+    if (is_of_sleeve(row) || is_elastic(world, row)) continue;
     const double clearance = clearance_of(world, row);
     double& most = row.kind == RowKind::normal ? v.gaps : v.lengths;
     most = std::max(most, row.clamped ? std::abs(clearance) : -clearance);
@@ -147,6 +154,9 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     const Violation before = violation(world, s);
     if (before.most() <= s.reach) break;
+    for (Row& row : s.rows) {
+      if (is_elastic(world, row)) row.bias = 0.0;  // it resists being stretched
+    }
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
     for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
     work.solve.smooth = true;

@@ -71,15 +71,36 @@ void store(SolveScratch& set, int row, const std::vector<Term>& expression) {
 /// solved. Cable is pushed in pinches only: what would have to be pushed along an arc slides on to
 /// it or, seen from the other end, lies on it without tension.
 double sliding_limit(const PartSystem& system, const CapstanScratch& s, const Run& run, int way,
-                     double tolerance) {
+                     double tension_in, double tolerance) {
   const auto impulse = [&system](int row) { return row >= 0 ? at(system.rows, row).impulse : 0.0; };
-  double t = impulse(run.row_in);
+  double t = tension_in;
   for (int k = run.passages_begin; k < run.passages_end; ++k) {
     const Passage& p = at(s.passages, k);
     if (is_arc(p) && t < -tolerance) t = way > 0 ? -infinity : 0.0;
     t = tension_after(p, way, t, impulse(p.normal), impulse(p.middle));
   }
   return t;
+}
+
+/// Which way a run that sticks has to slide for these tensions (N s) before and after it.
+Slip way_to_slide(const PartSystem& system, const CapstanScratch& s, const Run& run, double in,
+                  double out, double tolerance) {
+  if (out > sliding_limit(system, s, run, 1, in, tolerance) + tolerance) return Slip::forward;
+  if (out < sliding_limit(system, s, run, -1, in, tolerance) - tolerance) return Slip::backward;
+  return Slip::stick;
+}
+
+/// The same for the present solution. An elastic cable slides by as much as its tensions ask for at
+/// the interval's end, which may not be what the kick's mean tensions ask for: only where both ask
+/// for the same way is that the way in which it then slides.
+Slip way_to_slide(const PartSystem& system, const CapstanScratch& s, const Run& run,
+                  double tolerance) {
+  const Slip way = way_to_slide(system, s, run, at(system.rows, run.row_in).impulse,
+                                at(system.rows, run.row_out).impulse, tolerance);
+  if (way == Slip::stick || s.end_impulse.empty()) return way;
+  const Slip at_end = way_to_slide(system, s, run, at(s.end_impulse, run.row_in),
+                                   at(s.end_impulse, run.row_out), tolerance);
+  return at_end == way ? way : Slip::stick;
 }
 
 /// Whether a segment bears more force than `tolerance` (N s): tension, or what it is pushed by in a
@@ -360,17 +381,99 @@ Shortage shortage_of(const Group& group, const PartSystem& system, const Capstan
   return shortage;
 }
 
-void slip_speeds(const PartSystem& system, CapstanScratch& s) {
-  const std::vector<Row>& rows = system.rows;
+namespace {
+
+/// The row of a middle body that sticks on a run, whose sliding speed is then the opposite of that
+/// row's; or -1.
+int sticking_middle(const SolveScratch& set, const Run& run) {
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const int middle = at(set.capstan.passages, k).middle;
+    if (middle >= 0 && at(set.unknown_of_row, middle) >= 0) return middle;
+  }
+  return -1;
+}
+
+/// A member's row speed: of an elastic one, for its tension at the interval's end.
+double member_speed(const PartSystem& system, int number) {
+  const Row& row = at(system.rows, number);
+  if (system.elastic_ends.empty() || at(system.elastic_ends, number).compliance == 0.0) {
+    return row.speed;
+  }
+  const ElasticEnd& end = at(system.elastic_ends, number);
+  return row_speed(system, index(number)) - row.bias + end.bias + end.compliance * row.impulse;
+}
+
+/// Changes the tensions at the interval's end of members begin .. end - 1, each by its factor times
+/// the same, so that what slides grows from `entering` to `leaving` (m/s) along them.
+void balance(const PartSystem& system, CapstanScratch& s, int begin, int end, double entering,
+             double leaving) {
+  double speed = 0.0, compliance = 0.0;
+  for (int m = begin; m < end; ++m) {
+    speed += at(s.speeds, m);
+    compliance += at(system.elastic_ends, at(s.members, m)).compliance * at(s.factors, m);
+  }
+  if (compliance == 0.0) return;
+  const double change = (leaving - entering - speed) / compliance;
+  for (int m = begin; m < end; ++m) {
+    const int number = at(s.members, m);
+    const double here = change * at(s.factors, m);
+    at(s.speeds, m) += at(system.elastic_ends, number).compliance * here;
+    double& impulse = at(s.end_impulse, number);
+    impulse = std::max(0.0, impulse + here);
+  }
+}
+
+/// The same for a group all of which bears tension, from one place to the next where it is known
+/// what slides.
+void balance(const PartSystem& system, SolveScratch& set, const Group& group) {
+  CapstanScratch& s = set.capstan;
+  s.factors.resize(s.members.size());
+  int begin = group.begin;
+  double factor = 1.0, entering = 0.0;
+  for (int m = group.begin; m < group.end; ++m) {
+    if (m > group.begin) {
+      const Run& run = at(s.runs, at(s.member_runs, m));
+      if (const int middle = sticking_middle(set, run); middle >= 0) {
+        const double leaving = -at(system.rows, middle).speed;
+        balance(system, s, begin, m, entering, leaving);
+        begin = m;
+        entering = leaving;
+        factor = 1.0;
+      } else {
+        for (int k = run.passages_begin; k < run.passages_end; ++k) {
+          factor *= sliding_terms(at(s.passages, k), sign(run.slip)).before;
+        }
+      }
+    }
+    at(s.factors, m) = factor;
+  }
+  balance(system, s, begin, group.end, entering, 0.0);
+}
+
+}  // namespace
+
+void slip_speeds(const PartSystem& system, SolveScratch& set) {
+  CapstanScratch& s = set.capstan;
   for (Run& run : s.runs) run.speed = 0.0;
+  s.speeds.resize(s.members.size());
+  s.end_impulse.clear();
+  const bool elastic = !system.elastic_ends.empty();
+  if (elastic) {
+    for (const Row& row : system.rows) s.end_impulse.push_back(row.impulse);
+  }
   for (const Group& group : s.groups) {
     double spare = 0.0, short_of = 0.0, total = 0.0;
     bool tension = false;
     for (int m = group.begin; m < group.end; ++m) {
-      const Row& row = rows[index(s.members[index(m)])];
-      total += row.speed;
-      (row.speed > 0.0 ? spare : short_of) += std::abs(row.speed);
-      tension = tension || bears(row, 0.0);
+      const int number = at(s.members, m);
+      at(s.speeds, m) = member_speed(system, number);
+      tension = tension || bears(at(system.rows, number), 0.0);
+    }
+    if (elastic && group.slack < 0) balance(system, set, group);
+    for (int m = group.begin; m < group.end; ++m) {
+      const double w = at(s.speeds, m);
+      total += w;
+      (w > 0.0 ? spare : short_of) += std::abs(w);
     }
     // A group without tension moves material only to segments that would be taut, from those that
     // have some to spare, in proportion.
@@ -378,8 +481,8 @@ void slip_speeds(const PartSystem& system, CapstanScratch& s) {
     if (share && short_of == 0.0) continue;
     double sum = 0.0;
     for (int m = group.begin; m < group.end; ++m) {
-      if (s.member_runs[index(m)] >= 0) s.runs[index(s.member_runs[index(m)])].speed = sum;
-      const double w = rows[index(s.members[index(m)])].speed;
+      if (at(s.member_runs, m) >= 0) at(s.runs, at(s.member_runs, m)).speed = sum;
+      const double w = at(s.speeds, m);
       double left_over = 0.0;
       if (share) {
         left_over = spare > 0.0 ? std::max(w, 0.0) * total / spare : 0.0;
@@ -410,7 +513,7 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
                 double impulse_tolerance) {
   const std::vector<Row>& rows = system.rows;
   CapstanScratch& s = set.capstan;
-  slip_speeds(system, s);
+  slip_speeds(system, set);
   for (const Group& group : s.groups) {
     if (group.slack >= 0) {
       // A member between bodies that cannot move gets taut like any other: the rest of the group
@@ -438,7 +541,6 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     const Run& run = s.runs[i];
     if (run.frictionless || run.frozen || run.passages_begin == run.passages_end) continue;
     const int number = static_cast<int>(i);
-    const double out = rows[index(run.row_out)].impulse;
     if (run.slip != Slip::stick) {
       const bool rubs = bears(rows[index(run.row_out)], impulse_tolerance) ||
                         bears(rows[index(run.row_in)], impulse_tolerance);
@@ -446,11 +548,8 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
       if (rubs && against) set.flips.push_back({number, true, true, Slip::stick});
       continue;
     }
-    if (out > sliding_limit(system, s, run, 1, impulse_tolerance) + impulse_tolerance) {
-      set.flips.push_back({number, true, true, Slip::forward});
-    } else if (out < sliding_limit(system, s, run, -1, impulse_tolerance) - impulse_tolerance) {
-      set.flips.push_back({number, true, true, Slip::backward});
-    }
+    const Slip way = way_to_slide(system, s, run, impulse_tolerance);
+    if (way != Slip::stick) set.flips.push_back({number, true, true, way});
   }
 }
 

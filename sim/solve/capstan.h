@@ -60,6 +60,9 @@ struct CapstanScratch {
   std::vector<int> group_of_row;  // -1: not of a sliding cable
   std::vector<Term> expression, sums, slack_terms;
   std::vector<int> sums_begin, borders;
+  std::vector<double> speeds, factors;  // of members: of their rows (m/s), and of their tensions
+  std::vector<double> end_impulse;  // N s of each row: by the tension at the interval's end, over
+                                    // the kick. Empty without PartSystem::elastic_ends
 };
 
 /// Sliding speed over the wrapped body at a middle link's pinch: that of its run.
@@ -88,8 +91,9 @@ void add_group_equations(PartSystem& system, SolveScratch& scratch);
 /// After add_group_equations.
 Shortage shortage_of(const Group& group, const PartSystem& system, const CapstanScratch& capstan);
 
-/// Sliding speeds of all runs for the rows' present speeds.
-void slip_speeds(const PartSystem& system, CapstanScratch& capstan);
+/// Sliding speeds of all runs for the rows' present speeds: those of elastic cables such that their
+/// tensions at the interval's end follow from one another as the impulses do.
+void slip_speeds(const PartSystem& system, SolveScratch& scratch);
 
 /// Appends a flip for every run or group whose state the present solution contradicts.
 void check_runs(const PartSystem& system, SolveScratch& scratch, double speed_tolerance,

@@ -2,27 +2,41 @@
 #include "sim/solve/elastic.h"
 
 #include <algorithm>
+#include <span>
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
+#include "sim/parts.h"
 #include "sim/solve/rows.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
-void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
-                  PartSystem& s, int number) {
-  const double stiffness = given.axial_stiffness;
+namespace {
+
+/// Compliance of a segment without pinches (m/N).
+double flexibility_of(const Cable& given, const Segment& segment) {
+  return std::max(segment.rest_length, 0.0) / given.axial_stiffness;
+}
+
+double length_of(const World& world, const TimeSpan& t) {
+  return t.length > 0.0 ? t.length : world.step_length;
+}
+
+/// a - b, for what is as flexible (m/N) and as mobile (1/kg) as that.
+double damped_share(const World& world, const TimeSpan& t, double flexibility, double mobility) {
+  if (world.configuration.solver == Solver::iterative) return 1.0;  // the thesis' implicit Euler
+  const double h = length_of(world, t), square = h * h * mobility;  // (omega h)^2 * flexibility
+  return flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
+}
+
+/// The row of a segment, `damped` being its a - b.
+void make_row(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
+              double damped, PartSystem& s, int number) {
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
   RowBodies& bodies = at(s.bodies, number);
-  const double h = t.length > 0.0 ? t.length : world.step_length;
-  const double flexibility = std::max(segment.rest_length, 0.0) / stiffness;  // m/N
-  const bool sweeps =
-      world.configuration.solver == Solver::iterative;  // the thesis' implicit Euler
-  const double square = h * h * row.diagonal;           // (omega h)^2 times flexibility
-  const double damped =
-      sweeps || flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
+  const double h = length_of(world, t), flexibility = flexibility_of(given, segment);
   const double b = 0.25 * (1.0 - damped);
   const CableState& cable = at(world.cables, row.index);
   const Link &to = at(cable.links, row.item),
@@ -32,7 +46,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
                         speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
   double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
-    if (damped > 0.0) return;
+    if (damped > 0.0 || flexibility == 0.0) return;
     const double impulse = both_ways ? -known / flexibility : std::max(0.0, -known / flexibility);
     const RowResponse& response = at(s.responses, number);
     at(s.free_velocity, bodies.a) += impulse * response.ra;
@@ -49,12 +63,110 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   const double after = taken > 0.0 ? Drag(taken).after / taken : 0.5;  // its share
   known -= (1.0 - after) * damper * before;
   const double scale = b * h * h + damped * h * t.kick + after * damper;
-  row.idle = false;
+  row.idle = !both_ways && row.clearance > t.reach;
   row.clamped = both_ways;
-  row.on = both_ways || !segment.slack;
+  row.on = both_ways || (!segment.slack && !row.idle);
   row.compliance = flexibility / scale;
   bodies.curvature = -creep;  // and what else there is of it is found at the interval's end
   row.bias = known / scale - creep;
+}
+
+/// Segments between which cable slides at present.
+struct SlidingGroup {
+  double flexibility = 0.0;  // m/N
+  double mobility = 0.0;     // 1/kg, of the sum of their rows
+  int last = -1;             // row
+};
+
+void join(const PartSystem& s, int number, double flexibility, SlidingGroup& group) {
+  group.flexibility += flexibility;
+  group.mobility += at(s.rows, number).diagonal;
+  if (group.last >= 0) {
+    const RowBodies& bodies = at(s.bodies, number);
+    const RowResponse& before = at(s.responses, group.last);
+    if (before.b == bodies.a && at(s.mobile, bodies.a)) {
+      group.mobility += 2.0 * dot(before.rb, bodies.ja);
+    }
+  }
+  group.last = number;
+}
+
+/// Makes the rows of a cable's segments first .. last (around a closed one), between which it may
+/// slide everywhere: all with the same a and b, the most damped that one of its groups asks for.
+void make_section(const World& world, const Cable& given, const CableState& cable,
+                  std::span<const int> row_of_segment, int first, int last, const TimeSpan& t,
+                  PartSystem& s) {
+  double damped = 0.0;
+  SlidingGroup group;
+  const auto end_group = [&] {
+    if (group.flexibility > 0.0) {
+      damped = std::max(damped, damped_share(world, t, group.flexibility, group.mobility));
+    }
+    group = {};
+  };
+  const auto is_row = [&](int i) {
+    const int number = row_of_segment[index(i)];
+    return number >= 0 && at(s.rows, number).kind == RowKind::segment;
+  };
+  for (int i = first; i <= last; ++i) {
+    const Link& before = at(cable.links, previous_link(cable, i));
+    const bool slides =
+        before.orientation != 0 &&
+        (before.slip != Slip::stick || at(world.bodies, before.body).cable_friction == 0.0);
+    if (!slides) end_group();
+    if (!is_row(i)) continue;
+    const Segment& segment = at(cable.segments, i);
+    join(s, row_of_segment[index(i)], segment.pinched ? 0.0 : flexibility_of(given, segment),
+         group);
+  }
+  end_group();
+  for (int i = first; i <= last; ++i) {
+    const Segment& segment = at(cable.segments, i);
+    if (!is_row(i) || segment.pinched) continue;
+    const int number = row_of_segment[index(i)];
+    make_row(world, given, segment, t, damped, s, number);
+    if (s.elastic_ends.empty()) continue;
+    ElasticEnd& end = at(s.elastic_ends, number);
+    end.compliance = flexibility_of(given, segment) / (t.kick * t.length);
+    end.bias = at(s.rows, number).clearance / t.length + at(s.bodies, number).curvature;
+  }
+}
+
+}  // namespace
+
+void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
+                  PartSystem& s, int number) {
+  const double damped =
+      damped_share(world, t, flexibility_of(given, segment), at(s.rows, number).diagonal);
+  make_row(world, given, segment, t, damped, s, number);
+}
+
+void make_sliding_elastic(const Scene& scene, const World& world, const Parts& parts,
+                          const Part& part, const TimeSpan& t, PartSystem& s) {
+  const std::span<const int> cables = cables_of(parts, part);
+  for (std::size_t place = 0; place < cables.size(); ++place) {
+    const CableState& cable = at(world.cables, cables[place]);
+    if (!cable.elastic || !slides_somewhere(world, cable)) continue;
+    if (t.length > 0.0 && world.configuration.solver == Solver::direct) {
+      s.elastic_ends.resize(s.rows.size());
+    }
+    const std::span<const int> rows(s.row_of_segment.data() + s.segment_begin[place],
+                                    cable.segments.size());
+    const int count = static_cast<int>(cable.segments.size());
+    int first = static_cast<int>(first_segment(cable));
+    for (int i = first; i < count; ++i) {
+      const Link& link = at(cable.links, i);
+      const bool holds = link.orientation != 0 && !link.pinch_middle &&
+                         at(world.bodies, link.body).cable_friction == infinity;
+      if (!cable.closed && holds) {
+        make_section(world, at(scene.cables, cables[place]), cable, rows, first, i, t, s);
+        first = i + 1;
+      }
+    }
+    if (first < count) {
+      make_section(world, at(scene.cables, cables[place]), cable, rows, first, count - 1, t, s);
+    }
+  }
 }
 
 }  // namespace pinchlab

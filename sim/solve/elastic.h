@@ -13,6 +13,12 @@
 //
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //
+// Where cable slides over bodies, the tensions of a group of segments follow one another (the
+// capstan law) and together they take up the sum of their stretches, which sliding does not change:
+// with one a and b for all of them the sliding speeds cancel. Those have no mass. Means over three
+// positions would let them alternate from kick to kick, more each time; they are what makes the law
+// hold at the interval's end, for C_n + h dC/dt(v+) (slip_speeds).
+//
 // A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the
 // lag.
 
@@ -21,10 +27,17 @@
 
 namespace pinchlab {
 
-/// Makes the row of an inextensible segment that of an elastic one, of `given`. At an instant its
-/// impulse up to then is known but for a damper's: it has acted on the free velocities, and without
-/// a damper the row idles.
+struct Part;
+struct Parts;
+
+/// Makes the row of an inextensible segment that of an elastic one, of `given`, which slides over
+/// no body. At an instant its impulse up to then is known but for a damper's: it has acted on the
+/// free velocities, and without a damper the row idles.
 void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
                   PartSystem& s, int number);
+
+/// The same for all segments of the part's cables that may slide over bodies.
+void make_sliding_elastic(const Scene& scene, const World& world, const Parts& parts,
+                          const Part& part, const TimeSpan& t, PartSystem& s);
 
 }  // namespace pinchlab

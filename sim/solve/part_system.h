@@ -114,6 +114,13 @@ struct Row {
   double speed = 0.0;       // w + compliance p, m/s, after the solve
 };
 
+/// The law of an elastic segment of a cable that may slide, for its tension at the interval's end,
+/// over the kick: J v + bias + compliance p = 0 where nothing slides (elastic.h).
+struct ElasticEnd {
+  double bias = 0.0;        // m/s
+  double compliance = 0.0;  // 1/kg; 0: not of such a segment
+};
+
 /// Of neither a segment nor a contact.
 inline bool is_of_sleeve(const Row& row) {
   return row.kind == RowKind::sleeve_hold || row.kind == RowKind::sleeve_rub;
@@ -255,6 +262,8 @@ struct PartSystem {
   double rub_kick = 0.0;                       // s, that the rows are for,
   Vec2 rub_fall = Vec2::Zero();                // m/s, and what gravity adds in it
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
+  std::vector<ElasticEnd> elastic_ends;        // of the rows; empty without elastic cables that may
+                                               // slide
   std::vector<int> row_of_segment;             // cable after cable; -1: none
   std::vector<int> segment_begin;              // of the part's cables, in row_of_segment
 

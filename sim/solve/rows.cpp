@@ -438,7 +438,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
     // would feed back as speed: there they only pull.
     if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
-    if (cable.elastic && !segment.pinched) {
+    if (cable.elastic && !segment.pinched && !(part.may_slide && slides_somewhere(world, cable))) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {
@@ -447,6 +447,8 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       s.pressed.push_back(r);
     }
   }
+  s.elastic_ends.clear();
+  if (part.may_slide) make_sliding_elastic(scene, world, parts, part, interval, s);
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,

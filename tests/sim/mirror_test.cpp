@@ -102,6 +102,7 @@ TEST_P(Mirror, ImageMovesAsTheImageToTheLastBit) {
 INSTANTIATE_TEST_SUITE_P(, Mirror,
                          ::testing::Values(Population{"Discs", random_scene, 200},
                                            Population{"Elastic", random_elastic, 60},
+                                           Population{"SlippingElastic", slipping_elastic, 60},
                                            Population{"Linkages", linkage, 60},
                                            Population{"Ropes", falling_on_rope, 60},
                                            Population{"SlippingRopes", slipping_rope, 60},

@@ -68,6 +68,16 @@ inline Scene random_elastic(unsigned seed) {
   return scene;
 }
 
+/// The same over pulleys on which the rope slips, with friction or without.
+inline Scene slipping_elastic(unsigned seed) {
+  Scene scene = random_elastic(seed);
+  Random random(seed + 777);
+  for (Body& body : scene.bodies) {
+    body.cable_friction = random.below(3) == 0 ? 0.0 : random.uniform(0.05, 0.6);
+  }
+  return scene;
+}
+
 /// A linkage: discs of all weights hinged, barred and sprung to one another and to the world, at
 /// random.
 inline Scene linkage(unsigned seed) {
