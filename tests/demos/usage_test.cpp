@@ -110,6 +110,29 @@ TEST(Usage, AStoppingRuleGoesToStandardOutput) {
   EXPECT_FALSE(fs::exists(folder / "-"));
 }
 
+TEST(Usage, AdviceIsAResultWhateverItSays) {
+  const fs::path folder = scratch_folder();
+  const RunResult run =
+      run_program(folder, {"advise", PINCHLAB_SOURCE_DIR "/demos/06-windlass.json", "--error",
+                           "1e-12", "--time", "0.05"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("An error of 1e-12 m is below what this can vouch for"), std::string::npos)
+      << run.out;
+}
+
+TEST(Usage, HelpPromisesWhatThereIs) {
+  const fs::path folder = scratch_folder();
+  EXPECT_NE(run_program(folder, {"bench", "--help"}).out.find("where there is something to"),
+            std::string::npos);
+  for (const char* command : {"serve", "freeze", "simulate"}) {
+    EXPECT_NE(run_program(folder, {"study", command, "--help"})
+                  .out.find("missing ones of demonstrations are rendered"),
+              std::string::npos)
+        << command;
+  }
+}
+
 TEST(Usage, ATemplateIsSaidToBeOne) {
   const fs::path folder = scratch_folder();
   fs::copy(PINCHLAB_SOURCE_DIR "/demos/sweep/drop.json", folder / "drop.json");
