@@ -17,6 +17,7 @@
 #include "analysis/commands.h"
 #include "analysis/experiments/advise.h"
 #include "analysis/experiments/commands.h"
+#include "base/output_file.h"
 #include "demos/baseline.h"
 #include "demos/batch.h"
 #include "demos/command_line.h"
@@ -137,6 +138,10 @@ void add_kinds_of_clip(CLI::App& command, BatchOptions& options) {
           "Nothing but these, as `study serve` makes them")
       ->excludes(also)
       ->excludes("--method");
+  CLI::Option* checks =
+      command.add_flag("--attention-checks", options.checks,
+                       "Also the clip with pinch joints beside itself upside down, in both orders");
+  checks->excludes("--method");
   CLI::Option* report = command.add_flag(
       "--report", options.report,
       "Also how each pair differs and when, as a table, report.html and strips of pictures");
@@ -148,14 +153,16 @@ void add_kinds_of_clip(CLI::App& command, BatchOptions& options) {
             options.report = true;
             options.singles = false;
           },
-          "Nothing but this")
+          "Nothing but this: no clips, nor what is about clips")
       ->excludes("--method")
       ->excludes("--pair")
+      ->excludes("--codec")
+      ->excludes("--slow")
+      ->excludes("--freeze")
+      ->excludes("--only-side-by-side")
+      ->excludes(also)
+      ->excludes(checks)
       ->excludes(report);
-  command
-      .add_flag("--attention-checks", options.checks,
-                "Also the clip with pinch joints beside itself upside down, in both orders")
-      ->excludes("--method");
 }
 
 void add_render(CLI::App& app) {
@@ -206,8 +213,7 @@ void add_frames(CLI::App& command, StillCommand& options) {
                   "Time to show, s; several, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
                   "frames from one time to another")
       ->type_name("S")
-      ->required()
-      ->delimiter(',');
+      ->required();
   command
       .add_option("--out", options.out,
                   "FILE.png, .svg or .pdf; a # in the name of a PNG stands for the frame's number "
@@ -219,8 +225,8 @@ void add_frames(CLI::App& command, StillCommand& options) {
   CLI::Option* both =
       command.add_flag("--both", options.both, "A row of pinch over a row of the baseline");
   both->excludes("--method");
-  CLI::Option* neutral =
-      command.add_flag("--neutral", options.neutral, "Label the rows A and B, not by method");
+  CLI::Option* neutral = command.add_flag("--neutral", options.neutral,
+                                          "Label the rows of a sheet A and B, not by method");
   command
       .add_option("--table", options.table,
                   "SCENE has placeholders: a column of pictures for each row of this table, as "
@@ -242,6 +248,11 @@ void draw_still(StillCommand& options) {
   if (options.both) options.methods = {Method::pinch, file.scene.baseline};
   const bool sheet = frames_at(file.scene, options.times).size() * options.methods.size() > 1 &&
                      options.out.filename().string().find('#') == std::string::npos;
+  if (options.neutral && !sheet) {
+    throw CLI::ValidationError(
+        "--neutral",
+        "is about the labels of a sheet; give --both or several times, or leave it out");
+  }
   const Size single = options.size.width > 0 ? options.size : Size{960, 960};
   options.width = sheet ? of_sheet.width : single.width;
   options.height = sheet ? of_sheet.height : single.height;
@@ -284,7 +295,9 @@ void add_simulate(CLI::App& app) {
   add_method(*command, options->method,
              "pinch, pinch_no_contact, cable, baseline (the scene's own), or thesis: all of the "
              "thesis' ways, its iterative solver too [pinch]");
-  command->add_option("--until", options->until, "Time of the last row, s [the clip's last frame]")
+  command
+      ->add_option("--until", options->until,
+                   "The last row is the last frame's up to this time, s [the clip's last frame]")
       ->type_name("S");
   add_fps(*command, options->timing);
   command
@@ -318,13 +331,14 @@ void add_baseline(CLI::App& app) {
       "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
   add_scene(*command, *scene);
   command->footer(
-      "Plain cable joints (cable) are recommended where they break nothing and move as smoothly as "
-      "pinch\njoints without contact (pinch_no_contact), under which bodies come equally close.\n\n"
+      "Plain cable joints (cable) are recommended where they break nothing, not even the scene's "
+      "error_m, and\nmove as smoothly as pinch joints without contact (pinch_no_contact), under "
+      "which bodies come equally close.\n\n"
       "Examples:\n"
       "  pinchlab baseline demos/02-stack.json");
   command->callback([scene] {
     const SceneFile file = read_scene_file(*scene);
-    fmt::print("{}", text(file, advise_baseline(file)));
+    print_result(text(file, advise_baseline(file)));
   });
 }
 

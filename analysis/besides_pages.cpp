@@ -73,14 +73,14 @@ std::vector<Block> confidence_blocks(const Confidence& confidence, double alpha)
         "Does confidence tell {} apart? Of one answer of each kind by one participant, the {} was "
         "given with more confidence in {} (area under the type 2 ROC curve, ties count half, mean "
         "of the {} participants with answers of both kinds; {} interval {}; 50 % is by chance, "
-        "Wilcoxon's signed-rank test over participants, p = {}).",
+        "Wilcoxon's signed-rank test over participants, {}).",
         reference_of(confidence), confidence.is_of_hits ? "hit" : "choice with the others",
         percent(confidence.area.value), test.positive + test.negative + test.zeros,
         confidence_level(alpha),
         confidence.area_low ? fmt::format("{:.1f} to {:.1f} %", 100 * confidence.area_low.value,
                                           100 * confidence.area_high.value)
                             : dash,
-        p_text(test.p));
+        p_equation(test.p));
   }
   return {Heading{"Confidence"}, Paragraph{text}, std::move(table)};
 }
@@ -117,11 +117,11 @@ std::vector<Block> place_blocks(const Places& places, double alpha) {
   if (places.p_sign_flip) {
     const bool differ = places.p_sign_flip.value < alpha;
     text += fmt::format(
-        " {} clicks are in clips of {}, {} in clips of {}: {} (sign flips over participants, p = "
+        " {} clicks are in clips of {}, {} in clips of {}: {} (sign flips over participants, "
         "{}).",
         places.on_first, places.first, places.on_second, places.second,
         differ ? "more than chance between the two" : "no more than chance between the two",
-        p_text(places.p_sign_flip));
+        p_equation(places.p_sign_flip));
   }
   return {Heading{"Where it looks wrong"}, Paragraph{text}, FigureBlock{"places"},
           std::move(table)};

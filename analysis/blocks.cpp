@@ -27,6 +27,11 @@ std::string p_text(const Estimate& p) {
   return p ? p_text(p.value) : dash;
 }
 
+std::string p_equation(const Estimate& p) {
+  const std::string text = p_text(p);
+  return text.starts_with('<') ? "p < " + text.substr(1) : "p = " + text;
+}
+
 TextCell p_cell(const Estimate& p, double alpha) {
   return {p_text(p), p && p.value < alpha};
 }

@@ -57,6 +57,8 @@ std::string p_text(double p);
 std::string p_rounded(double p, int decimals);
 /// `p_text`, or a dash where there is no value.
 std::string p_text(const Estimate& p);
+/// "p = 0.0455", "p < 1e-300": for sentences.
+std::string p_equation(const Estimate& p);
 /// The same as a cell, bold below alpha.
 TextCell p_cell(const Estimate& p, double alpha);
 /// "83.3 %".

@@ -2,18 +2,23 @@
 #include "analysis/commands.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "analysis/analyse_command.h"
 #include "analysis/power.h"
 #include "analysis/sequential.h"
-#include "base/durable_file.h"
 #include "base/input_error.h"
+#include "base/output_file.h"
+#include "base/text_checks.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -29,6 +34,48 @@ void add_truth(CLI::App& command, PowerQuestion& truth, const char* share) {
       ->capture_default_str();
 }
 
+std::vector<std::int64_t> looks_of(const std::string& text) {
+  std::vector<std::int64_t> looks;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const auto count = parse_whole(text.substr(begin, end - begin), 1, 10000);
+    if (!count) {
+      throw CLI::ValidationError(
+          "--participants",
+          text + " is not one whole number of 1 to 10000, or several with commas between");
+    }
+    looks.push_back(*count);
+    begin = end + 1;
+  }
+  return looks;
+}
+
+// Who gives an option that nothing reads expects something of it.
+void refuse_idle_correlation(const CLI::App& command, const PowerQuestion& truth) {
+  if (command.count("--icc") > 0 && truth.trials == 1) {
+    throw CLI::ValidationError(
+        "--icc", "is about several answers of one participant; give --trials too, or leave it out");
+  }
+}
+
+void refuse_idle_options(const CLI::App& command, const StoppingQuestion& question) {
+  refuse_idle_correlation(command, question.truth);
+  const bool is_bayes = question.rule == StoppingRule::bayes_factor;
+  if (command.count("--bayes-factor") > 0 && !is_bayes) {
+    throw CLI::ValidationError("--bayes-factor", "goes with --rule bayes-factor");
+  }
+  if (command.count("--alpha") > 0 && is_bayes) {
+    throw CLI::ValidationError(
+        "--alpha",
+        "has no effect on --rule bayes-factor, which stops by --bayes-factor; leave it "
+        "out");
+  }
+  if (question.rule == StoppingRule::fixed && question.participants.size() > 1) {
+    throw CLI::ValidationError("--participants",
+                               "--rule fixed looks once, at the last; name that number alone");
+  }
+}
+
 void add_power(CLI::App& app) {
   auto question = std::make_shared<PowerQuestion>();
   CLI::App* command =
@@ -41,9 +88,10 @@ void add_power(CLI::App& app) {
   add_truth(*command, *question, "True share of answers for one method, 0 to 1");
   command->add_option("--power", question->power, "Probability of finding the difference")
       ->capture_default_str();
-  command->callback([question] {
+  command->callback([question, command] {
+    refuse_idle_correlation(*command, *question);
     try {
-      fmt::print("{}", power_text(*question, participants_needed(*question)));
+      print_result(power_text(*question, participants_needed(*question)));
     } catch (const InputError& error) {
       throw CLI::ValidationError(error.what());  // all of its input stands on the command line
     }
@@ -65,9 +113,14 @@ void add_stopping(CLI::App& app) {
                                                   {"obrien-fleming", StoppingRule::obrien_fleming},
                                                   {"pocock", StoppingRule::pocock},
                                                   {"bayes-factor", StoppingRule::bayes_factor}};
-  command->add_option("--participants", question->participants, "At each look: 16,32,48")
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--participants",
+          [question](const std::vector<std::string>& looks) {
+            question->participants = looks_of(fmt::format("{}", fmt::join(looks, ",")));
+          },
+          "At each look: 16,32,48")
       ->type_name("N,N,...")
-      ->delimiter(',')
       ->required();
   command
       ->add_option_function<std::string>(
@@ -81,14 +134,16 @@ void add_stopping(CLI::App& app) {
   auto json = std::make_shared<std::filesystem::path>();
   command
       ->add_option("--json", *json,
-                   "File to write the rule to, for `pinchlab study freeze --stopping`")
+                   "File to write the rule to, for `pinchlab study freeze --stopping`; - is "
+                   "standard output, instead of the table")
       ->type_name("FILE.json");
-  command->callback([question, json] {
+  command->callback([question, command, json] {
+    refuse_idle_options(*command, *question);
     try {
       constexpr int studies = 4000;
       const StoppingAnswer answer = stopping_rule(*question, studies, 1);
-      fmt::print("{}", stopping_text(*question, answer));
-      if (!json->empty()) write_durably(*json, stopping_json(*question, answer));
+      if (*json != "-") print_result(stopping_text(*question, answer));
+      if (!json->empty()) write_result(*json, stopping_json(*question, answer));
     } catch (const InputError& error) {
       throw CLI::ValidationError(error.what());  // all of its input stands on the command line
     }

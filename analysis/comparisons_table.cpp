@@ -21,10 +21,21 @@ namespace fs = std::filesystem;
 
 namespace {
 
-enum Column { left, right, choice, left_wins, right_wins, ties, participant, demonstration, kind };
-const std::vector<std::string> column_names{"left",        "right",         "choice",
-                                            "left_wins",   "right_wins",    "ties",
-                                            "participant", "demonstration", "kind"};
+enum Column {
+  left,
+  right,
+  choice,
+  left_wins,
+  right_wins,
+  ties,
+  participant,
+  demonstration,
+  kind,
+  pilot
+};
+const std::vector<std::string> column_names{"left",       "right", "choice",      "left_wins",
+                                            "right_wins", "ties",  "participant", "demonstration",
+                                            "kind",       "pilot"};
 const std::vector<std::string> other_columns{"group", "position", "reaction_time_s", "preference"};
 
 constexpr long most_answers = 1000000000;
@@ -57,7 +68,7 @@ Row row_of(const CsvColumns& csv) {
 }
 
 void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& exclusions,
-              std::vector<Row>& rows) {
+              SameStudy& same_study, std::vector<Row>& rows) {
   CsvColumns csv(path, options, column_names, other_columns);
   const bool has_counts = csv.has(left_wins) && csv.has(right_wins);
   if (csv.has(choice) == has_counts || (csv.has(ties) && !has_counts)) {
@@ -66,7 +77,9 @@ void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
         "any, `ties`");
   }
   while (csv.next()) {
-    if (exclusions.excluded(csv.name(participant)) || !csv.is_main(kind)) continue;
+    if (exclusions.excluded(csv.name(participant))) continue;
+    csv.check_pilot(pilot, same_study);
+    if (!csv.is_main(kind)) continue;
     rows.push_back(row_of(csv));
   }
 }
@@ -157,18 +170,18 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
       throw InputError(input.string(), "is named twice among the inputs");
     table.sources.push_back(input.string());
     if (has_columns(input, options, {"left", "right"})) {
-      read_csv(input, options, exclusions, rows);
+      read_csv(input, options, exclusions, same_study, rows);
       continue;
     }
     table.has_session_records = true;
     for (const NamedAnswerFile& named :
          read_answer_files(input, options.allow_missing, same_study, excluded)) {
-      table.is_pilot = named.file.is_pilot;
       read_file(named.file, rows);
       note(named.file, table.sessions[named.file.participant]);
       std::ranges::move(besides_of(named.file), std::back_inserter(table.besides));
     }
   }
+  table.is_pilot = same_study.is_pilot();
   table.exclusions = exclusions.finish();
   fill(rows, table);
   if (table.answers == 0)

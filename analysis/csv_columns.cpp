@@ -20,6 +20,14 @@ std::string name_in_file(const ReadOptions& options, const std::string& column) 
   return mapped == options.columns.end() ? column : mapped->second;
 }
 
+bool pilot_of(std::string_view value, const std::string& place) {
+  if (!value.empty() && value != "true" && value != "false") {
+    throw InputError(place, fmt::format("pilot `{}` is unknown; it must be `true` or `false`",
+                                        value.substr(0, 60)));
+  }
+  return value == "true";
+}
+
 bool has_columns(const fs::path& path, const ReadOptions& options,
                  const std::vector<std::string>& names) {
   if (!fs::is_regular_file(path) || (path.extension() != ".csv" && path.extension() != ".tsv"))
@@ -87,6 +95,10 @@ bool CsvColumns::is_main(std::size_t column) const {
                      value.substr(0, 60)));
   }
   return value == "main";
+}
+
+void CsvColumns::check_pilot(std::size_t column, SameStudy& same_study) const {
+  same_study.check_pilot(has(column) && pilot_of(at(column), reader_.place()), reader_.place());
 }
 
 void CsvColumns::fail(const std::string& message) const {

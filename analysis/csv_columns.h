@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/answers_table.h"
+#include "base/answer_file.h"
 #include "base/csv_reader.h"
 
 namespace pinchlab::analysis {
@@ -32,6 +33,8 @@ class CsvColumns {
   [[nodiscard]] long whole(std::size_t column, long low, long high) const;
   /// Of a column `kind`: an answer of the study, not of training or an attention check.
   [[nodiscard]] bool is_main(std::size_t column) const;
+  /// Of a column `pilot`: holds the record against those before it.
+  void check_pilot(std::size_t column, SameStudy& same_study) const;
 
   [[noreturn]] void fail(const std::string& message) const;
 
@@ -45,6 +48,10 @@ class CsvColumns {
 
 /// The name that one of our columns has in the files.
 std::string name_in_file(const ReadOptions& options, const std::string& column);
+
+/// Whether a record is an answer of a trial run, by its column `pilot`: "true" or "false", empty
+/// where it is none.
+bool pilot_of(std::string_view value, const std::string& place);
 
 /// Does the first line of a CSV file have all of these columns? False for other kinds of files.
 bool has_columns(const std::filesystem::path& path, const ReadOptions& options,

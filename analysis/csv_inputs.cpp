@@ -23,7 +23,7 @@ using Fields = std::vector<std::string_view>;
 // Where each of our columns stands in the file; -1: it has no such column.
 struct Header {
   int participant = -1, demonstration = -1, choice = -1, group = -1, side = -1, position = -1;
-  int reaction_time_s = -1, kind = -1, preference = -1, pinch = -1, cable = -1;
+  int reaction_time_s = -1, kind = -1, preference = -1, pilot = -1, pinch = -1, cable = -1;
   size_t width = 0;
 };
 
@@ -32,15 +32,16 @@ struct ColumnName {
   int Header::*index;
 };
 
-constexpr std::array<ColumnName, 9> tidy_columns{{{"participant", &Header::participant},
-                                                  {"demonstration", &Header::demonstration},
-                                                  {"choice", &Header::choice},
-                                                  {"group", &Header::group},
-                                                  {"side", &Header::side},
-                                                  {"position", &Header::position},
-                                                  {"reaction_time_s", &Header::reaction_time_s},
-                                                  {"kind", &Header::kind},
-                                                  {"preference", &Header::preference}}};
+constexpr std::array<ColumnName, 10> tidy_columns{{{"participant", &Header::participant},
+                                                   {"demonstration", &Header::demonstration},
+                                                   {"choice", &Header::choice},
+                                                   {"group", &Header::group},
+                                                   {"side", &Header::side},
+                                                   {"position", &Header::position},
+                                                   {"reaction_time_s", &Header::reaction_time_s},
+                                                   {"kind", &Header::kind},
+                                                   {"preference", &Header::preference},
+                                                   {"pilot", &Header::pilot}}};
 constexpr std::array<ColumnName, 4> count_columns{{{"demonstration", &Header::demonstration},
                                                    {"pinch", &Header::pinch},
                                                    {"cable", &Header::cable},
@@ -110,13 +111,18 @@ Header read_header(CsvReader& reader, const ReadOptions& options, bool& is_count
 class RowReader {
  public:
   RowReader(CsvReader& reader, const Header& header, const ReadOptions& options,
-            TableBuilder& builder)
-      : reader_(reader), header_(header), options_(options), builder_(builder) {}
+            SameStudy& same_study, TableBuilder& builder)
+      : reader_(reader),
+        header_(header),
+        options_(options),
+        same_study_(same_study),
+        builder_(builder) {}
 
   void answer_row(const Fields& fields) {
     check_width(fields);
     const std::string_view participant = name(fields, header_.participant, "participant");
     if (builder_.excluded(participant)) return;
+    check_pilot(fields);
     const std::string_view kind = header_.kind < 0 ? "main" : at(fields, header_.kind);
     if (kind == "training") return;
     if (kind == "attention") {
@@ -172,6 +178,15 @@ class RowReader {
   void check_width(const Fields& fields) const {
     if (fields.size() == header_.width) return;
     fail(fmt::format("{} fields, but the first line has {}", fields.size(), header_.width));
+  }
+
+  // A file without the column is of no pilot. Told once as long as it stays the same.
+  void check_pilot(const Fields& fields) {
+    const bool is_pilot =
+        header_.pilot >= 0 && pilot_of(at(fields, header_.pilot), reader_.place());
+    if (is_pilot_ == is_pilot) return;
+    same_study_.check_pilot(is_pilot, reader_.place());
+    is_pilot_ = is_pilot;
   }
 
   [[nodiscard]] std::string_view name(const Fields& fields, int index, const char* column) const {
@@ -273,7 +288,9 @@ class RowReader {
   CsvReader& reader_;
   const Header& header_;
   const ReadOptions& options_;
+  SameStudy& same_study_;
   TableBuilder& builder_;
+  std::optional<bool> is_pilot_;  // of the rows before
 };
 
 }  // namespace
@@ -290,12 +307,12 @@ bool is_input_column(const std::string& name) {
 }
 
 void read_csv_input(const std::filesystem::path& path, const ReadOptions& options,
-                    TableBuilder& builder) {
+                    SameStudy& same_study, TableBuilder& builder) {
   CsvReader reader(path, options.separator);
   bool is_counts = false;
   const Header header = read_header(reader, options, is_counts);
   if (!is_counts) builder.expect_answers_per_demonstration(options.repetitions, path.string());
-  RowReader rows(reader, header, options, builder);
+  RowReader rows(reader, header, options, same_study, builder);
   Fields fields;
   while (reader.next(fields)) {
     is_counts ? rows.counts_row(fields) : rows.answer_row(fields);

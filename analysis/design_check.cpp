@@ -8,6 +8,7 @@
 
 #include "analysis/answers_table.h"
 #include "base/answer_file.h"
+#include "base/counted.h"
 #include "base/input_error.h"
 
 namespace pinchlab::analysis {
@@ -65,7 +66,8 @@ class Deviations {
       for (std::size_t i = 0; i < std::min(who.size(), most_named); ++i)
         names += (i == 0 ? "" : ", ") + who[i];
       if (who.size() > most_named) names += fmt::format(" and {} more", who.size() - most_named);
-      result.push_back(fmt::format("{}: {} of {} participants ({})", what, who.size(), all, names));
+      result.push_back(
+          fmt::format("{}: {} of {} ({})", what, who.size(), counted(all, "participant"), names));
     }
     return result;
   }
@@ -133,12 +135,13 @@ void check_sample(const Sample& sample, std::size_t analysed, const UsedAnalysis
                   DesignCheck& check) {
   const auto look = std::ranges::find(sample.looks, static_cast<std::int64_t>(analysed));
   if (look == sample.looks.end()) {
-    check.deviations.push_back(fmt::format("{} participants were analysed, not {}{}", analysed,
-                                           sample.looks.size() > 1 ? "as many as at a look: " : "",
-                                           list(sample.looks)));
+    check.deviations.push_back(
+        fmt::format("{} {} analysed, not {}{}", counted(analysed, "participant"),
+                    analysed == 1 ? "was" : "were",
+                    sample.looks.size() > 1 ? "as many as at a look: " : "", list(sample.looks)));
     return;
   }
-  check.kept.push_back(fmt::format("{} participants", analysed));
+  check.kept.push_back(counted(analysed, "participant"));
   if (look + 1 == sample.looks.end()) return;
   if (sample.rule == "bayes-factor") {
     if (!used.log_bayes_factor) return;

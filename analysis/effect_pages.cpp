@@ -43,18 +43,19 @@ std::vector<Block> effect_blocks(const Report& report) {
   if (side.p) {
     part.add(Paragraph{fmt::format(
         "With demonstrations as strata and {} on either side equally often, the left clip "
-        "would be chosen in {} % of the answers (Mantel–Haenszel X² = {}, p = {}; by sign flips "
-        "over participants p = {}).",
-        pinch, fixed(50.0 + 100.0 * side.bias.value, 1), fixed(side.chi_square, 3), p_text(side.p),
-        p_text(side.p_sign_flip))});
+        "would be chosen in {} % of the answers (Mantel–Haenszel X² = {}, {}; by sign flips "
+        "over participants {}).",
+        pinch, fixed(50.0 + 100.0 * side.bias.value, 1), fixed(side.chi_square, 3),
+        p_equation(side.p), p_equation(side.p_sign_flip))});
   }
   part.add(why_missing("A side bias", side.p));
   const OrderEffect& order = report.order_effect;
   if (order.p_trend) {
     part.add(Paragraph{fmt::format(
-        "Over the course of a session the choice of {} shows a trend of X² = {} (p = {}; by "
-        "sign flips over participants p = {}).",
-        pinch, fixed(order.chi_square, 3), p_text(order.p_trend), p_text(order.p_sign_flip))});
+        "Over the course of a session the choice of {} shows a trend of X² = {} ({}; by "
+        "sign flips over participants {}).",
+        pinch, fixed(order.chi_square, 3), p_equation(order.p_trend),
+        p_equation(order.p_sign_flip))});
   }
   part.add(why_missing("An order effect", order.p_trend));
   if (side.chosen.total() > 0 || !order.by_position.empty()) part.add(FigureBlock{"effects"});

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "analysis/document.h"
+#include "base/counted.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -15,20 +16,20 @@ std::vector<Block> went_in(const Report& report, const AnswersTable& table) {
   const std::int64_t answers = report.all().row.counts.total();
   std::string text =
       table.participants.empty()
-          ? fmt::format(
-                "A table of counts with {} answers to {} demonstrations; who gave which is not "
-                "known.",
-                answers, table.demonstrations.size())
-          : fmt::format("{} answers of {} participants to {} demonstrations, read from {} file{}.",
-                        answers, table.participants.size(), table.demonstrations.size(),
-                        table.sources.size(), table.sources.size() == 1 ? "" : "s");
+          ? fmt::format("A table of counts with {} to {}; who gave which is not known.",
+                        counted(answers, "answer"),
+                        counted(table.demonstrations.size(), "demonstration"))
+          : fmt::format("{} of {} to {}, read from {}.", counted(answers, "answer"),
+                        counted(table.participants.size(), "participant"),
+                        counted(table.demonstrations.size(), "demonstration"),
+                        counted(table.sources.size(), "file"));
   if (!table.incomplete.empty()) {
     const size_t shown = std::min<size_t>(table.incomplete.size(), 20);
     const std::vector<std::string> names(
         table.incomplete.begin(), table.incomplete.begin() + static_cast<std::ptrdiff_t>(shown));
-    text += fmt::format(" Answers are missing from {} participant{}: {}{}.",
-                        table.incomplete.size(), table.incomplete.size() == 1 ? "" : "s",
-                        fmt::join(names, ", "), shown < table.incomplete.size() ? ", ..." : "");
+    text += fmt::format(" Answers are missing from {}: {}{}.",
+                        counted(table.incomplete.size(), "participant"), fmt::join(names, ", "),
+                        shown < table.incomplete.size() ? ", ..." : "");
   }
   part.add(Paragraph{text});
   if (table.exclusions.empty()) return std::move(part.blocks);

@@ -26,9 +26,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-enum Column { level, correct, trials, choice, participant, demonstration, kind };
+enum Column { level, correct, trials, choice, participant, demonstration, kind, pilot };
 const std::vector<std::string> column_names{"level",       "correct",       "trials", "choice",
-                                            "participant", "demonstration", "kind"};
+                                            "participant", "demonstration", "kind",   "pilot"};
 // What the tidy form may hold besides, which no threshold depends on.
 const std::vector<std::string> other_columns{"group",           "side", "position",
                                              "reaction_time_s", "left", "right"};
@@ -74,7 +74,7 @@ LevelCell cell_of(const CsvColumns& csv, const ReadOptions& options) {
 
 // Returns whether hits are correct answers.
 bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& exclusions,
-              Cells& cells) {
+              SameStudy& same_study, Cells& cells) {
   CsvColumns csv(path, options, column_names, other_columns);
   if (csv.has(correct) == csv.has(choice))
     csv.fail("a table of levels needs either a column `correct` or a column `choice`");
@@ -82,7 +82,9 @@ bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
     csv.fail("a column `trials` needs a column `correct` of counts");
   while (csv.next()) {
     const std::string person = csv.name(participant);
-    if (exclusions.excluded(person) || !csv.is_main(kind)) continue;
+    if (exclusions.excluded(person)) continue;
+    csv.check_pilot(pilot, same_study);
+    if (!csv.is_main(kind)) continue;
     add(cells, csv.name(demonstration), person, cell_of(csv, options));
   }
   return csv.has(correct);
@@ -119,11 +121,10 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
       throw InputError(input.string(), "is named twice among the inputs");
     bool is_correct = true;
     if (has_columns(input, options, {"level"})) {
-      is_correct = read_csv(input, options, exclusions, cells);
+      is_correct = read_csv(input, options, exclusions, same_study, cells);
     } else {
       for (const NamedAnswerFile& named :
            read_answer_files(input, options.allow_missing, same_study, excluded)) {
-        table.is_pilot = named.file.is_pilot;
         table.has_session_records = true;
         read_file(named.file, cells);
         note(named.file, table.sessions[named.file.participant]);
@@ -137,6 +138,7 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
     table.correct = is_correct;
     table.sources.push_back(input.string());
   }
+  table.is_pilot = same_study.is_pilot();
   table.exclusions = exclusions.finish();
   if (cells.empty()) throw InputError(table.sources.front(), "no answers; a report needs some");
   for (const auto& [series_name, people] : cells) {

@@ -12,6 +12,7 @@
 #include "analysis/binomial.h"
 #include "analysis/clustered.h"
 #include "analysis/gsl_support.h"
+#include "base/counted.h"
 #include "base/input_error.h"
 
 namespace pinchlab::analysis {
@@ -178,20 +179,21 @@ PowerAnswer participants_needed(const PowerQuestion& question) {
 std::string power_text(const PowerQuestion& question, const PowerAnswer& answer) {
   const auto line = [](const char* what, const ExactTest& test) {
     return fmt::format(
-        "  {}: {} answers; rejects from {} of {} on, false-positive rate {:.4f}, power {:.4f}\n",
-        what, test.answers, test.critical, test.answers, test.size, test.power);
+        "  {}: {}; rejects from {} of {} on, false-positive rate {:.4f}, power {:.4f}\n", what,
+        counted(test.answers, "answer"), test.critical, test.answers, test.size, test.power);
   };
-  std::string text = fmt::format(
-      "{} participants are needed to find a share of {} with power {} ({}, two-sided, alpha {}).\n",
-      answer.participants, question.share, question.power,
-      question.trials > 1 ? "sign-flip test over participants" : "exact binomial test",
-      question.alpha);
+  std::string text =
+      fmt::format("{} {} needed to find a share of {} with power {} ({}, two-sided, alpha {}).\n",
+                  counted(answer.participants, "participant"),
+                  answer.participants == 1 ? "is" : "are", question.share, question.power,
+                  question.trials > 1 ? "sign-flip test over participants" : "exact binomial test",
+                  question.alpha);
   if (question.trials > 1) {
     text += fmt::format(
         "Each participant gives {} answers with an intraclass correlation of {} (design effect "
-        "{:.4g});\nin {} simulated studies with {} participants the test found it in {:.1f} %.\n",
-        question.trials, question.icc, answer.design_effect, answer.studies, answer.participants,
-        100.0 * answer.power);
+        "{:.4g});\nin {} simulated studies with {} the test found it in {:.1f} %.\n",
+        question.trials, question.icc, answer.design_effect, answer.studies,
+        counted(answer.participants, "participant"), 100.0 * answer.power);
   }
   text += "Independent answers, one a participant (exact binomial test):\n";
   text += line("safe (every larger number reaches the power too)", answer.safe);

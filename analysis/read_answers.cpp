@@ -23,8 +23,8 @@ namespace {
 // Reads answer files into the builder and watches over what must agree between them.
 class AnswerFiles {
  public:
-  AnswerFiles(TableBuilder& builder, bool allow_missing)
-      : builder_(builder), allow_missing_(allow_missing) {}
+  AnswerFiles(TableBuilder& builder, SameStudy& same_study, bool allow_missing)
+      : builder_(builder), same_study_(same_study), allow_missing_(allow_missing) {}
 
   void read(const fs::path& path) {
     const auto excluded = [&](const std::string& name) { return builder_.excluded(name); };
@@ -38,7 +38,7 @@ class AnswerFiles {
       }
       builder_.begin_source(named.name);
       builder_.expect_answers_per_demonstration(file.answers_per_demonstration, named.name);
-      builder_.note_session_records(file.is_pilot);
+      builder_.note_session_records();
       for (size_t i = 0; i < file.trials.size(); ++i) add_trial(file, file.trials[i], i);
       note(file, builder_.session(file.participant));
       builder_.add_besides(besides_of(file));
@@ -63,8 +63,8 @@ class AnswerFiles {
   }
 
   TableBuilder& builder_;
+  SameStudy& same_study_;
   bool allow_missing_;
-  SameStudy same_study_;
 };
 
 // Answer files call the methods pinch and baseline, reports what the options say.
@@ -95,13 +95,14 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
     throw InputError("input", "name at least one answer file, folder or CSV file");
   check_no_input_twice(inputs);
   TableBuilder builder(exclusions_of(options), options.allow_missing);
-  AnswerFiles answer_files(builder, options.allow_missing);
+  SameStudy same_study;
+  AnswerFiles answer_files(builder, same_study, options.allow_missing);
   for (const fs::path& input : inputs) {
     if (fs::is_directory(input) || input.extension() == ".json") {
       answer_files.read(input);
     } else if (input.extension() == ".csv" || input.extension() == ".tsv") {
       builder.begin_source(input.string());
-      read_csv_input(input, options, builder);
+      read_csv_input(input, options, same_study, builder);
     } else {
       throw InputError(input.string(),
                        "unknown kind of file; answers come as .json, .csv or .tsv, or as a "
@@ -109,6 +110,7 @@ AnswersTable read_answers(const std::vector<fs::path>& inputs, const ReadOptions
     }
   }
   AnswersTable table = builder.finish();
+  table.is_pilot = same_study.is_pilot();
   for (BesidesAnswer& answer : table.besides) name_methods(answer, options);
   assign_groups(table, options.groups_file, builder.column_groups());
   return table;

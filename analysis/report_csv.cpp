@@ -152,7 +152,8 @@ void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
   std::vector<std::string> groups = group_column(table);
   for (std::string& group : groups) group = csv_cell(group) + ",";
   out << "participant,demonstration," << (groups.empty() ? "" : "group,")
-      << "choice,side,position,reaction_time_s,kind\n";
+      << "choice,side,position,reaction_time_s,kind" << (table.is_pilot ? ",pilot" : "") << "\n";
+  const char* const end = table.is_pilot ? ",true\n" : "\n";
   std::vector<std::string> names;
   for (const std::string& name : table.demonstrations) names.push_back(csv_cell(name));
   std::string line;
@@ -165,13 +166,13 @@ void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
     line += ',';
     if (answer.reaction_time_s >= 0.0)
       fmt::format_to(std::back_inserter(line), "{}", answer.reaction_time_s);
-    out << line << ",main\n";
+    out << line << ",main" << end;
   }
   for (const auto& [participant, session] : table.sessions) {
     for (int i = 0; i < session.attention_passed + session.attention_failed; ++i) {
       out << csv_cell(table.participants[participant]) << ",attention-check,"
           << (groups.empty() ? "" : ",") << (i < session.attention_passed ? "pass" : "fail")
-          << ",,,,attention\n";
+          << ",,,,attention" << end;
     }
   }
 }

@@ -10,6 +10,7 @@
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "analysis/scale_report.h"
+#include "base/counted.h"
 #include "base/partial_file.h"
 
 namespace pinchlab::analysis {
@@ -182,11 +183,11 @@ class Writer {
     if (t.rounds > 0) {
       add(Paragraph{fmt::format(
           "Circular triads (A over B over C over A): {} in {} rounds of all pairs by one "
-          "participant, {:.2f} a round where chance gives {:.2f} of at most {:g} (p = {} that "
+          "participant, {:.2f} a round where chance gives {:.2f} of at most {:g} ({} that "
           "chance gives so few); {} rounds have none. Kendall's coefficient of consistence is "
           "{:.3f} on average.",
           t.triads, t.rounds, static_cast<double>(t.triads) / static_cast<double>(t.rounds),
-          t.by_chance, t.most, p_text(t.p), t.without, t.consistence.value)});
+          t.by_chance, t.most, p_equation(t.p), t.without, t.consistence.value)});
     }
     if (t.triples > 0) {
       add(Paragraph{fmt::format(
@@ -217,16 +218,15 @@ class Writer {
   }
 
   void input() {
-    add(Paragraph{
-        fmt::format("{} answers{}{} to pairs of {} methods{}.", table_.answers,
-                    table_.participants.empty()
-                        ? ""
-                        : fmt::format(" of {} participants", table_.participants.size()),
-                    table_.ties > 0 ? fmt::format(", {} of them ties,", table_.ties) : "",
-                    table_.methods.size(),
-                    table_.demonstrations.size() > 1
-                        ? fmt::format(" in {} demonstrations", table_.demonstrations.size())
-                        : "")});
+    add(Paragraph{fmt::format(
+        "{}{}{} to pairs of {} methods{}.", counted(table_.answers, "answer"),
+        table_.participants.empty() ? ""
+                                    : " of " + counted(table_.participants.size(), "participant"),
+        table_.ties > 0 ? fmt::format(", {} of them ties,", table_.ties) : "",
+        table_.methods.size(),
+        table_.demonstrations.size() > 1
+            ? fmt::format(" in {} demonstrations", table_.demonstrations.size())
+            : "")});
     for (const Exclusion& exclusion : table_.exclusions) {
       add(Paragraph{fmt::format("{} was left out: {}.", exclusion.participant, exclusion.reason)});
     }
@@ -310,9 +310,9 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
   const bool differ = p.value < report.options.alpha;
   std::string text =
       (table.is_pilot ? "Answers of a pilot. " : "") +
-      fmt::format("The methods {} ({}, p = {}). ",
+      fmt::format("The methods {} ({}, {}). ",
                   differ ? "are not chosen equally often" : "cannot be told apart by these answers",
-                  test, p_text(p));
+                  test, p_equation(p));
   if (!fit.why_not.empty()) {
     return text + fmt::format("They have no scale: {}.", fit.why_not) + design_words(table.design);
   }
@@ -335,9 +335,9 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
   if (!together.empty()) text += fmt::format(" Not told apart: {}.", together);
   if (report.difference.p && report.difference.p.value < report.options.alpha) {
     text += fmt::format(
-        " Demonstrations differ in their scales (p = {}), so that the common one is an average of "
+        " Demonstrations differ in their scales ({}), so that the common one is an average of "
         "unlike cases.",
-        p_text(report.difference.p));
+        p_equation(report.difference.p));
   }
   return text + design_words(table.design);
 }

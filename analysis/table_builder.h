@@ -45,10 +45,7 @@ class TableBuilder {
 
   /// The session record of a participant, to be filled by the reader of answer files.
   Session& session(std::string_view participant);
-  void note_session_records(bool is_pilot) {
-    table_.has_session_records = true;
-    table_.is_pilot = is_pilot;
-  }
+  void note_session_records() { table_.has_session_records = true; }
 
   /// The number of answers that every participant must give to each demonstration; inputs that
   /// differ throw, `place` says where.

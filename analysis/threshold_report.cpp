@@ -13,6 +13,7 @@
 #include "analysis/gnuplot.h"
 #include "analysis/json_estimate.h"
 #include "analysis/pages.h"
+#include "base/counted.h"
 #include "base/csv.h"
 #include "base/input_error.h"
 #include "base/partial_file.h"
@@ -135,8 +136,8 @@ std::string input_words(const LevelsTable& table) {
     for (const Observer& observer : series.observers) people.insert(observer.name);
   }
   people.erase("");
-  return fmt::format("{} answers{} to {} graded series.", answers,
-                     people.empty() ? "" : fmt::format(" of {} participants", people.size()),
+  return fmt::format("{}{} to {} graded series.", counted(answers, "answer"),
+                     people.empty() ? "" : " of " + counted(people.size(), "participant"),
                      table.series.size());
 }
 
@@ -354,18 +355,19 @@ std::string threshold_words(const ThresholdReport& report, const LevelsTable& ta
     }
     text += fmt::format(
         "The threshold{} is at level {} ({} interval {}): there {:.0f} % of the answers are {} "
-        "({} answers{}).",
+        "({}{}).",
         of, number(fit.threshold), level_text(report),
         interval(fit.threshold_low, fit.threshold_high), 100.0 * share_at_threshold(report, fit),
-        table.correct ? "correct" : "for the method under test", answers_of(series),
+        table.correct ? "correct" : "for the method under test",
+        counted(answers_of(series), "answer"),
         series.observers.size() > 1 ? fmt::format(" of {} participants", series.observers.size())
                                     : "");
     const std::vector<LevelCell> totals = totals_of(series);
     if (fit.threshold.value < totals.front().level || fit.threshold.value > totals.back().level)
       text += " It lies outside of the levels that were shown, so do not rely on it.";
     if (fit.p_deviance && fit.p_deviance.value < report.options.alpha) {
-      text += fmt::format(" The function does not fit these answers well (p = {}).",
-                          p_text(fit.p_deviance));
+      text += fmt::format(" The function does not fit these answers well ({}).",
+                          p_equation(fit.p_deviance));
     }
   }
   return text + design_words(table.design);

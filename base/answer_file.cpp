@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/counted.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
@@ -306,10 +307,11 @@ void check_plan(const AnswerFile& file, const std::string& name, bool allow_miss
     const bool fewer = count < file.answers_per_demonstration;
     if (count == file.answers_per_demonstration || (fewer && allow_missing)) continue;
     throw InputError(
-        name, fmt::format("participant `{}` gave {} answers to demonstration `{}`, but the plan "
-                          "has {}; leave the participant out with --exclude{}",
-                          file.participant, count, demonstration, file.answers_per_demonstration,
-                          fewer ? ", or pass --allow-missing" : ""));
+        name,
+        fmt::format("participant `{}` gave {} to demonstration `{}`, but the plan has {}; "
+                    "leave the participant out with --exclude{}",
+                    file.participant, counted(count, "answer"), demonstration,
+                    file.answers_per_demonstration, fewer ? ", or pass --allow-missing" : ""));
   }
 }
 
@@ -372,6 +374,18 @@ std::vector<NamedAnswerFile> read_answer_files(
   return files;
 }
 
+void SameStudy::check_pilot(bool is_pilot, const std::string& place) {
+  if (pilot_of_.empty()) {
+    is_pilot_ = is_pilot;
+    pilot_of_ = place;
+  }
+  if (is_pilot == is_pilot_) return;
+  throw InputError(place, fmt::format("is {} of a pilot, and {} is {}; analyse the pilot in a run "
+                                      "of its own",
+                                      is_pilot ? "an answer" : "no answer", pilot_of_,
+                                      is_pilot_ ? "one" : "none"));
+}
+
 void SameStudy::check(const AnswerFile& file, const std::string& name) {
   const auto [before_file, is_first] = file_of_.emplace(file.participant, name);
   if (!is_first) {
@@ -379,18 +393,12 @@ void SameStudy::check(const AnswerFile& file, const std::string& name) {
                      fmt::format("participant `{}` has a file already: {}; keep one of the two",
                                  file.participant, before_file->second));
   }
+  check_pilot(file.is_pilot, name);
   if (study_of_.empty()) {
     study_ = file.study;
-    is_pilot_ = file.is_pilot;
     methods_ = file.methods;
     graded_hit_ = file.graded_hit;
     study_of_ = name;
-  }
-  if (file.is_pilot != is_pilot_) {
-    throw InputError(name, fmt::format("is {} of a pilot, and {} is {}; analyse the pilot in a run "
-                                       "of its own",
-                                       file.is_pilot ? "an answer" : "no answer", study_of_,
-                                       is_pilot_ ? "one" : "none"));
   }
   if (file.methods != methods_ || file.graded_hit != graded_hit_) {
     throw InputError(name, fmt::format("compares other methods than {}; analyse each study in a "

@@ -106,20 +106,25 @@ std::vector<NamedAnswerFile> read_answer_files(
     const std::filesystem::path& path, bool allow_missing, SameStudy& same_study,
     const std::function<bool(const std::string&)>& excluded);
 
-/// Answers to another question, or to other clips, are not answers to the same question. Watches
-/// over files that are read one after the other.
+/// Answers to another question, or to other clips, are not answers to the same question, and those
+/// of a pilot are not the study's. Watches over files that are read one after the other.
 class SameStudy {
  public:
   /// Throws InputError if `file`, called `name`, was asked or shown something else than those
   /// before it, if one of them is of a pilot, or if it is of the same participant.
   void check(const AnswerFile& file, const std::string& name);
 
+  /// The same for an answer of a table, of which no more is known than whether it is of a pilot.
+  void check_pilot(bool is_pilot, const std::string& place);
+
+  [[nodiscard]] bool is_pilot() const { return is_pilot_; }
+
  private:
   std::map<std::string, std::string> study_;
   bool is_pilot_ = false;
   std::vector<std::string> methods_;
   std::string graded_hit_;
-  std::string study_of_;                        // the first file; empty before
+  std::string study_of_, pilot_of_;             // the first file, or place; empty before
   std::map<std::string, std::string> file_of_;  // participant -> file
   // (demonstration, variant) -> hash, file
   std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> clips_;

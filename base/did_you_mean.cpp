@@ -43,7 +43,7 @@ std::string nearest_word(std::string_view word, std::span<const std::string> kno
     }
   }
   std::string best;
-  std::size_t fewest = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t fewest = word.size() <= 3 ? 2 : std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
     if (candidate.size() > longest) {
       continue;

@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 
 #include "base/partial_file.h"
 #include "base/read_file.h"
+#include "base/why_not_written.h"
 
 namespace pinchlab {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& path, const char* what) {
-  throw std::runtime_error(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
+  throw std::runtime_error(fmt::format("{}: {}: {}", path.string(), what, why_not_written(errno)));
 }
 
 class File {

@@ -2,9 +2,12 @@
 #include "base/folder_lock.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <stdexcept>
 
 namespace pinchlab {
@@ -12,7 +15,8 @@ namespace pinchlab {
 FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& taken)
     : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (folder_ < 0) {
-    throw std::runtime_error(folder.string() + ": is not a folder that can be used");
+    throw std::runtime_error(fmt::format("{}: the folder cannot be used: {}; name another one",
+                                         folder.string(), std::strerror(errno)));
   }
   if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
     ::close(folder_);

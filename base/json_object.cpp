@@ -60,14 +60,16 @@ bool JsonObject::has(const std::string& key) {
 }
 
 const json& JsonObject::need(const std::string& key) {
-  asked_.insert(key);
   const auto found = value_.find(key);
   if (found == value_.end()) {
-    std::vector<std::string> present;
-    for (const auto& item : value_.items()) present.push_back(item.key());
+    std::vector<std::string> strange;  // what was asked for is meant as it is
+    for (const auto& item : value_.items()) {
+      if (!asked_.contains(item.key())) strange.push_back(item.key());
+    }
     throw InputError(place(file_, pointer_),
-                     fmt::format("key `{}` is missing{}", key, did_you_mean(key, present)));
+                     fmt::format("key `{}` is missing{}", key, did_you_mean(key, strange)));
   }
+  asked_.insert(key);
   return *found;
 }
 

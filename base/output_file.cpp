@@ -5,11 +5,25 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
+#include "base/durable_file.h"
+#include "base/why_not_written.h"
+
 namespace pinchlab {
+
+namespace {
+
+// A device or a pipe, say.
+bool is_special(const std::filesystem::path& path) {
+  std::error_code none;
+  const auto status = std::filesystem::status(path, none);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+         !std::filesystem::is_directory(status);
+}
+
+}  // namespace
 
 bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
   if (one.empty() || other.empty()) return false;
@@ -27,12 +41,7 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
     file_ = stdout;
     return;
   }
-  std::error_code none;
-  const auto status = std::filesystem::status(path, none);
-  const bool is_special = std::filesystem::exists(status) &&
-                          !std::filesystem::is_regular_file(status) &&
-                          !std::filesystem::is_directory(status);
-  if (!is_special) {
+  if (!is_special(path)) {
     partial_.emplace(path.string());
   }
   file_ = std::fopen(partial_ ? partial_->name().c_str() : path_.c_str(), "wb");
@@ -48,7 +57,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::fail(const char* what) const {
-  throw std::runtime_error(fmt::format("{}: {}: {}", path_.string(), what, std::strerror(errno)));
+  throw std::runtime_error(fmt::format("{}: {}: {}", path_.string(), what, why_not_written(errno)));
 }
 
 void OutputFile::write(std::string_view text) {
@@ -68,6 +77,17 @@ void OutputFile::finish() {
   if (partial_) {
     partial_->keep();
   }
+}
+
+void write_result(const std::filesystem::path& path, std::string_view text) {
+  if (path != "-" && !is_special(path)) return write_durably(path, text);
+  OutputFile out(path);
+  out.write(text);
+  out.finish();
+}
+
+void print_result(std::string_view text) {
+  write_result("-", text);
 }
 
 }  // namespace pinchlab

@@ -35,4 +35,11 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Writes a whole result: to standard output where `path` is "-", into what exists and is no
+/// ordinary file, and elsewhere so that it survives (write_durably). Throws std::runtime_error.
+void write_result(const std::filesystem::path& path, std::string_view text);
+
+/// The same to standard output.
+void print_result(std::string_view text);
+
 }  // namespace pinchlab

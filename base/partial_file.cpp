@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/why_not_written.h"
+
 namespace pinchlab {
 
 namespace fs = std::filesystem;
@@ -61,8 +63,7 @@ void PartialFile::keep() {
 }
 
 std::runtime_error PartialFile::error(std::string_view what) const {
-  return std::runtime_error(
-      fmt::format("{}: {}: {}", path_, what, std::generic_category().message(errno)));
+  return std::runtime_error(fmt::format("{}: {}: {}", path_, what, why_not_written(errno)));
 }
 
 StagingFolder::StagingFolder(const fs::path& folder) : folder_(folder) {

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/unfinished_folder.h"
 
+#include <fmt/format.h>
+
+#include <cerrno>
 #include <cstdlib>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "base/why_not_written.h"
 
 namespace pinchlab {
 namespace {
@@ -17,7 +22,8 @@ constexpr const char* prefix = ".unfinished-";
 fs::path make(const fs::path& folder) {
   std::string name = (folder / prefix).string() + "XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error(folder.string() + ": cannot be written into");
+    throw std::runtime_error(
+        fmt::format("{}: cannot be written into: {}", folder.string(), why_not_written(errno)));
   }
   return name;
 }

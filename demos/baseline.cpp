@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "demos/scenes/player.h"
 
@@ -20,11 +22,11 @@ struct Motion {
   std::vector<std::vector<char>> at_wall;  // whether a body touches a wall
 };
 
-Motion play(const SceneFile& file, MethodFigures& figures) {
-  Player player(file, file.scene, figures.method);
+Motion play(const SceneFile& file, const Scene& scene, MethodFigures& figures) {
+  Player player(file, scene, figures.method);
   Motion motion;
   try {
-    for (int frame = 0; frame < file.scene.frame_count; ++frame) {
+    for (int frame = 0; frame < scene.frame_count; ++frame) {
       player.advance_to(frame);
       const World& world = player.world();
       motion.position.push_back(world.position);
@@ -62,19 +64,30 @@ double roughness(const Motion& motion) {
   return sum / static_cast<double>(std::max<std::size_t>(1, motion.position.size()));
 }
 
-void compare(const Motion& pinch, const Motion& other, MethodFigures& figures) {
-  const std::size_t frames = std::min(pinch.position.size(), other.position.size());
+// How far any body's centre is ever apart in the two, m, and how far it is turned, rad.
+std::pair<double, double> apart(const Motion& one, const Motion& other) {
+  double distance = 0.0, turn = 0.0;
+  const std::size_t frames = std::min(one.position.size(), other.position.size());
   for (std::size_t i = 0; i < frames; ++i) {
-    for (std::size_t b = 0; b < pinch.position[i].size(); ++b) {
-      figures.largest_distance =
-          std::max(figures.largest_distance, (pinch.position[i][b] - other.position[i][b]).norm());
-      figures.largest_turn =
-          std::max(figures.largest_turn, std::abs(pinch.angle[i][b] - other.angle[i][b]));
+    for (std::size_t b = 0; b < one.position[i].size(); ++b) {
+      distance = std::max(distance, (one.position[i][b] - other.position[i][b]).norm());
+      turn = std::max(turn, std::abs(one.angle[i][b] - other.angle[i][b]));
     }
   }
+  return {distance, turn};
 }
 
-void decide(BaselineAdvice& advice) {
+// Steps of plain cable joints are not divided for a scene's error_m. What half a step changes, m,
+// tells whether they keep it all the same.
+double changed_by_half_steps(const SceneFile& file, const Motion& motion) {
+  Timing finer;
+  finer.steps_per_frame = 2 * file.scene.steps_per_frame;
+  MethodFigures figures;
+  figures.method = Method::cable;
+  return apart(motion, play(file, with_timing(file.scene, finer), figures)).first;
+}
+
+void decide(const Scene& scene, BaselineAdvice& advice) {
   const double ratio = advice.cable.roughness / advice.no_contact.roughness;
   if (advice.cable.problems.size() > advice.no_contact.problems.size()) {
     advice.recommended = Method::pinch_no_contact;
@@ -85,6 +98,12 @@ void decide(BaselineAdvice& advice) {
         "Plain cable joints jitter here: {:.1f} times as rough as pinch joints without contact, "
         "under which bodies come equally close.",
         ratio);
+  } else if (advice.changed_by_half_steps > scene.error) {
+    advice.recommended = Method::pinch_no_contact;
+    advice.reason = fmt::format(
+        "Plain cable joints do not keep the scene's error_m here: steps half as long move bodies "
+        "by {:.2g} m, so that the pair would differ by its steps, too.",
+        advice.changed_by_half_steps);
   } else {
     advice.recommended = Method::cable;
     advice.reason =
@@ -99,13 +118,16 @@ BaselineAdvice advise_baseline(const SceneFile& file) {
   BaselineAdvice advice;
   advice.no_contact.method = Method::pinch_no_contact;
   advice.cable.method = Method::cable;
-  const Motion pinch = play(file, advice.pinch);
+  const Motion pinch = play(file, file.scene, advice.pinch);
   for (MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
-    const Motion motion = figures == &advice.pinch ? pinch : play(file, *figures);
+    const Motion motion = figures == &advice.pinch ? pinch : play(file, file.scene, *figures);
     figures->roughness = roughness(motion);
-    compare(pinch, motion, *figures);
+    std::tie(figures->largest_distance, figures->largest_turn) = apart(pinch, motion);
+    if (figures == &advice.cable && file.scene.error > 0.0) {
+      advice.changed_by_half_steps = changed_by_half_steps(file, motion);
+    }
   }
-  decide(advice);
+  decide(file.scene, advice);
   return advice;
 }
 

@@ -23,12 +23,13 @@ struct MethodFigures {
 
 struct BaselineAdvice {
   MethodFigures pinch, no_contact, cable;
+  double changed_by_half_steps = 0.0;  ///< m, of plain joints, where the scene has an error_m
   Method recommended = Method::cable;
   std::string reason;  ///< fit for the scene's own `baseline`
 };
 
-/// Plain joints are taken where they break nothing that pinch joints without contact keep, and
-/// move at most this many times as roughly.
+/// Plain joints are taken where they break nothing that pinch joints without contact keep, not even
+/// the scene's error_m, and move at most this many times as roughly.
 constexpr double fair_roughness = 1.2;
 
 /// Plays the scene with all three methods. Throws SceneFileError where the geometry cannot exist.

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/folder_lock.h"
+#include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/progress.h"
 #include "base/sha256.h"
@@ -353,6 +354,11 @@ int render_batch(const BatchOptions& options) {
   for (const SceneFile& scene : scenes) {
     std::ranges::move(plan_clips(scene, options), std::back_inserter(plans));
   }
+  std::vector<Configuration> methods;
+  for (const ClipPlan& plan : plans) {
+    methods.insert(methods.end(), plan.methods.begin(), plan.methods.end());
+  }
+  check_error_is_heeded(options.timing, methods);
   for (const ClipPlan& plan : plans) {
     for (const Configuration& method : plan.methods) {
       start_world(plan.scene, plan.source->path, method);
@@ -395,7 +401,7 @@ int render_batch(const BatchOptions& options) {
   fmt::print(stderr, "\n");
   if (options.report) {
     write_report_page(options.out, manifest);
-    fmt::print("{}", report_table(manifest));
+    print_result(report_table(manifest));
   }
   return outcome.failed;
 }

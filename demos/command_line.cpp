@@ -74,6 +74,12 @@ std::string unknown_words(const CLI::App& app) {
       }
     }
     if (!is_option && known.empty()) continue;  // one argument too many
+    if (std::ranges::find(known, word) != known.end()) {
+      return fmt::format(
+          "{}: {} stands where nothing reads it; its place is after the command and "
+          "before any --",
+          full_name(*command), word);
+    }
     return fmt::format("{}: no {} is called {}{}; {} --help lists what there is",
                        full_name(*command), is_option ? "option" : "command", word,
                        did_you_mean(word, known), full_name(*command));

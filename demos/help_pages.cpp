@@ -8,6 +8,8 @@
 #include <sstream>
 #include <vector>
 
+#include "base/output_file.h"
+
 namespace pinchlab {
 namespace {
 
@@ -169,7 +171,7 @@ complete -o default -F _pinchlab pinchlab
 void add_help_page_commands(CLI::App& app, const std::string& version) {
   CLI::App* manual = app.add_subcommand("manual", "Print the manual page");
   manual->footer("  pinchlab manual | man -l -");
-  manual->callback([&app, version] { fmt::print("{}", manual_page(app, version)); });
+  manual->callback([&app, version] { print_result(manual_page(app, version)); });
 
   CLI::App* completion = app.add_subcommand("completion", "Print a script that completes commands");
   auto shell = std::make_shared<std::string>();
@@ -180,7 +182,7 @@ void add_help_page_commands(CLI::App& app, const std::string& version) {
   completion->footer(
       "  source <(pinchlab completion bash)      for this shell; or put it into\n"
       "  ~/.local/share/bash-completion/completions/pinchlab");
-  completion->callback([&app, shell] { fmt::print("{}", bash_completion(app)); });
+  completion->callback([&app, shell] { print_result(bash_completion(app)); });
 }
 
 }  // namespace pinchlab

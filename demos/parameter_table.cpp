@@ -60,8 +60,14 @@ std::vector<std::string> values_of_range(const std::string& text, const std::str
   if (separator == ',') return parts;
   if (parts.size() != 3) throw wrong();
   const auto from = parse_number(parts[0]), to = parse_number(parts[1]);
-  const auto count = parse_whole(parts[2], 2, max_values);
+  const auto count = parse_whole(parts[2], 1, max_values);
   if (!from || !to || !count) throw wrong();
+  if (*count == 1) {
+    const std::string name = range.substr(0, range.find('='));
+    throw std::invalid_argument(
+        fmt::format("{0}: a range has 2 to {1} values, its ends among them; one value is {2}={3}",
+                    range, max_values, name, parts[0]));
+  }
   std::vector<std::string> values;
   for (long i = 0; i < *count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(*count - 1);

@@ -62,7 +62,7 @@ Slow slow_from(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf-%lf:%lf%c", &slow.from, &slow.to, &slow.factor, &rest) != 3) {
     throw std::invalid_argument(
-        fmt::format("{} is not FROM-TO:FACTOR in seconds, such as 1.2-1.6:0.25", text));
+        fmt::format("--slow: {} is not FROM-TO:FACTOR in seconds, such as 1.2-1.6:0.25", text));
   }
   return slow;
 }
@@ -73,7 +73,7 @@ Freeze freeze_from(const std::string& text) {
   if (std::sscanf(text.c_str(), "%lf:%lf%c", &freeze.at, &freeze.seconds, &rest) != 2 ||
       !(freeze.seconds > 0.0 && freeze.seconds <= 60.0)) {
     throw std::invalid_argument(
-        fmt::format("{} is not TIME:SECONDS, such as 1.2:0.5, of 60 s at most", text));
+        fmt::format("--freeze: {} is not TIME:SECONDS, such as 1.2:0.5, of 60 s at most", text));
   }
   return freeze;
 }

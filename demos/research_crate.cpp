@@ -8,9 +8,11 @@
 #include <cstdlib>
 #include <ctime>
 #include <set>
+#include <stdexcept>
 
 #include "base/output_file.h"
 #include "base/sha256.h"
+#include "base/strict_json.h"
 #include "base/text_checks.h"
 #include "demos/version.h"
 
@@ -116,7 +118,13 @@ ordered_json run_entity(const Crate& crate, const CrateRun& run) {
 std::string day_of_publication() {
   std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    if (const auto seconds = parse_whole(epoch, 0, 253'402'300'799)) now = *seconds;
+    const auto seconds = parse_whole(epoch, 0, 253'402'300'799);
+    if (!seconds) {
+      throw std::invalid_argument(fmt::format(
+          "SOURCE_DATE_EPOCH of the environment: {} is not a whole number of seconds since 1970",
+          pointer_token(epoch)));
+    }
+    now = *seconds;
   }
   return fmt::format("{:%Y-%m-%d}", fmt::gmtime(now));
 }

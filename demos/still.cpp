@@ -30,7 +30,7 @@ int frame_at(const Scene& scene, const std::string& text) {
   const double time = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !(0.0 <= time && time <= duration)) {
     throw std::invalid_argument(fmt::format("{}: --time must be 0 to {} s, or FROM:TO, not {}",
-                                            scene.name, duration, text));
+                                            scene.name, duration, text.empty() ? "nothing" : text));
   }
   return static_cast<int>(std::lround(time * scene.frames_per_second));
 }
@@ -129,9 +129,25 @@ void write_sequence(const SceneFile& file, const StillOptions& options,
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string> split_at_commas(const std::vector<std::string>& lists) {
+  std::vector<std::string> parts;
+  for (const std::string& list : lists) {
+    for (std::size_t begin = 0; begin <= list.size();) {
+      const std::size_t end = std::min(list.find(',', begin), list.size());
+      parts.push_back(list.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
 std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& times) {
   std::vector<int> frames;
-  for (const std::string& time : times) {
+  for (const std::string& time : split_at_commas(times)) {
     const std::size_t colon = time.find(':');
     const int from = frame_at(scene, time.substr(0, colon));
     const int to = colon == std::string::npos ? from : frame_at(scene, time.substr(colon + 1));

@@ -12,7 +12,8 @@
 namespace pinchlab {
 
 struct StillOptions {
-  /// Each "t" or "from:to" in s, shown by the nearest frame, or by all frames from one to the other
+  /// Each "t" or "from:to" in s, shown by the nearest frame, or by all frames from one to the
+  /// other; or several of these with commas between
   std::vector<std::string> times;
   std::vector<Configuration> methods;  ///< one a row of the sheet
   int width = 960, height = 960;       ///< px, of one picture

@@ -88,7 +88,8 @@ Shard shard_from(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%7d/%7d%c", &shard.number, &shard.count, &rest) != 2 ||
       shard.number < 1 || shard.number > shard.count || shard.count > most_shards) {
-    throw std::invalid_argument(fmt::format("{} is not I/N with I from 1 to N, such as 3/7", text));
+    throw std::invalid_argument(
+        fmt::format("--shard: {} is not I/N with I from 1 to N, such as 3/7", text));
   }
   return shard;
 }

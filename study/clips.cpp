@@ -108,6 +108,12 @@ PairFiles open_rendered(const fs::path& folder, const std::string& name, PairKin
   return files;
 }
 
+// A file that is the researcher's own to make; `cure` says how.
+void need_file(const fs::path& path, const std::string& cure) {
+  if (fs::exists(path)) return;
+  throw std::runtime_error(fmt::format("{}: there is no such clip; {}", path.string(), cure));
+}
+
 // Every pair of methods in every demonstration; WebM where both of its files are there.
 void open_comparisons(const fs::path& folder, const Config& config,
                       const std::map<std::string, std::string>& hashes, Clips& clips) {
@@ -122,6 +128,11 @@ void open_comparisons(const fs::path& folder, const Config& config,
         const auto open = [&](Encoding encoding) {
           return open_pair(folder, file(true, encoding), file(false, encoding), encoding, hashes);
         };
+        for (const bool is_left : {true, false}) {
+          need_file(folder / file(is_left, Encoding::mp4),
+                    fmt::format("pinchlab render demos/{}.json --pair {},{} --out {} makes it",
+                                demonstration, first, second, folder.string()));
+        }
         PlannedTrial trial;
         trial.demonstration = demonstration;
         trial.first = first;
@@ -253,11 +264,20 @@ Clips open_clips(const fs::path& folder, const Config& config) {
   }
   open_comparisons(folder, config, hashes, clips);
   for (const GradedStimulus& stimulus : config.graded) {
+    for (const std::string* file : {&stimulus.left, &stimulus.right}) {
+      need_file(folder / *file,
+                "`series` of the configuration names it; pinchlab render --only-side-by-side makes "
+                "such clips (study/README.md, Thresholds)");
+    }
     clips.emplace(clip_key(stimulus.clip),
                   PairFiles{open_pair(folder, stimulus.left, stimulus.right, Encoding::mp4, hashes),
                             std::nullopt});
   }
   for (const AttentionCheck& check : config.attention_checks) {
+    for (const std::string* file : {&check.left, &check.right}) {
+      if (check.demonstration.empty())
+        need_file(folder / *file, "`attention_checks` of the configuration names it");
+    }
     if (clips.contains(check.name)) {
       throw std::runtime_error(fmt::format(
           "attention check `{}` has the name of a demonstration; give it another", check.name));

@@ -27,7 +27,11 @@ CLI::Option* add_no_webm(CLI::App& command, bool& no_webm) {
 }
 
 CLI::Option* add_clips(CLI::App& command, fs::path& clips) {
-  return command.add_option("--clips", clips, "Folder of the clips; missing ones are rendered")
+  return command
+      .add_option(
+          "--clips", clips,
+          "Folder of the clips; missing ones of demonstrations are rendered, not those of methods "
+          "and series")
       ->type_name("DIR")
       ->required();
 }

@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "base/answer_file.h"
+#include "base/counted.h"
 #include "base/design_file.h"
-#include "base/durable_file.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "study/answers.h"
@@ -26,6 +26,7 @@
 #include "study/crate.h"
 #include "study/desk.h"
 #include "study/freeze_command.h"
+#include "study/http.h"
 #include "study/jatos.h"
 #include "study/server.h"
 #include "study/simulate.h"
@@ -113,8 +114,8 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   }
   fmt::print("Participants open  {}/\nYou can watch at   {}/researcher#{}\n", server.address(),
              server.address(), server.researcher_token());
-  fmt::print("Seed {}; {} trials; answers go to {}; Ctrl-C ends\n", desk.seed(),
-             make_plan(desk.seed(), 0, plan_options(desk.config())).size(),
+  fmt::print("Seed {}; {}; answers go to {}; Ctrl-C ends\n", desk.seed(),
+             counted(make_plan(desk.seed(), 0, plan_options(desk.config())).size(), "trial"),
              options.answers.string());
   for (const std::string& link : desk.links()) {
     fmt::print("One-time link      {}/?link={}\n", server.address(), link);
@@ -148,7 +149,14 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
       ->add_option("--name", options->server.names,
                    "Name that participants open the study by, if it is not this computer's own: "
                    "study.example.org")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check([](const std::string& name) {
+        return is_host_name(name) ? std::string()
+                                  : fmt::format(
+                                        "{} is no name of a computer: letters, digits, - "
+                                        "and dots, without https:// and port",
+                                        name);
+      });
   command
       ->add_option("--participants", options->participants,
                    "Most that may take part [the configuration's, or no limit]")
@@ -177,15 +185,6 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
     options->has_seed = command->count("--seed") > 0;
     serve(*options, stimuli);
   });
-}
-
-// "-" is standard output.
-void write_text(const fs::path& path, const std::string& text) {
-  if (path == "-") {
-    fmt::print("{}", text);
-  } else {
-    write_durably(path, text);
-  }
 }
 
 void add_plan(CLI::App& study, const Stimuli& stimuli) {
@@ -233,11 +232,11 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
     }
     const PlanOptions plan = plan_options(config);
     if (!options->json.empty()) {
-      write_text(options->json,
-                 plan_json(options->seed, options->participants, plan).dump(2) + "\n");
+      write_result(options->json,
+                   plan_json(options->seed, options->participants, plan).dump(2) + "\n");
     }
     if (!csv.empty()) {
-      write_text(csv, plan_csv(options->seed, options->participants, plan));
+      write_result(csv, plan_csv(options->seed, options->participants, plan));
     }
   });
 }
@@ -273,10 +272,10 @@ void export_study(const ExportOptions& options, const Stimuli& stimuli) {
     throw CLI::ValidationError("--clips", "goes with --ro-crate or --jatos");
   }
   if (!options.csv.empty()) {
-    write_text(options.csv, answers_csv(folder_with_answers(options.answers)));
+    write_result(options.csv, answers_csv(folder_with_answers(options.answers)));
   }
   if (!options.participants_csv.empty()) {
-    write_text(options.participants_csv, participants_csv(folder_with_answers(options.answers)));
+    write_result(options.participants_csv, participants_csv(folder_with_answers(options.answers)));
   }
   if (!options.bids.empty()) {
     write_bids(folder_with_answers(options.answers), options.bids);
@@ -328,8 +327,9 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
   what->require_option(1);
   CLI::Option* clips =
       command
-          ->add_option("--clips", options->clips,
-                       "Folder of the clips; for --jatos missing ones are rendered")
+          ->add_option(
+              "--clips", options->clips,
+              "Folder of the clips; for --jatos missing ones of demonstrations are rendered")
           ->type_name("DIR");
   CLI::Option* participants =
       command->add_option("--participants", options->participants, "For how many to plan")
@@ -378,7 +378,8 @@ void add_import(CLI::App& study) {
       "  pinchlab study import --jatos results.txt --key study.key.json --answers answers");
   command->callback([options] {
     const Imported imported = import_jatos(options->results, options->key, options->answers);
-    fmt::print("{} participants imported, {} were there already\n", imported.added, imported.known);
+    fmt::print("{} imported, {} were there already\n", counted(imported.added, "participant"),
+               imported.known);
   });
 }
 
@@ -391,7 +392,8 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
   auto options = std::make_shared<Options>();
   CLI::App* command = study.add_subcommand(
       "simulate", "Let participants who are not there take part, by a truth that is known");
-  command->add_option("--participants", options->simulation.participants, "How many")
+  command
+      ->add_option("--participants", options->simulation.participants, "How many there are to be")
       ->type_name("N")
       ->required()
       ->check(CLI::Range(1, 10000));
@@ -405,34 +407,43 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
   add_config(*command, options->config);
   command->footer(
       "They start, see clips, answer and save over HTTP, at full speed, and their answers are "
-      "marked as a pilot's.\nThe same seed gives the same answers. Try a design, its analysis and "
-      "its report with it before anybody comes.\n\n"
+      "marked as a pilot's.\nThe same seed gives the same answers, and an interrupted simulation "
+      "is "
+      "continued by the next. Try a design,\nits analysis and its report with it before anybody "
+      "comes.\n\n"
       "Example:\n"
       "  pinchlab study simulate --participants 40 --truth truth.json --clips clips --answers "
       "simulated\n"
       "  pinchlab analyse simulated --out report");
   command->callback([options, stimuli] {
     DeskOptions desk_options;
+    const Truth truth = read_truth(options->truth);
     desk_options.config = read_or_default(options->config);
     desk_options.config.is_pilot = true;
+    desk_options.config.simulated_by = truth.sha256;
     desk_options.config.one_time_links = false;
     desk_options.config.recruiting.reset();
     desk_options.config.participant_limit = 0;
     desk_options.clips = prepare(desk_options.config, stimuli, options->clips, true);
     desk_options.answers = options->answers;
     desk_options.seed = options->simulation.seed = options->seed;
-    const Truth truth = read_truth(options->truth);
+    check_truth(desk_options.config, truth);
     Desk desk(std::move(desk_options));
-    const int participants = options->simulation.participants;
-    pinchlab::Progress progress("simulating", "participants", participants);
+    std::optional<pinchlab::Progress> progress;
     std::mutex mutex;
+    options->simulation.begin = [&](int to_come) {
+      progress.emplace("simulating", "participants", to_come);
+    };
     options->simulation.progress = [&](int) {
       const std::scoped_lock lock(mutex);
-      progress.add(1);
+      progress->add(1);
     };
-    simulate(desk, truth, options->simulation);
-    progress.clear();
-    fmt::print("{} simulated participants; answers in {}\n", participants,
+    const int added = simulate(desk, truth, options->simulation);
+    progress.reset();
+    const auto all = desk.overview().finished;
+    const auto before = all - static_cast<std::size_t>(added);
+    fmt::print("{}{}; answers in {}\n", counted(all, "simulated participant"),
+               before == 0 ? "" : fmt::format(", {} of them from before", before),
                options->answers.string());
   });
 }
@@ -470,7 +481,8 @@ void add_commands(CLI::App& app, const Stimuli& stimuli) {
       app.add_subcommand("study", "Ask people which clip looks most realistic, in a browser")
           ->require_subcommand(1);
   study->footer(
-      "Clips that are missing are rendered. study/README.md tells how a study is run.\n\n"
+      "Clips of demonstrations that are missing are rendered. study/README.md tells how a study is "
+      "run.\n\n"
       "Examples:\n"
       "  pinchlab study plan --participants 16 --seed 7\n"
       "  pinchlab study serve --clips clips --answers answers\n"

@@ -49,6 +49,8 @@ struct Config {
   TrialOptions trial;
   Questionnaires questionnaires;  ///< around the trials
   bool is_pilot = false;          ///< a trial run; of the command line, not of the file
+  /// Of a pilot whose participants are simulated: the SHA-256 of the truth they answer by.
+  std::string simulated_by;
   std::string controller, contact, consent_version;  ///< what the information names; or nothing
   std::string language = "en";                       ///< of the texts, a BCP 47 tag
   std::map<std::string, std::string> texts;  ///< every text of the page that is used, by its key

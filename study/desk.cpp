@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/answer_file.h"
+#include "base/counted.h"
 #include "base/durable_file.h"
 #include "base/sha256.h"
 #include "study/adaptive.h"
@@ -58,12 +59,7 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   if (!options_.tell) {
     options_.tell = [](const std::string&) {};
   }
-  std::error_code problem;
-  fs::create_directories(running_folder(options_.answers), problem);
-  if (problem) {
-    throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
-                                         options_.answers.string(), problem.message()));
-  }
+  make_answers_folder(options_.answers);
   lock_.emplace(running_folder(options_.answers),
                 fmt::format("{}: another server is using this folder; stop it or use another "
                             "--answers",
@@ -288,8 +284,9 @@ void Desk::leave(const std::string& token) {
   remove(*entry);
   give_back(entry->session);
   ++left_;
-  options_.tell(fmt::format("{} left after {} of {} trials; nothing is kept", id,
-                            entry->session.answers.size(), entry->session.plan.size()));
+  options_.tell(fmt::format("{} left after {} of {}; nothing is kept", id,
+                            entry->session.answers.size(),
+                            counted(entry->session.plan.size(), "trial")));
 }
 
 // The code of who has saved already; empty if that is not so.

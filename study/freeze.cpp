@@ -10,6 +10,9 @@
 #include "base/answer_file.h"
 #include "base/durable_file.h"
 #include "base/folder_lock.h"
+#include "base/partial_file.h"
+#include "base/read_file.h"
+#include "base/strict_json.h"
 #include "study/answers.h"
 #include "study/shown.h"
 #include "study/study_file.h"
@@ -19,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+
+constexpr std::size_t largest_design = 16U << 20U;  // bytes
 
 // Nobody may have taken part, or be taking part.
 void check_nobody(const fs::path& answers) {
@@ -110,6 +115,40 @@ json design_of(const FreezeOptions& options, const json& shown, std::uint64_t se
   return design;
 }
 
+constexpr const char* design_file = "design.json";
+constexpr const char* text_file = "preregistration.md";
+
+[[noreturn]] void refuse_out(const fs::path& file) {
+  throw std::runtime_error(fmt::format(
+      "{}: is of another design, and may be registered; name another --out", file.string()));
+}
+
+// Nothing of another study may be in `out`. A study that nobody has begun to freeze has nothing
+// there at all.
+void check_nothing_is_there(const FreezeOptions& options) {
+  if (fs::exists(running_folder(options.answers) / "study.json")) return;
+  for (const char* name : {design_file, text_file}) {
+    if (fs::exists(options.out / name)) refuse_out(options.out / name);
+  }
+}
+
+// What a freeze of this very design that was interrupted has left in `out`; `design` if there is
+// nothing. A text that may be registered is never made anew.
+json begun_before(const fs::path& out, const json& design) {
+  if (!fs::exists(out / design_file)) return design;
+  const json before = read_json_file(out / design_file, largest_design);
+  json same = design;
+  if (before.is_object()) same["frozen_utc"] = before.value("frozen_utc", json());
+  same["sha256"] = design_hash(same);
+  if (before != same) refuse_out(out / design_file);
+  return before;
+}
+
+void write_or_keep(const fs::path& path, const std::string& text) {
+  if (!fs::exists(path)) return write_durably(path, text);
+  if (read_whole(path) != text) refuse_out(path);
+}
+
 }  // namespace
 
 AnswersKind kind_of(const Config& config) {
@@ -134,6 +173,7 @@ void check_sample(const FreezeOptions& options) {
                     "{}; run pinchlab stopping with --trials {}",
                     rule.value("trials", json()).dump(), answers, answers));
   }
+  if (options.sample.rule == "bayes-factor") return;  // no level is tested at
   const std::string alpha = fmt::format("{}", rule.value("alpha", 0.0));
   if (alpha != options.rules.analysis.at("alpha")) {
     throw std::invalid_argument(fmt::format(
@@ -143,20 +183,30 @@ void check_sample(const FreezeOptions& options) {
   }
 }
 
+void check_rules(const FreezeOptions& options) {
+  const bool has_checks = !options.config.attention_checks.empty();
+  if (options.rules.exclusions.contains("failed_checks_over") && !has_checks) {
+    throw std::invalid_argument(
+        "--rules: failed_checks_over is about attention checks, and this study has none; take it "
+        "out, or give the study some (attention_checks in --config)");
+  }
+}
+
 std::string freeze(const FreezeOptions& options) {
-  fs::create_directories(running_folder(options.answers));
+  check_nothing_is_there(options);
+  make_answers_folder(options.answers);
   const FolderLock lock(
       running_folder(options.answers),
       fmt::format("{}: a server is using this folder; stop it first", options.answers.string()));
   check_nobody(options.answers);
   const json shown = what_is_shown(options.config, options.clips);
   const StudyFile study = open_study_file(options.answers, options.config, shown, options.seed);
-  const json design = design_of(options, shown, study.seed);
+  const json design = begun_before(options.out, design_of(options, shown, study.seed));
   parse_design(design, "design");  // as it will be read
   const std::string text = design.dump(2) + "\n";
-  fs::create_directories(options.out);
-  write_durably(options.out / "preregistration.md", preregistration(design, options.config));
-  write_durably(options.out / "design.json", text);
+  make_folders(options.out);
+  write_or_keep(options.out / design_file, text);
+  write_or_keep(options.out / text_file, preregistration(design, options.config));
   write_durably(design_path(options.answers), text);  // the last: from here on it is frozen
   return design.at("sha256");
 }

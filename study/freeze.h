@@ -28,12 +28,17 @@ struct FreezeOptions {
 
 /// Fixes the study in `answers`, so that no other can be served there, keeps its design there and
 /// writes it to `out` with the preregistration. Returns the design's SHA-256. Throws
-/// std::runtime_error if somebody has taken part already, or a design is frozen there.
+/// std::runtime_error if somebody has taken part already, a design is frozen there, or `out` holds
+/// another design or its text. A freeze that was interrupted is finished with the text that it had
+/// written.
 std::string freeze(const FreezeOptions& options);
 
 /// Throws std::invalid_argument if the sample cannot be one of this study: stopping rules are for
 /// the test of two methods, and for as many answers a participant as the study asks for.
 void check_sample(const FreezeOptions& options);
+
+/// Throws std::invalid_argument for an exclusion by what this study does not have.
+void check_rules(const FreezeOptions& options);
 
 /// The design as a preregistration in Markdown; `design` is the whole document.
 std::string preregistration(const nlohmann::json& document, const Config& config);

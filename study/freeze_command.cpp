@@ -60,6 +60,7 @@ void run(const Options& options, const Stimuli& stimuli) {
         parse_rules(read_json_file(options.rules, largest_file), options.rules.string(), kind);
   }
   check_sample(design);
+  check_rules(design);
   design.pilot = options.pilot;
   design.out = options.out;
   design.utc = utc_now();

@@ -11,6 +11,7 @@
 #include <cctype>
 #include <charconv>
 #include <memory>
+#include <regex>
 
 namespace pinchlab::study {
 namespace {
@@ -61,6 +62,17 @@ std::optional<ByteRange> byte_range(const std::string& header, std::uint64_t siz
     return std::nullopt;
   }
   return ByteRange(*first, std::min(last.value_or(size - 1), size - 1));
+}
+
+bool is_host_name(const std::string& text) {
+  static const std::regex labels(R"([a-z0-9]([a-z0-9-]{0,61}[a-z0-9])?)", std::regex::icase);
+  if (text.size() > 253) return false;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('.', begin), text.size());
+    if (!std::regex_match(text.substr(begin, end - begin), labels)) return false;
+    begin = end + 1;
+  }
+  return true;
 }
 
 bool is_our_host(const std::string& header, const std::vector<std::string>& names) {

@@ -43,6 +43,10 @@ using ByteRange = std::pair<std::uint64_t, std::uint64_t>;
 /// such part, or more than one is asked for.
 std::optional<ByteRange> byte_range(const std::string& header, std::uint64_t size);
 
+/// Can this be the name of a computer: labels of letters, digits and - with dots between (RFC 1123,
+/// 2.1)?
+bool is_host_name(const std::string& text);
+
 /// Is this the Host header of somebody who means this computer: an IP address, localhost, its own
 /// name, or one of `names`? Any other is that of a page elsewhere whose name was made to point here
 /// (DNS rebinding).

@@ -13,6 +13,7 @@
 #include "base/durable_file.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
+#include "base/partial_file.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/answers.h"
@@ -416,7 +417,7 @@ Imported import_jatos(const std::vector<fs::path>& results, const fs::path& key_
       }
     }
   }
-  fs::create_directories(answers);
+  make_folders(answers);
   Imported imported;
   for (const Result& result : all) {
     const fs::path path = answer_path(answers, result.id);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/counted.h"
 #include "study/freeze.h"
 
 namespace pinchlab::study {
@@ -37,9 +38,9 @@ std::string data_so_far(const json& design) {
                   design.at("frozen_utc").get<std::string>());
   if (design.contains("pilot_participants")) {
     text += fmt::format(
-        " A pilot with {} participants went before; its answers are marked as such and are not "
-        "analysed with the study's.",
-        design["pilot_participants"].get<long>());
+        " A pilot with {} went before; its answers are marked as such and are not analysed with "
+        "the study's.",
+        counted(design["pilot_participants"].get<long>(), "participant"));
   }
   return text + "\n";
 }
@@ -50,31 +51,33 @@ std::string what_varies(const json& design, const Config& config) {
   const int each = plan.at("answers_per_demonstration");
   if (config.adaptive_trials > 0) {
     return fmt::format(
-        "Thresholds of {} graded series: in each, {} trials show a graded clip beside its "
-        "reference, "
+        "Thresholds of {} graded series: in each, {} with a graded clip beside its reference, "
         "at the level whose answer is expected to tell most about the participant's threshold and "
         "width (Psi method, Kontsevich and Tyler 1999). It is a hit to choose the {}.",
-        shown, each, config.graded_hit == "reference" ? "reference" : "graded one");
+        shown, counted(each, "trial"),
+        config.graded_hit == "reference" ? "reference" : "graded one");
   }
   if (!config.graded.empty()) {
     return fmt::format(
-        "Thresholds of {} graded series: in each, {} trials show a graded clip beside its "
-        "reference. "
+        "Thresholds of {} graded series: in each, {} with a graded clip beside its reference. "
         "It is a hit to choose the {}.",
-        shown, each, config.graded_hit == "reference" ? "reference" : "graded one");
+        shown, counted(each, "trial"),
+        config.graded_hit == "reference" ? "reference" : "graded one");
   }
   if (!config.methods.empty()) {
     return fmt::format(
-        "{} methods ({}) are compared two by two in {} demonstrations; each participant sees {} of "
+        "{} methods ({}) are compared two by two in {}; each participant sees {} of "
         "the pairs of methods in each demonstration. Over participants pairs are balanced within "
         "demonstrations, and within participants methods are balanced over pairs and sides.",
-        config.methods.size(), fmt::join(config.methods, ", "), shown, each);
+        config.methods.size(), fmt::join(config.methods, ", "), counted(shown, "demonstration"),
+        each);
   }
   return fmt::format(
-      "{} demonstrations, each with pinch joints and with its baseline side by side; each "
+      "{}, each with pinch joints and with its baseline side by side; each "
       "participant "
       "answers each demonstration {}.",
-      shown, each == 1 ? std::string("once") : fmt::format("{} times", each));
+      counted(shown, "demonstration"),
+      each == 1 ? std::string("once") : fmt::format("{} times", each));
 }
 
 std::string asked_besides(const Config& config) {
@@ -118,11 +121,12 @@ std::string procedure(const json& design, const Config& config) {
       "## Design\n\nWithin participants, forced choice between two clips side by side in one "
       "video, "
       "which repeats; the choice can be made once the first loop has been shown. {}\n\n"
-      "A session has {} trials",
-      what_varies(design, config), design.at("trials").get<int>());
+      "A session has {}",
+      what_varies(design, config), counted(design.at("trials").get<int>(), "trial"));
   const int training = plan.at("training_trials"), checks = plan.at("attention_checks");
   if (training + checks > 0) {
-    text += fmt::format(", {} for practice and {} attention checks among them", training, checks);
+    text += fmt::format(", {} for practice and {} among them", training,
+                        counted(checks, "attention check"));
   }
   text += fmt::format(
       ". Order and sides follow from the seed {} and the participant's number: orders are balanced "
@@ -145,13 +149,12 @@ std::string stopping_words(const json& rule) {
   const bool is_bayes = name == "bayes-factor";
   std::string text;
   if (name == "fixed") {
-    text =
-        fmt::format("{} participants whose answers are analysed, looked at once.\n", looks.back());
+    text = fmt::format("{} whose answers are analysed, looked at once.\n",
+                       counted(looks.back(), "participant"));
   } else {
     text = fmt::format(
-        "{} participants at most whose answers are analysed, looked at {} times ({}). The study "
-        "stops {}.\n",
-        looks.back(), looks.size(),
+        "{} at most whose answers are analysed, looked at {} ({}). The study stops {}.\n",
+        counted(looks.back(), "participant"), counted(looks.size(), "time"),
         is_bayes                   ? "Bayes factor of a share other than one half, Beta(1, 1)"
         : name == "obrien-fleming" ? "Lan and DeMets' spending after O'Brien and Fleming"
                                    : "Lan and DeMets' spending after Pocock",
@@ -177,10 +180,10 @@ std::string stopping_words(const json& rule) {
   };
   return text +
          fmt::format(
-             "\nIn {} simulated studies of {} answers a participant (intraclass correlation "
+             "\nIn {} simulated studies of {} a participant (intraclass correlation "
              "{:g}) it finds a preference, where there is none, in {}; at a share of {:g} in "
              "{}.\n",
-             rule.at("studies").get<long>(), rule.at("trials").get<int>(),
+             rule.at("studies").get<long>(), counted(rule.at("trials").get<int>(), "answer"),
              rule.at("icc").get<double>(), characteristics(rule.at("without_difference")),
              rule.at("share").get<double>(), characteristics(rule.at("at_share")));
 }
@@ -191,8 +194,8 @@ std::string sample(const json& design) {
   return heading +
          (entry.contains("stopping")
               ? stopping_words(entry.at("stopping"))
-              : fmt::format("{} participants whose answers are analysed; no look before.\n",
-                            entry.at("participants").at(0).get<long>()));
+              : fmt::format("{} whose answers are analysed; no look before.\n",
+                            counted(entry.at("participants").at(0).get<long>(), "participant")));
 }
 
 std::string exclusions(const json& design) {

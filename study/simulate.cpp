@@ -19,6 +19,7 @@
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
+#include "base/sha256.h"
 #include "base/strict_json.h"
 #include "study/http_client.h"
 #include "study/server.h"
@@ -222,33 +223,21 @@ class Simulated {
 // A name that the study does not have would have no effect.
 template <class Value>
 void check_names(const std::map<std::string, Value>& given, const std::vector<std::string>& known,
-                 const char* key, const char* what) {
+                 const Truth& truth, const char* key, const char* what) {
   for (const auto& [name, value] : given) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    throw std::invalid_argument(fmt::format("the truth's `{}`: the study has no {} `{}`{}", key,
-                                            what, name, did_you_mean(name, known)));
+    throw InputError(
+        fmt::format("{}: /{}/{}", truth.file, key, name),
+        fmt::format("the study has no {} of this name{}", what, did_you_mean(name, known)));
   }
 }
 
-void check_truth(const Config& config, const Truth& truth) {
-  for (const std::string& method : config.methods) {
-    if (!truth.methods.contains(method)) {
-      throw std::invalid_argument(fmt::format("the truth has no value of the method `{}`", method));
-    }
-  }
-  for (const GradedStimulus& stimulus : config.graded) {
-    if (!truth.series.contains(stimulus.clip.series)) {
-      throw std::invalid_argument(
-          fmt::format("the truth has no threshold of the series `{}`", stimulus.clip.series));
-    }
-  }
-  std::vector<std::string> demonstrations = config.demonstrations;
-  demonstrations.insert(demonstrations.end(), config.training.begin(), config.training.end());
-  check_names(truth.shares, demonstrations, "shares", "demonstration");
-  check_names(truth.methods, config.methods, "methods", "method");
-  std::vector<std::string> series;
-  for (const GradedStimulus& stimulus : config.graded) series.push_back(stimulus.clip.series);
-  check_names(truth.series, series, "series", "series");
+template <class Value>
+void need_name(const std::map<std::string, Value>& given, const std::string& name,
+               const Truth& truth, const char* key, const char* what) {
+  if (given.contains(name)) return;
+  throw InputError(fmt::format("{}: /{}", truth.file, key),
+                   fmt::format("the {} of the study is missing: `{}`", what, name));
 }
 
 // Runs a server until it goes out of scope.
@@ -267,13 +256,38 @@ class Serving {
   std::thread thread_;
 };
 
+// Who was broken off has answered a part; all who are running here are simulated.
+void release_running(Desk& desk) {
+  for (const Overview::Participant& participant : desk.overview().running) {
+    desk.release(participant.id);
+  }
+}
+
 }  // namespace
+
+void check_truth(const Config& config, const Truth& truth) {
+  std::vector<std::string> series;
+  for (const GradedStimulus& stimulus : config.graded) series.push_back(stimulus.clip.series);
+  for (const std::string& method : config.methods) {
+    need_name(truth.methods, method, truth, "methods", "method");
+  }
+  for (const std::string& name : series) {
+    need_name(truth.series, name, truth, "series", "series");
+  }
+  std::vector<std::string> demonstrations = config.demonstrations;
+  demonstrations.insert(demonstrations.end(), config.training.begin(), config.training.end());
+  check_names(truth.shares, demonstrations, truth, "shares", "demonstration");
+  check_names(truth.methods, config.methods, truth, "methods", "method");
+  check_names(truth.series, series, truth, "series", "series");
+}
 
 Truth read_truth(const fs::path& path) {
   const json document = read_json_file(path, largest_truth);
   JsonObject object(document, path.string(), "");
   object.choice("format", {"pinchlab-truth 1"});
   Truth truth;
+  truth.file = path.string();
+  truth.sha256 = sha256(document.dump());
   truth.shares = read_numbers(object, "shares", 0.001, 0.999);
   truth.methods = read_numbers(object, "methods", -20, 20);
   if (object.has("series")) {
@@ -294,32 +308,38 @@ Truth read_truth(const fs::path& path) {
   return truth;
 }
 
-void simulate(Desk& desk, const Truth& truth, const SimulationOptions& options) {
+int simulate(Desk& desk, const Truth& truth, const SimulationOptions& options) {
   check_truth(desk.config(), truth);
+  release_running(desk);
+  const auto before = static_cast<int>(desk.overview().finished);
+  const int to_come = std::max(options.participants - before, 0);
+  if (options.begin) options.begin(to_come);
+  if (to_come == 0) return 0;
   Server server(desk, ServerOptions{});
   const Serving serving(server);
   std::atomic<int> next = 0, finished = 0;
   std::mutex mutex;
   std::exception_ptr problem;
   std::vector<std::thread> threads;
-  const int at_once = std::min(options.at_once, options.participants);
-  threads.reserve(static_cast<std::size_t>(std::max(at_once, 0)));
+  const int at_once = std::min(options.at_once, to_come);
+  threads.reserve(static_cast<std::size_t>(at_once));
   for (int i = 0; i < at_once; ++i) {
     threads.emplace_back([&] {
-      for (int who = next++; who < options.participants; who = next++) {
+      for (int who = next++; who < to_come; who = next++) {
         try {
           Simulated(desk, truth, options.seed).take_part(server.address());
           if (options.progress) options.progress(++finished);
         } catch (...) {
           const std::scoped_lock lock(mutex);
           problem = std::current_exception();
-          next = options.participants;
+          next = to_come;
         }
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
   if (problem) std::rethrow_exception(problem);
+  return to_come;
 }
 
 }  // namespace pinchlab::study

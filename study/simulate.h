@@ -21,6 +21,8 @@ struct TrueThreshold {
 
 /// How simulated participants choose.
 struct Truth {
+  std::string file = "truth";                   ///< for messages
+  std::string sha256;                           ///< of what the file says
   std::map<std::string, double> shares;         ///< for pinch, by demonstration; 1/2 where none
   std::map<std::string, double> methods;        ///< values on Bradley and Terry's scale
   std::map<std::string, TrueThreshold> series;  ///< by name
@@ -32,17 +34,23 @@ struct Truth {
 /// Reads a truth file strictly (study/README.md). Throws InputError.
 Truth read_truth(const std::filesystem::path& path);
 
+/// Throws InputError if the truth does not tell about a method or series of the study, or names
+/// what the study does not have.
+void check_truth(const Config& config, const Truth& truth);
+
 struct SimulationOptions {
-  int participants = 1;
+  int participants = 1;  ///< that there are to be in the end
   int at_once = 8;
   std::uint64_t seed = 0;
+  std::function<void(int to_come)> begin;      ///< once
   std::function<void(int finished)> progress;  ///< may be called from any thread
 };
 
 /// Lets participants take part in a study whose desk this is: consent, clips, answers, save. Serves
-/// it on a free port of this computer meanwhile. Throws std::runtime_error for whatever is not
-/// answered as it must be, and std::invalid_argument if the truth does not tell about a method or
-/// series of the study, or names what the study does not have.
-void simulate(Desk& desk, const Truth& truth, const SimulationOptions& options);
+/// it on a free port of this computer meanwhile. Who has finished before counts, and who was broken
+/// off begins anew, so that an interrupted simulation comes to the answers of one that was not.
+/// Returns how many were added. Throws what check_truth does, and std::runtime_error for whatever
+/// is not answered as it must be.
+int simulate(Desk& desk, const Truth& truth, const SimulationOptions& options);
 
 }  // namespace pinchlab::study

@@ -39,6 +39,7 @@ json fingerprint(const Config& config) {
   }
   if (options.adaptive_trials > 0) plan["adaptive_trials"] = options.adaptive_trials;
   if (config.is_pilot) plan["pilot"] = true;
+  if (!config.simulated_by.empty()) plan["simulated_by"] = config.simulated_by;
   return plan;
 }
 
@@ -46,10 +47,32 @@ fs::path study_path(const fs::path& answers) {
   return running_folder(answers) / "study.json";
 }
 
+// Answers by one truth are not those by another, and neither are people's.
+void check_simulated(const json& plan, const Config& config, const fs::path& answers) {
+  const std::string before = plan.is_object() && plan.contains("simulated_by")
+                                 ? plan["simulated_by"].dump()
+                                 : json(std::string()).dump();
+  if (before == json(config.simulated_by).dump()) return;
+  throw std::runtime_error(fmt::format(
+      "{}: {}; use another --answers", answers.string(),
+      config.simulated_by.empty() ? "holds simulated participants, among whom nobody can take part"
+      : before == "\"\""          ? "is not of simulated participants"
+                                  : "was simulated by another truth"));
+}
+
 }  // namespace
 
 fs::path running_folder(const fs::path& answers) {
   return answers / ".running";
+}
+
+void make_answers_folder(const fs::path& answers) {
+  std::error_code problem;
+  fs::create_directories(running_folder(answers), problem);
+  if (problem) {
+    throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
+                                         answers.string(), problem.message()));
+  }
 }
 
 std::uint64_t random_seed() {
@@ -87,11 +110,13 @@ StudyFile open_study_file(const fs::path& answers, const Config& config, const j
   }
   if (seed && *seed != study.seed) {
     throw std::runtime_error(
-        fmt::format("{}: the study in this folder has the seed {}, not {}; leave --seed out, or "
-                    "use another --answers",
-                    answers.string(), study.seed, *seed));
+        fmt::format("{1}: the study in this folder has the seed {0}, not {2}; say --seed {0}, "
+                    "or use another --answers",
+                    study.seed, answers.string(), *seed));
   }
-  if (object.need("plan") != fingerprint(config)) {
+  const json& plan = object.need("plan");
+  check_simulated(plan, config, answers);
+  if (plan != fingerprint(config)) {
     throw std::runtime_error(
         fmt::format("{}: the study in this folder shows something else; use its configuration, or "
                     "another --answers",

@@ -11,6 +11,7 @@
 #include "base/answer_file.h"
 #include "base/csv.h"
 #include "base/durable_file.h"
+#include "base/partial_file.h"
 #include "study/answers.h"
 #include "study/participants_table.h"
 
@@ -67,7 +68,7 @@ struct Column {
   const char* description;
   std::string (*value)(const json& file, const json& trial) = nullptr;
   unsigned kinds = every_kind;
-  bool is_asked_besides = false;  // left out where no trial has it
+  bool is_optional = false;  // left out where no trial, or file, has it
 };
 
 const std::vector<Column> columns = {
@@ -77,6 +78,8 @@ const std::vector<Column> columns = {
      [](const json& file, const json&) { return value_of(file, "participant_number"); }},
     {"position", "Place of the trial in the session, from 1"},
     {"kind", "main: an answer of the study; training: for practice; attention: has a right answer"},
+    {"pilot", "true: an answer of a trial run",
+     [](const json& file, const json&) { return value_of(file, "pilot"); }, every_kind, true},
     {"demonstration", "What was shown"},
     {"left", "What the left side showed", nullptr, several_methods | thresholds},
     {"right", "What the right side showed", nullptr, several_methods | thresholds},
@@ -221,14 +224,15 @@ std::vector<const Column*> columns_of(const std::vector<json>& files) {
   const unsigned kind = files.empty() ? two_methods : kind_of(files.front());
   const auto is_there = [&](const Column& column) {
     return std::ranges::any_of(files, [&](const json& file) {
-      return std::ranges::any_of(file["trials"],
+      return file.contains(column.name) ||
+             std::ranges::any_of(file["trials"],
                                  [&](const json& trial) { return trial.contains(column.name); });
     });
   };
   std::vector<const Column*> chosen;
   for (const Column& column : columns) {
     const bool is_of_kind = (column.kinds & kind) != 0;
-    if (is_of_kind && (!column.is_asked_besides || is_there(column))) chosen.push_back(&column);
+    if (is_of_kind && (!column.is_optional || is_there(column))) chosen.push_back(&column);
   }
   return chosen;
 }
@@ -322,7 +326,7 @@ void write_new_folder(const std::map<std::string, std::string>& files, const fs:
         fmt::format("{}: is there already; name a new folder, or empty it", out.string()));
   }
   for (const auto& [name, bytes] : files) {
-    fs::create_directories((out / name).parent_path());
+    make_folders((out / name).parent_path());
     write_durably(out / name, bytes);
   }
 }

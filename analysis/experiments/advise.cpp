@@ -251,8 +251,7 @@ void add_advise_command(CLI::App& app) {
       "  pinchlab advise demos/06-windlass.json --error 1e-5 --time 4");
   command->callback([question] {
     const Advice advice = advise(*question);
-    const std::string text = advice_text(*question, advice);
-    std::fputs(text.c_str(), advice.best >= 0 ? stdout : stderr);
+    std::fputs(advice_text(*question, advice).c_str(), stdout);
     if (advice.best < 0) throw CLI::RuntimeError(1);
   });
 }

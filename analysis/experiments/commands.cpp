@@ -233,8 +233,8 @@ void add_bench_commands(CLI::App& app) {
   add_population(*bench);
   add_all(*bench);
   bench->footer(
-      "Each writes raw tables (CSV), figures (SVG and PDF, by gnuplot) and a page that says in "
-      "words what\nthey show.\n\n"
+      "Each writes raw tables (CSV) and a page that says in words what they show; where there is "
+      "something to\ndraw, figures too (SVG and PDF, by gnuplot).\n\n"
       "Examples:\n"
       "  pinchlab bench all --quick                        everything, in less than two minutes\n"
       "  pinchlab bench all --out analysis/results         the published results\n"

@@ -45,6 +45,15 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return meant.empty() ? "" : fmt::format(" (did you mean {}?)", meant);
 }
 
+// What stands where something else must: a text as it is, as long as it is a word.
+std::string quoted_or_type(const json& value) {
+  constexpr std::size_t longest = 40;  // bytes
+  if (!value.is_string() || value.get_ref<const std::string&>().size() > longest) {
+    return type_name(value);
+  }
+  return "\"" + pointer_token(value.get_ref<const std::string&>()) + "\"";
+}
+
 bool in_range(const json& value, const KeyFormat& key) {
   const double number = value.get<double>();  // never NaN or infinite: JSON has neither
   return key.low <= number && number <= key.high;
@@ -53,11 +62,13 @@ bool in_range(const json& value, const KeyFormat& key) {
 void check_number(const json& value, const KeyFormat& key, const std::string& place,
                   Problems& problems) {
   const bool whole = key.type == KeyType::integer;
-  const char* wanted = whole                           ? "a whole number"
-                       : key.type == KeyType::friction ? "a number or \"no_slip\""
-                                                       : "a number";
-  if (!value.is_number()) {
-    problems.push_back({place, fmt::format("must be {}, not {}", wanted, type_name(value))});
+  if (!value.is_number() && key.type == KeyType::friction) {
+    problems.push_back({place, fmt::format("must be {:g} to {:g} or \"no_slip\", not {}", key.low,
+                                           key.high, quoted_or_type(value))});
+  } else if (!value.is_number()) {
+    problems.push_back(
+        {place, fmt::format("must be {}, not {}", whole ? "a whole number" : "a number",
+                            type_name(value))});
   } else if (!in_range(value, key)) {
     problems.push_back(
         {place, fmt::format("must be {:g} to {:g}, not {}", key.low, key.high, value.dump())});
@@ -149,6 +160,20 @@ void check_list(const json& value, const KeyFormat& key, const std::string& plac
   }
 }
 
+void check_object_or_word(const json& value, const KeyFormat& key, const std::string& place,
+                          Problems& problems) {
+  if (value.is_object()) return check_format(value, *key.child, place, problems);
+  if (value.is_string() &&
+      std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end()) {
+    return;
+  }
+  std::vector<std::string> keys;
+  for (const KeyFormat& child : key.child->keys) keys.push_back(child.name);
+  problems.push_back({place, fmt::format("must be \"{}\" or an object with {}, not {}",
+                                         fmt::join(key.choices, "\" or \""),
+                                         fmt::join(keys, " and "), quoted_or_type(value))});
+}
+
 void check_value(const json& value, const KeyFormat& key, const std::string& place,
                  Problems& problems) {
   switch (key.type) {
@@ -174,8 +199,7 @@ void check_value(const json& value, const KeyFormat& key, const std::string& pla
     case KeyType::object:
       return check_format(value, *key.child, place, problems);
     case KeyType::object_or_word:
-      return value.is_string() ? check_choice(value, key, place, problems)
-                               : check_format(value, *key.child, place, problems);
+      return check_object_or_word(value, key, place, problems);
     case KeyType::list:
       return check_list(value, key, place, problems);
     case KeyType::boolean:

@@ -2,10 +2,13 @@
 #include "demos/scenes/player.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -52,6 +55,16 @@ Scene with_timing(const Scene& scene, const Timing& timing) {
   return changed;
 }
 
+void check_error_is_heeded(const Timing& timing, std::span<const Configuration> methods) {
+  if (timing.error.value_or(0.0) == 0.0 || std::ranges::any_of(methods, locates_events)) return;
+  std::set<std::string> names;
+  for (const Configuration& method : methods) names.insert(to_string(method));
+  throw std::invalid_argument(
+      fmt::format("--error: steps of the method {} are not divided; leave it out, or use pinch or "
+                  "pinch_no_contact",
+                  fmt::join(names, " and ")));
+}
+
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
                            const World& world, int frame) {
   const Configuration& configuration = world.configuration;
@@ -63,10 +76,11 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
           : "";
   return fmt::format(
       "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
-      "--steps-per-frame {4} --error {5} --until {6} --out -{7}",
+      "--steps-per-frame {4}{5} --until {6} --out -{7}",
       path.string(), to_string(world.configuration), world.failure, scene.frames_per_second,
-      scene.steps_per_frame, scene.error, static_cast<double>(frame) / scene.frames_per_second,
-      sweeps);
+      scene.steps_per_frame,
+      locates_events(configuration) ? fmt::format(" --error {}", scene.error) : "",
+      static_cast<double>(frame) / scene.frames_per_second, sweeps);
 }
 
 void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {

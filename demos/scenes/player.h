@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ struct Timing {
 /// the fewest steps that make none longer than the scene's own. Throws std::invalid_argument, with
 /// the cure, where the duration is not a whole number of frames or a value is out of range.
 Scene with_timing(const Scene& scene, const Timing& timing);
+
+/// Throws std::invalid_argument where `timing` has an error above 0 and none of the methods divides
+/// its steps for one.
+void check_error_is_heeded(const Timing& timing, std::span<const Configuration> methods);
 
 /// What is told of a world that became not finite on the way to `frame` of the scene from `path`:
 /// where and when, and the command that shows it again.

@@ -76,6 +76,12 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
   } catch (const JsonError& error) {
     problems.push_back({error.place, error.what()});
   }
+  if (!problems.empty() && text.find("${") != std::string_view::npos) {
+    problems.insert(problems.begin(),
+                    {"",
+                     "is a template with placeholders (${...}), whose values `pinchlab sweep` and "
+                     "`pinchlab still --table` give"});
+  }
   if (!problems.empty()) {
     throw SceneFileError(path.string(), std::move(problems));
   }

@@ -46,6 +46,7 @@ class Reader {
   int body_index(const json& name, const std::string& place);
 
   void check_grip(const json& cables, const Scene& scene);
+  void check_rim(const json& cable, const char* end, const std::string& place, const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
                              double half_width);
   std::vector<Wrap> read_wraps(const json& from, const std::string& place, bool closed);
@@ -54,12 +55,25 @@ class Reader {
   View read_view(const json& from);
   void read_timing(const json& from, SceneContent& to);
   void spread(SceneContent& to);
+  void claim_joints(const json& joints);
   void read_joints(const json& file, SceneContent& to);
 
   std::vector<SceneProblem>& problems_;
   std::map<std::string, int> body_names_, cable_names_;
   std::vector<Vec2> origins_;  // of the bodies' frames in the file: read_shapes
 };
+
+// The name of the joint, or of the body with a stop, that this cable of a table is a part of.
+std::string place_of_part(const json& file, const std::string& part) {
+  for (const char* list : {"joints", "bodies"}) {
+    const json owners = file.value(list, json::array());
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      const std::string name = owners[i]["name"].get<std::string>();
+      if (part == name || part.starts_with(name + ":")) return fmt::format("/{}/{}/name", list, i);
+    }
+  }
+  return "/joints";
+}
 
 void Reader::claim_name(std::map<std::string, int>& names, const std::string& name, int index,
                         const char* list) {
@@ -150,6 +164,24 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
   return attachment;
 }
 
+// Cable comes off a rim along its tangent, which the wrap beside the end begins at.
+void Reader::check_rim(const json& cable, const char* end, const std::string& place,
+                       const Scene& scene) {
+  const json& from = cable[end];
+  if (!from.contains("rim_angle_rad") || !from.contains("body")) return;
+  const auto known = body_names_.find(from["body"].get<std::string>());
+  if (known == body_names_.end()) return;  // told already, as is what has no rim
+  if (const Body& body = at(scene.bodies, known->second); !body.outlined || is_polygon(body))
+    return;
+  const json wraps = cable.value("wraps", json::array());
+  const bool is_start = end == std::string("start");
+  if (!wraps.empty() && (is_start ? wraps.front() : wraps.back())["body"] == from["body"]) return;
+  problem(fmt::format("{}/{}/rim_angle_rad", place, end),
+          fmt::format("needs the cable to run round \"{}\": the {} of its wraps must be on that "
+                      "body; add it, or give point_m instead",
+                      from["body"].get<std::string>(), is_start ? "first" : "last"));
+}
+
 std::vector<Wrap> Reader::read_wraps(const json& from, const std::string& place, bool closed) {
   std::vector<Wrap> wraps;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -220,6 +252,9 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
     }
   }
   cable.wraps = read_wraps(from.value("wraps", json::array()), place + "/wraps", cable.closed);
+  for (const char* end : {"start", "end"}) {
+    if (!cable.closed && from.contains(end)) check_rim(from, end, place, scene);
+  }
   const bool is_on_one_body =
       !cable.closed && cable.start.body >= 0 && cable.end.body == cable.start.body &&
       std::ranges::all_of(cable.wraps,
@@ -343,6 +378,22 @@ void Reader::spread(SceneContent& to) {
   }
 }
 
+// Joints are cables in tables, and hinges two.
+void Reader::claim_joints(const json& joints) {
+  std::map<std::string, std::size_t> names;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const std::string name = joints[i]["name"].get<std::string>();
+    const auto cable = cable_names_.find(name);
+    const auto [other, is_new] = names.emplace(name, i);
+    const std::string whose = cable != cable_names_.end() ? fmt::format("/cables/{}", cable->second)
+                              : is_new                    ? ""
+                                       : fmt::format("/joints/{}", other->second);
+    if (whose.empty()) continue;
+    problem(fmt::format("/joints/{}/name", i),
+            fmt::format("\"{}\" is the name of {} already", name, whose));
+  }
+}
+
 // What joints become has names of its own in tables.
 void Reader::read_joints(const json& file, SceneContent& to) {
   if (!problems_.empty()) return;
@@ -355,9 +406,9 @@ void Reader::read_joints(const json& file, SceneContent& to) {
     const std::string& name = to.scene.cables[c].name;
     const auto [other, is_new] = cable_names_.emplace(name, static_cast<int>(c));
     if (is_new) continue;
-    problem("/joints",
-            fmt::format("a part of a joint is called \"{}\" in tables, as something else "
-                        "is; choose another name",
+    problem(place_of_part(file, name),
+            fmt::format("a part of it is called \"{}\" in tables, as something else is; choose "
+                        "another name",
                         name));
   }
 }
@@ -393,6 +444,7 @@ SceneContent Reader::read(const json& file) {
     to.look.bodies.push_back(look);
   }
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
+  claim_joints(file.value("joints", json::array()));
   spread(to);
   read_joints(file, to);
   const auto baseline = configuration_from_string(file["baseline"]["method"].get<std::string>());

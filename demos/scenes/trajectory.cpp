@@ -66,6 +66,16 @@ int last_frame(const Scene& scene, std::optional<double> until) {
   return static_cast<int>(std::floor(frames * (1.0 + 1e-12)));
 }
 
+// Rows are frames; a time between two of them is not what the table ends with.
+void tell_last_time(const SceneFile& file, const Scene& scene, std::optional<double> until,
+                    int last) {
+  if (!until) return;
+  const double time = static_cast<double>(last) / scene.frames_per_second;  // s
+  if (std::abs(time - *until) <= 1e-9 * *until) return;
+  fmt::print(stderr, "{}: note: --until {} s lies between two frames; the last row is of {} s\n",
+             file.path.string(), *until, time);
+}
+
 }  // namespace
 
 void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
@@ -79,7 +89,9 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
     }
   }
   const Scene scene = with_timing(file.scene, options.timing);
+  check_error_is_heeded(options.timing, {&options.configuration, 1});
   const int last = last_frame(scene, options.until);
+  if (!options.quiet) tell_last_time(file, scene, options.until, last);
   Player player(file, scene, options.configuration);
   OutputFile bodies(options.out);
   bodies.write("time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n");

@@ -2,6 +2,7 @@
 // Inputs and reports of studies of three methods and more.
 #include <gsl/gsl_randist.h>
 
+#include "analysis/blocks.h"
 #include "analysis/comparisons_table.h"
 #include "analysis/gsl_support.h"
 #include "analysis/levels_table.h"
@@ -44,6 +45,19 @@ std::string answers_csv(int participants, bool reversed = false) {
   }
   if (reversed) std::ranges::reverse(lines);
   return "participant,demonstration,left,right,choice\n" + fmt::format("{}", fmt::join(lines, ""));
+}
+
+TEST(Comparisons, SentencesSayHowSmallAProbabilityIs) {
+  EXPECT_EQ(p_equation(0.04551), "p = 0.0455");
+  EXPECT_EQ(p_equation(0.0), "p < 1e-300");
+  const test::TemporaryFolder folder;
+  const ComparisonsTable table =
+      read_comparisons({folder.write("counts.csv",
+                                     "left,right,left_wins,right_wins\na,b,9000000,1000\n"
+                                     "b,c,9000000,1000\na,c,9000000,1000\n")},
+                       {});
+  const std::string words = scale_words(analyse_scale(table, {}), table);
+  EXPECT_NE(words.find("independent, p < 1e-300)"), std::string::npos) << words;
 }
 
 TEST(Comparisons, ReadsCountsOfThePublishedTable) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <ostream>
 
 #include "base/durable_file.h"
@@ -10,6 +11,7 @@
 #include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/read_file.h"
+#include "base/why_not_written.h"
 #include "tests/base/temporary_folder.h"
 
 namespace pinchlab {
@@ -100,6 +102,29 @@ TEST(Folders, AreMadeWithThoseAboveOrSayWhyNot) {
   EXPECT_EQ(mistake(file + "/below"),
             file + "/below: the folder cannot be made: Not a directory; name another one");
   EXPECT_EQ(mistake(""), "the name of a folder is empty; give it one, or . for this one");
+}
+
+TEST(Folders, ThatCannotBeWrittenIntoSayWhyAndTheCure) {
+  EXPECT_EQ(why_not_written(EACCES), "Permission denied; name a place that you may write to");
+  EXPECT_EQ(why_not_written(ENOSPC), "No space left on device");
+  // Nobody makes a file there, not even root.
+  const std::string message =
+      message_of<std::runtime_error>([] { const StagingFolder staging("/proc/self"); });
+  EXPECT_TRUE(message.starts_with("/proc/self: cannot be written into: ")) << message;
+  EXPECT_EQ(message_of<std::runtime_error>([] { const FolderLock lock("/proc/none", ""); }),
+            "/proc/none: the folder cannot be used: No such file or directory; name another one");
+}
+
+// A disk that is full, as the kernel plays one.
+TEST(Results, OfEachKindSayAlikeThatTheDiskIsFull) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const std::string text(100'000, 'x');
+  EXPECT_EQ(message_of<std::runtime_error>([&] { write_result("/dev/full", text); }),
+            "/dev/full: cannot be written: No space left on device");
+  EXPECT_TRUE(fs::is_character_file("/dev/full"));
+  const TemporaryFolder folder;
+  write_result(folder.path() / "file", text);
+  EXPECT_EQ(read_whole(folder.path() / "file"), text);
 }
 
 TEST(StagingFolder, FilesAppearTogetherOrNotAtAll) {

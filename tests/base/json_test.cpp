@@ -64,6 +64,10 @@ TEST(JsonObject, TellsThePlace) {
             "f.json: /top/a~1b: must be a whole number from 0 to 2");
   EXPECT_EQ(message_of<InputError>([&] { object.need("txt"); }),
             "f.json: /top: key `txt` is missing (did you mean `text`?)");
+  EXPECT_TRUE(object.has("text"));
+  EXPECT_EQ(message_of<InputError>([&] { object.need("txt"); }),
+            "f.json: /top: key `txt` is missing")
+      << "what is known by now is meant as it is";
   EXPECT_EQ(message_of<InputError>([&] { object.array("list", 1); }),
             "f.json: /top/list: more than 1 entries");
   EXPECT_THROW(JsonObject(value["list"], "f.json", "/list"), InputError);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "base/counted.h"
 #include "base/csv.h"
 #include "base/did_you_mean.h"
 #include "base/progress.h"
@@ -12,6 +13,12 @@ namespace pinchlab {
 namespace {
 
 using Words = std::vector<std::string>;
+
+TEST(Counted, OneIsNoPlural) {
+  EXPECT_EQ(counted(1, "trial"), "1 trial");
+  EXPECT_EQ(counted(0, "trial"), "0 trials");
+  EXPECT_EQ(counted(2L, "match", "es"), "2 matches");
+}
 
 TEST(Csv, QuotesWhatRfc4180Asks) {
   EXPECT_EQ(csv_cell("plain text"), "plain text");
@@ -28,6 +35,8 @@ TEST(DidYouMean, TheNearestWordOrNone) {
   EXPECT_EQ(nearest_word("mass", keys), "mass_kg") << "the unit is missing";
   EXPECT_EQ(nearest_word("radiusm", keys), "radius_m") << "one letter is missing";
   EXPECT_EQ(nearest_word("colour", keys), "");
+  EXPECT_EQ(nearest_word("min", Words{"kind", "max"}), "") << "two of three letters";
+  EXPECT_EQ(nearest_word("mni", Words{"kind", "min"}), "min");
   EXPECT_EQ(nearest_word("", keys), "");
   EXPECT_EQ(nearest_word("x", Words{"y"}), "") << "all of it would be mistyped";
   EXPECT_EQ(nearest_word("mass_kg", {}), "");

@@ -267,7 +267,7 @@ TEST(Batch, MakesOnlyWhatIsMissingOrOutOfDate) {
 TEST(Batch, WhatAnOptionChangedIsMadeAnew) {
   const fs::path folder = folder_with_demos();
   std::ofstream(folder / "theme.json") << R"({"background": "#ff0000"})";
-  const std::vector<std::string> short_scene = {"demos/02-short.json", "--method", "cable"};
+  const std::vector<std::string> short_scene = {"demos/02-short.json", "--method", "pinch"};
   const auto made = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = short_scene;
     all.insert(all.end(), more.begin(), more.end());

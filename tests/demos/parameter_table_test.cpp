@@ -77,10 +77,13 @@ TEST(ParameterTable, RangesGiveAllCombinations) {
 TEST(ParameterTable, RangesMustBeRanges) {
   const std::string form = " is not NAME=A,B,C or NAME=FROM:TO:COUNT, such as squeeze=0:1:5";
   for (const char* wrong :
-       {"squeeze", "squeeze=", "squeeze=0:1", "squeeze=0:1:1", "squeeze=0:x:3", "squeeze=1,,2",
+       {"squeeze", "squeeze=", "squeeze=0:1", "squeeze=0:1:0", "squeeze=0:x:3", "squeeze=1,,2",
         "squeeze=0:1:2.5", "squeeze=nan:1:3", "squeeze=0:1:3:4"}) {
     EXPECT_EQ(ranges_error({wrong}), wrong + form);
   }
+  EXPECT_EQ(ranges_error({"squeeze=0:1:1"}),
+            "squeeze=0:1:1: a range has 2 to 100000 values, its ends among them; one value is "
+            "squeeze=0");
   EXPECT_EQ(ranges_error({"a=1", "a=2"}), "a=2: column `a` is there twice");
   EXPECT_EQ(ranges_error({"a b=1"}),
             "a b=1: `a b` cannot name a column: use letters, digits and _");

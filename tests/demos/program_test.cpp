@@ -112,6 +112,9 @@ TEST(Program, UnknownWordsAreNamedWithTheirCure) {
       {{"study", "export", "--answers", "a", "--cvs", "-"},
        "pinchlab study export: no option is called --cvs (did you mean `--csv`?); pinchlab study "
        "export --help lists what there is\n"},
+      {{"simulate", "--", "01-small.json", "--out", "a.csv"},
+       "pinchlab simulate: --out stands where nothing reads it; its place is after the command and "
+       "before any --\n"},
   };
   for (const auto& [arguments, message] : unknown) {
     const RunResult run = run_program(folder, arguments);

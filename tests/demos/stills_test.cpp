@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "demos/baseline.h"
 #include "demos/playback.h"
 #include "demos/scenes/player.h"
 #include "demos/scenes/theme.h"
@@ -114,6 +115,20 @@ TEST(Baseline, NoneThatJittersIsRecommended) {
   EXPECT_NE(run.out.find("\nRecommended: pinch_no_contact. "), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("\"baseline\": {\"method\":\"pinch_no_contact\""), std::string::npos)
       << run.out;
+}
+
+// Its steps would have to be divided, which those of plain joints are not.
+TEST(Baseline, NoneThatMissesTheScenesErrorIsRecommended) {
+  const SceneFile file = read_scene_file(PINCHLAB_SOURCE_DIR "/demos/more/09-crate.json");
+  ASSERT_EQ(file.scene.error, 0.0005);
+  BaselineAdvice advice = advise_baseline(file);
+  EXPECT_EQ(advice.recommended, file.scene.baseline);
+  EXPECT_EQ(advice.recommended, Method::pinch_no_contact);
+  EXPECT_GT(advice.changed_by_half_steps, 0.0005);
+  SceneFile careless = file;
+  careless.scene.error = 0.0;
+  advice = advise_baseline(careless);
+  EXPECT_EQ(advice.recommended, Method::cable);
 }
 
 // Its scenery is set before any frame of it is played.

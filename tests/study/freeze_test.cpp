@@ -189,9 +189,66 @@ TEST(Freeze, OnlyBeforeTheFirstParticipant) {
   FreezeOptions options = freeze_options(folder);
   options.pilot = folder / "pilot";
   EXPECT_EQ(why(options), "");
-  EXPECT_NE(read_whole(folder / "out" / "preregistration.md").find("A pilot with 1 participants"),
-            std::string::npos);
+  EXPECT_NE(
+      read_whole(folder / "out" / "preregistration.md").find("A pilot with 1 participant went"),
+      std::string::npos);
   EXPECT_NE(why(freeze_options(folder)).find("frozen here already"), std::string::npos);
+}
+
+TEST(Freeze, AnotherStudysDesignIsNotOverwritten) {
+  const fs::path folder = scratch_folder();
+  freeze(freeze_options(folder));
+  const std::string design = read_whole(folder / "out" / "design.json");
+  const std::string text = read_whole(folder / "out" / "preregistration.md");
+  const auto why = [&](const FreezeOptions& options) -> std::string {
+    try {
+      freeze(options);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto is_left_alone = [&] {
+    return read_whole(folder / "out" / "design.json") == design &&
+           read_whole(folder / "out" / "preregistration.md") == text;
+  };
+  FreezeOptions other = freeze_options(folder);
+  other.answers = folder / "other";
+  EXPECT_EQ(why(other), (folder / "out" / "design.json").string() +
+                            ": is of another design, and may be registered; name another --out");
+  EXPECT_FALSE(fs::exists(folder / "other"));
+  EXPECT_TRUE(is_left_alone());
+
+  // Broken off before the last file: the next run ends it with the text that is there.
+  const auto break_off = [&] { fs::remove(design_path(folder / "answers")); };
+  break_off();
+  FreezeOptions later = freeze_options(folder);
+  later.utc = "2021-01-01T00:00:00Z";
+  EXPECT_EQ(why(later), "");
+  EXPECT_TRUE(is_left_alone());
+  EXPECT_EQ(read_whole(design_path(folder / "answers")), design);
+  // With other rules it is another design.
+  break_off();
+  json rules = good_rules;
+  rules["exclusions"]["focus_lost_over"] = 6;
+  EXPECT_NE(why(freeze_options(folder, rules)).find("is of another design"), std::string::npos);
+  // Nor is a text overwritten that somebody has written on.
+  write_text(folder / "out" / "preregistration.md", text + "\nMore.\n");
+  EXPECT_NE(why(later).find("preregistration.md: is of another design"), std::string::npos);
+  EXPECT_FALSE(fs::exists(design_path(folder / "answers")));
+}
+
+TEST(Freeze, ARuleAboutChecksNeedsChecks) {
+  const fs::path folder = scratch_folder();
+  json rules = good_rules;
+  rules["exclusions"]["failed_checks_over"] = 1;
+  FreezeOptions options = freeze_options(folder, rules);
+  EXPECT_THROW(check_rules(options), std::invalid_argument);
+  AttentionCheck check;
+  check.name = "frozen";
+  options.config.attention_checks = {check};
+  EXPECT_NO_THROW(check_rules(options));
+  EXPECT_NO_THROW(check_rules(freeze_options(folder)));
 }
 
 TEST(Freeze, ThePreregistrationTellsTheDesignsFigures) {

@@ -256,7 +256,8 @@ TEST(Questionnaire, SimulatedParticipantsAnswer) {
   const fs::path folder = scratch_folder();
   write_text(folder / "truth.json", R"({"format": "pinchlab-truth 1"})");
   Desk desk(asking_desk(folder));
-  simulate(desk, read_truth(folder / "truth.json"), {.participants = 5, .seed = 3, .progress = {}});
+  simulate(desk, read_truth(folder / "truth.json"),
+           {.participants = 5, .seed = 3, .begin = {}, .progress = {}});
   for (const fs::path& path : answer_files(folder / "answers")) {
     const json file = json::parse(read_whole(path));
     EXPECT_EQ(file["questionnaires"]["before"].size(), 2U);

@@ -4,9 +4,11 @@
 #include "study/simulate.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "base/answer_file.h"
@@ -195,8 +197,9 @@ TEST(Simulate, AStudyOfTwoMethodsFindsTheShares) {
   run(folder, "study export --answers answers --csv answers.csv");
   run(folder, "analyse answers.csv --no-figures --bootstrap 199 --out again");
   const json again = json::parse(read_whole(folder / "again/report.json"));
-  for (const char* key : {"demonstrations", "pooled", "side_bias", "order_effect"})
+  for (const char* key : {"demonstrations", "pooled", "side_bias", "order_effect", "answer"})
     EXPECT_EQ(again[key], report[key]) << key;
+  EXPECT_TRUE(again["answer"].get<std::string>().starts_with("Answers of a pilot. "));
 }
 
 // Whatever is asked besides the choice: the table of answers reads back.
@@ -246,7 +249,7 @@ TEST(Simulate, NamesThatTheStudyDoesNotHaveAreRefused) {
   const auto why = [&](const Truth& truth) -> std::string {
     try {
       simulate(desk, truth, {});
-    } catch (const std::invalid_argument& error) {
+    } catch (const InputError& error) {
       return error.what();
     }
     return "";
@@ -254,15 +257,15 @@ TEST(Simulate, NamesThatTheStudyDoesNotHaveAreRefused) {
   Truth truth;
   truth.shares = {{"01-fisrt", 0.9}};
   EXPECT_EQ(why(truth),
-            "the truth's `shares`: the study has no demonstration `01-fisrt` (did you mean "
+            "truth: /shares/01-fisrt: the study has no demonstration of this name (did you mean "
             "`01-first`?)");
   truth.shares = {{"01-first", 0.9}};
   EXPECT_EQ(why(truth), "");
   truth.methods = {{"pinch", 1.0}};
-  EXPECT_EQ(why(truth), "the truth's `methods`: the study has no method `pinch`");
+  EXPECT_EQ(why(truth), "truth: /methods/pinch: the study has no method of this name");
   truth.methods.clear();
   truth.series["squeeze"];
-  EXPECT_EQ(why(truth), "the truth's `series`: the study has no series `squeeze`");
+  EXPECT_EQ(why(truth), "truth: /series/squeeze: the study has no series of this name");
 }
 
 TEST(Simulate, TruthsAreCheckedWholly) {
@@ -291,7 +294,93 @@ TEST(Simulate, TruthsAreCheckedWholly) {
   options.config.methods = {"a", "b", "c"};
   options.config.demonstrations = {"x"};
   Desk desk(std::move(options));
-  EXPECT_THROW(simulate(desk, Truth{}, SimulationOptions{}), std::invalid_argument);
+  EXPECT_THROW(simulate(desk, Truth{}, SimulationOptions{}), InputError);
+}
+
+// By number, all that a participant answered: names and times are new in each run.
+std::map<int, std::string> answers_by_number(const fs::path& answers) {
+  std::map<int, std::string> all;
+  for (const fs::path& path : answer_files(answers)) {
+    json file = read_answer_json(path);
+    for (json& trial : file["trials"]) trial.erase("shown_utc");
+    EXPECT_TRUE(all.emplace(file["participant_number"], file["trials"].dump()).second);
+  }
+  return all;
+}
+
+TEST(Simulate, AnInterruptedRunIsContinuedToTheSameAnswers) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder / "clips");
+  write_text(folder / "study.json",
+             json{{"format", "pinchlab-study 1"}, {"demonstrations", demonstrations}}.dump());
+  write_text(folder / "truth.json", json{{"format", "pinchlab-truth 1"}, {"spread", 1}}.dump());
+  const std::string line = "study simulate --clips clips --truth truth.json --config study.json ";
+  run(folder, line + "--answers whole --participants 6 --seed 4");
+  const std::map<int, std::string> whole = answers_by_number(folder / "whole");
+  ASSERT_EQ(whole.size(), 6U);
+  // As if killed: two have finished, and one has answered a part.
+  run(folder, line + "--answers parts --participants 2 --seed 4");
+  {
+    DeskOptions options = desk_options(folder);
+    options.answers = folder / "parts";
+    options.seed = 4;
+    options.config.is_pilot = true;
+    options.config.simulated_by = read_truth(folder / "truth.json").sha256;
+    Desk desk(std::move(options));
+    const std::string token = desk.start("", "browser");
+    desk.show(token, 0);
+    desk.answer(token, parse_answer(answer_body(0)));
+  }
+  run(folder, line + "--answers parts --participants 6 --seed 4");
+  EXPECT_EQ(answers_by_number(folder / "parts"), whole);
+  EXPECT_EQ(read_whole(folder / "out.txt"),
+            "6 simulated participants, 2 of them from before; answers in parts\n");
+  run(folder, line + "--answers parts --participants 6 --seed 4");
+  EXPECT_EQ(answers_by_number(folder / "parts"), whole);
+}
+
+// Runs the program, which has to fail with this exit code; what it says.
+std::string refusal(const fs::path& folder, const std::string& command, int exit_code) {
+  const std::string line = "cd '" + folder.string() + "' && '" + PINCHLAB_PROGRAM + "' " + command +
+                           " > out.txt 2> err.txt";
+  const int status = std::system(line.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == exit_code) << command;
+  EXPECT_EQ(read_whole(folder / "out.txt"), "");
+  return read_whole(folder / "err.txt");
+}
+
+TEST(Simulate, AFolderHoldsAnswersByOneTruth) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder / "clips");
+  write_text(folder / "study.json",
+             json{{"format", "pinchlab-study 1"}, {"demonstrations", demonstrations}}.dump());
+  write_text(folder / "truth.json", json{{"format", "pinchlab-truth 1"}}.dump());
+  write_text(folder / "other.json", json{{"format", "pinchlab-truth 1"}, {"left", 1}}.dump());
+  write_text(folder / "wrong.json",
+             json{{"format", "pinchlab-truth 1"}, {"shares", {{"01-fisrt", 0.9}}}}.dump());
+  const std::string line =
+      "study simulate --clips clips --config study.json --participants 2 --answers ";
+  run(folder, line + "answers --truth truth.json --seed 4");
+  EXPECT_EQ(refusal(folder, line + "answers --truth other.json --seed 4", 1),
+            "answers: was simulated by another truth; use another --answers\n");
+  EXPECT_EQ(refusal(folder, line + "answers --truth truth.json", 1),
+            "answers: the study in this folder has the seed 4, not 1; say --seed 4, or use another "
+            "--answers\n");
+  EXPECT_EQ(refusal(folder, line + "new --truth wrong.json", 1),
+            "wrong.json: /shares/01-fisrt: the study has no demonstration of this name (did you "
+            "mean `01-first`?)\n");
+  EXPECT_FALSE(fs::exists(folder / "new"));
+  // People in a trial run are nobody's simulation.
+  DeskOptions options = desk_options(folder);
+  options.config.is_pilot = true;
+  options.seed = 4;
+  EXPECT_THROW(Desk{std::move(options)}, std::runtime_error);
+  options = desk_options(folder);
+  options.config.is_pilot = true;
+  options.answers = folder / "people";
+  { Desk desk(std::move(options)); }
+  EXPECT_EQ(refusal(folder, line + "people --truth truth.json --seed 7", 1),
+            "people: is not of simulated participants; use another --answers\n");
 }
 
 }  // namespace

@@ -191,7 +191,7 @@ TEST(TrialOptions, SimulatedGradesAreAnalysed) {
   {
     Desk desk(asking_desk(folder));
     simulate(desk, read_truth(folder / "truth.json"),
-             {.participants = 60, .seed = 5, .progress = {}});
+             {.participants = 60, .seed = 5, .begin = {}, .progress = {}});
   }
   const analysis::AnswersTable table = analysis::read_answers({folder / "answers"}, {});
   const analysis::Report report = analysis::analyse_table(table, {.bootstrap = 99});

@@ -92,7 +92,7 @@ const BadScene bad_scenes[] = {
     {"/bodies/0/position_m", R"({"x": 0, "y": 0})",
      "s.json: /bodies/0/position_m: must be a list of two numbers, [x, y]"},
     {"/bodies/0/cable_friction", R"("none")",
-     "s.json: /bodies/0/cable_friction: must be a number or \"no_slip\", not a string"},
+     "s.json: /bodies/0/cable_friction: must be 0 to 100 or \"no_slip\", not \"none\""},
     {"/cables/0/closed", "1", "s.json: /cables/0/closed: must be true or false, not a number"},
     {"/cables/0/start", R"("left weight")",
      "s.json: /cables/0/start: must be an object, not a string"},
@@ -229,6 +229,10 @@ const BadScene bad_scenes[] = {
     // Walls and view
     {"/walls/0/to_m", "[-3, -4]",
      "s.json: /walls/0/to_m: must differ from from_m: the wall's length is zero or nearly so"},
+    {"/view", R"("fill")",
+     "s.json: /view: must be \"fit\" or an object with low_m and high_m, not \"fill\""},
+    {"/view", "7",
+     "s.json: /view: must be \"fit\" or an object with low_m and high_m, not a number"},
     {"/view/high_m", "[2.5, -4.2]",
      "s.json: /view/high_m/1: must be at least 0.001 above the one in low_m"},
 };

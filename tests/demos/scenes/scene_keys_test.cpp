@@ -162,6 +162,27 @@ TEST(SceneErrors, LayersBelongToARim) {
   EXPECT_EQ(error(R"({"body": "wheel", "rim_angle_rad": 3, "layers": true})"), "no error");
 }
 
+TEST(SceneErrors, ARimNeedsTheCableRoundIt) {
+  const auto error = [](const char* end, const char* rim, const char* wraps) {
+    json scene = small_scene();
+    scene["cables"][0][end] = json::parse(rim);
+    scene["cables"][0]["wraps"] = json::parse(wraps);
+    return error_of(scene.dump());
+  };
+  const char* const wheel = R"([{"body": "wheel", "turn": "clockwise"}])";
+  EXPECT_EQ(error("start", R"({"body": "wheel", "rim_angle_rad": 3})", wheel), "no error");
+  EXPECT_EQ(error("end", R"({"body": "wheel", "rim_angle_rad": 3})", wheel), "no error");
+  EXPECT_EQ(error("start", R"({"body": "wheel", "rim_angle_rad": 3})", "[]"),
+            "s.json: /cables/0/start/rim_angle_rad: needs the cable to run round \"wheel\": the "
+            "first of its wraps must be on that body; add it, or give point_m instead");
+  EXPECT_EQ(error("end", R"({"body": "right weight", "rim_angle_rad": 3})", wheel),
+            "s.json: /cables/0/end/rim_angle_rad: needs the cable to run round \"right weight\": "
+            "the last of its wraps must be on that body; add it, or give point_m instead");
+  EXPECT_EQ(error("end", R"({"body": "right wieght", "rim_angle_rad": 3})", wheel),
+            "s.json: /cables/0/end/body: no body is called \"right wieght\" (did you mean \"right "
+            "weight\"?)");
+}
+
 json hanging_scene() {
   json scene = small_scene();
   scene["cables"] =
@@ -213,7 +234,7 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
             "s.json: /cables/0/node_tolerance_m: only cables that neither stretch nor resist "
             "bending adapt their number of nodes; leave out the stiffness, or the tolerance");
   EXPECT_EQ(error(R"({"node_tolerance_m": 0.002, "nodes": 15,
-                      "end": {"world_m": null, "body": "wheel", "rim_angle_rad": 3}})")
+                      "end": {"world_m": null, "body": "wheel", "point_m": [0.2, 0]}})")
                 .substr(0, 23),
             "s.json: /cables/0/end: ");
   json many = hanging_scene();
@@ -269,10 +290,31 @@ TEST(SceneErrors, JointsSayWhatTheyLack) {
   EXPECT_EQ(joint_error(R"({"kind": "hinge", "start": null, "end": null, "body": "wheel",
                             "other": "wheel", "at_m": [0, 0]})"),
             at + ": both of its ends are on one body; let one be elsewhere");
-  EXPECT_EQ(
-      joint_error(R"({"name": "rope"})"),
-      "s.json: /joints: a part of a joint is called \"rope\" in tables, as something else is; "
-      "choose another name");
+  EXPECT_EQ(joint_error(R"({"name": "rope"})"),
+            "s.json: /joints/0/name: \"rope\" is the name of /cables/0 already");
+  EXPECT_EQ(joint_error(R"({"kind": "hinge", "name": "rope", "start": null, "end": null,
+                            "body": "wheel", "at_m": [0, 0]})"),
+            at + "/name: \"rope\" is the name of /cables/0 already");
+}
+
+TEST(SceneErrors, PartsOfJointsHaveNamesOfTheirOwn) {
+  json scene = small_scene();
+  json pin = {{"name", "pin"}, {"kind", "hinge"}, {"body", "left weight"}, {"at_m", {-0.55, -2}}};
+  json other = pin;
+  other["body"] = "right weight";
+  scene["joints"] = {pin, other};
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /joints/1/name: \"pin\" is the name of /joints/0 already");
+  scene["cables"][0]["name"] = "pin:y";
+  scene["joints"] = json::array({pin});
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /joints/0/name: a part of it is called \"pin:y\" in tables, as something else "
+            "is; choose another name");
+  scene["cables"][0]["name"] = "right weight:low";
+  scene["bodies"][2]["travel_m"] = {-1, 1};
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /bodies/2/name: a part of it is called \"right weight:low\" in tables, as "
+            "something else is; choose another name");
 }
 
 TEST(SceneErrors, TravelEndsOnEitherSideOfTheStart) {

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that would do nothing, and values that are half read, are refused by name.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/demos/scene_folders.h"
+
+namespace pinchlab {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BadUse {
+  std::vector<std::string> command;
+  const char* message;  // a part of it
+};
+
+const BadUse bad_uses[] = {
+    // Nothing reads it
+    {{"simulate", "01-small.json", "--out", "a.csv", "--method", "cable", "--error", "0.001"},
+     "--error: steps of the method cable are not divided"},
+    {{"simulate", "01-small.json", "--out", "a.csv", "--method", "thesis", "--error", "0.001"},
+     "--error: steps of the method thesis are not divided"},
+    {{"render", "01-small.json", "--method", "cable", "--error", "0.001"},
+     "--error: steps of the method cable are not divided"},
+    {{"stopping", "--participants", "20,40", "--share", "0.7", "--bayes-factor", "6"},
+     "--bayes-factor: goes with --rule bayes-factor"},
+    {{"stopping", "--participants", "20,40", "--share", "0.7", "--rule", "bayes-factor", "--alpha",
+      "0.01"},
+     "--alpha: has no effect on --rule bayes-factor"},
+    {{"stopping", "--participants", "16,32", "--share", "0.7", "--rule", "fixed"},
+     "--participants: --rule fixed looks once"},
+    {{"stopping", "--participants", "16,32", "--share", "0.7", "--icc", "0.1"},
+     "--icc: is about several answers of one participant"},
+    {{"power", "--share", "0.7", "--icc", "0.1"},
+     "--icc: is about several answers of one participant"},
+    {{"still", "01-small.json", "--time", "1", "--neutral", "--out", "x.png"},
+     "--neutral: is about the labels of a sheet"},
+    {{"render", "01-small.json", "--only-report", "--side-by-side"}, "--side-by-side"},
+    {{"render", "01-small.json", "--only-report", "--attention-checks"}, "--attention-checks"},
+    {{"render", "01-small.json", "--only-report", "--codec", "vp9"}, "--codec"},
+    {{"render", "01-small.json", "--only-report", "--freeze", "1:0.5"}, "--freeze"},
+    // Half read
+    {{"still", "01-small.json", "--time", "0,,1", "--out", "x.png"}, "--time must be 0 to 2 s"},
+    {{"still", "01-small.json", "--time", "0,", "--out", "x.png"}, "--time must be 0 to 2 s"},
+    {{"stopping", "--participants", "16,,32", "--share", "0.7"}, "--participants: 16,,32 is not"},
+    {{"study", "serve", "--clips", "clips", "--answers", "answers", "--name", "bad name"},
+     "--name: bad name is no name of a computer"},
+    {{"study", "serve", "--clips", "clips", "--answers", "answers", "--name", "https://a.org"},
+     "--name: https://a.org is no name of a computer"},
+    // Without the option's name nobody knows which is meant
+    {{"render", "01-small.json", "--slow", "1"}, "--slow: 1 is not FROM-TO:FACTOR"},
+    {{"render", "01-small.json", "--freeze", "1"}, "--freeze: 1 is not TIME:SECONDS"},
+    {{"sweep", "01-small.json", "a=0:1:2", "--out", "set", "--shard", "3"},
+     "--shard: 3 is not I/N"},
+    {{"sweep", "01-small.json", "a=0:1:1", "--out", "set"},
+     "a=0:1:1: a range has 2 to 100000 values, its ends among them; one value is a=0"},
+};
+
+TEST(Usage, WhatWouldDoNothingIsRefused) {
+  const fs::path folder = folder_with_scene();
+  for (const BadUse& bad : bad_uses) {
+    const RunResult run = run_program(folder, bad.command);
+    const std::string command = fmt::format("{}", fmt::join(bad.command, " "));
+    EXPECT_EQ(run.exit_code, 2) << command << "\n" << run.err;
+    EXPECT_EQ(run.out, "") << command;
+    EXPECT_NE(run.err.find(bad.message), std::string::npos) << command << "\n" << run.err;
+  }
+  for (const char* made : {"a.csv", "x.png", "clips", "set", "answers"}) {
+    EXPECT_FALSE(fs::exists(folder / made)) << made;
+  }
+}
+
+TEST(Usage, WhatIsOfUseIsNot) {
+  const fs::path folder = folder_with_scene();
+  const std::vector<std::vector<std::string>> good = {
+      {"simulate", "01-small.json", "--out", "a.csv", "--method", "cable", "--error", "0"},
+      {"simulate", "01-small.json", "--out", "a.csv", "--error", "0.001"},
+      {"still", "01-small.json", "--time", "0,1", "--neutral", "--size", "64x64", "--out", "x.png"},
+      {"stopping", "--participants", "40", "--share", "0.7", "--rule", "fixed"},
+      {"power", "--share", "0.8", "--trials", "2", "--icc", "0.1"}};
+  for (const auto& command : good) {
+    EXPECT_EQ(run_program(folder, command).exit_code, 0)
+        << fmt::format("{}", fmt::join(command, " "));
+  }
+}
+
+TEST(Usage, ATimeBetweenTwoFramesIsSaidToBe) {
+  const fs::path folder = folder_with_scene();  // 30 frames a second
+  const auto err = [&](const char* until) {
+    return run_program(folder, {"simulate", "01-small.json", "--out", "a.csv", "--until", until})
+        .err;
+  };
+  EXPECT_EQ(err("0.5"), "");
+  EXPECT_EQ(err("0.51"),
+            "01-small.json: note: --until 0.51 s lies between two frames; the last row is of 0.5 "
+            "s\n");
+  EXPECT_NE(text_of(folder / "a.csv").find("\n0.5,"), std::string::npos);
+}
+
+TEST(Usage, AStoppingRuleGoesToStandardOutput) {
+  const fs::path folder = scratch_folder();
+  const RunResult run =
+      run_program(folder, {"stopping", "--participants", "20,40", "--share", "0.7", "--json", "-"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(nlohmann::json::parse(run.out)["format"], "pinchlab-stopping 1");
+  EXPECT_FALSE(fs::exists(folder / "-"));
+}
+
+TEST(Usage, AdviceIsAResultWhateverItSays) {
+  const fs::path folder = scratch_folder();
+  const RunResult run =
+      run_program(folder, {"advise", PINCHLAB_SOURCE_DIR "/demos/06-windlass.json", "--error",
+                           "1e-12", "--time", "0.05"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "");
+  EXPECT_NE(run.out.find("An error of 1e-12 m is below what this can vouch for"), std::string::npos)
+      << run.out;
+}
+
+TEST(Usage, HelpPromisesWhatThereIs) {
+  const fs::path folder = scratch_folder();
+  EXPECT_NE(run_program(folder, {"bench", "--help"}).out.find("where there is something to"),
+            std::string::npos);
+  for (const char* command : {"serve", "freeze", "simulate"}) {
+    EXPECT_NE(run_program(folder, {"study", command, "--help"})
+                  .out.find("missing ones of demonstrations are rendered"),
+              std::string::npos)
+        << command;
+  }
+}
+
+TEST(Usage, ATemplateIsSaidToBeOne) {
+  const fs::path folder = scratch_folder();
+  fs::copy(PINCHLAB_SOURCE_DIR "/demos/sweep/drop.json", folder / "drop.json");
+  const RunResult run = run_program(folder, {"simulate", "drop.json", "--out", "-"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(
+      run.err.starts_with("drop.json: is a template with placeholders (${...}), whose values "
+                          "`pinchlab sweep` and `pinchlab still --table` give\n"))
+      << run.err;
+}
+
+TEST(Usage, TheDayOfPublicationIsNotGuessed) {
+  const fs::path folder = scratch_folder();
+  fs::copy(PINCHLAB_SOURCE_DIR "/demos/sweep/drop.json", folder / "drop.json");
+  ::setenv("SOURCE_DATE_EPOCH", "abc", 1);
+  const RunResult run = run_program(
+      folder, {"sweep", "drop.json", "squeeze=0,1", "mass=1", "height=0.9", "--out", "set"});
+  ::unsetenv("SOURCE_DATE_EPOCH");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err,
+            "SOURCE_DATE_EPOCH of the environment: abc is not a whole number of seconds since "
+            "1970\n");
+  EXPECT_FALSE(fs::exists(folder / "set"));
+}
+
+// Of results of all kinds, however long.
+TEST(Usage, AFullDiskIsToldInOneWay) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const fs::path folder = folder_with_scene();
+  for (const char* command : {"manual", "completion bash", "study plan --participants 400 --seed 1",
+                              "power --share 0.7", "simulate 01-small.json --out -"}) {
+    fs::create_directories(folder / "demos");
+    fs::copy(folder / "01-small.json", folder / "demos" / "01-small.json",
+             fs::copy_options::overwrite_existing);
+    const std::string line = fmt::format("cd '{}' && '{}' {} > /dev/full 2> err.txt",
+                                         folder.string(), PINCHLAB_PROGRAM, command);
+    EXPECT_NE(std::system(line.c_str()), 0) << command;
+    EXPECT_EQ(text_of(folder / "err.txt"),
+              "standard output: cannot be written: No space left on device\n")
+        << command;
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab
