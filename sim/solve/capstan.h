@@ -71,6 +71,16 @@ inline double run_speed(const PartSystem& system, const CapstanScratch& capstan,
   return run >= 0 ? at(capstan.runs, run).speed : 0.0;
 }
 
+inline int sign(Slip slip) {
+  return static_cast<int>(slip);
+}
+
+/// Whether a segment bears more force than `tolerance` (N s): tension, or what it is pushed by in a
+/// pinch.
+inline bool bears(const Row& row, double tolerance) {
+  return row.impulse > tolerance || (row.clamped && row.impulse < -tolerance);
+}
+
 /// Lists the runs of a part's cables that touch a body of finite friction; empty if none do.
 void find_runs(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                SolveScratch& scratch);
