@@ -3,15 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "base/at.h"
 #include "sim/compound.h"
+#include "sim/hanging.h"
+#include "sim/node_count.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -19,61 +21,6 @@ namespace {
 
 bool ends_on_mobile(const Scene& scene, const Attachment& end) {
   return end.body >= 0 && can_move(at(scene.bodies, end.body));
-}
-
-/// Directions of a chain's pieces at rest, from its start on. The tension of piece k is t_k = t_0 -
-/// sum of the weights before it, and the pieces l t_k / |t_k| add up to d: where the convex
-/// function sum l |t_k| - t_0 . d is least, which Newton's method finds.
-std::vector<Vec2> hanging_pieces(const std::vector<Vec2>& weights, double length, const Vec2& d) {
-  constexpr int most_rounds = 200;
-  const std::size_t pieces = weights.size() + 1;
-  Vec2 total = Vec2::Zero();
-  for (const Vec2& weight : weights) total += weight;
-  std::vector<Vec2> directions(pieces);
-  const auto value = [&](const Vec2& start) {
-    Vec2 tension = start;
-    double sum = tension.norm();
-    for (const Vec2& weight : weights) sum += (tension -= weight).norm();
-    return length * sum - start.dot(d);
-  };
-  // As if all its weight hung from the middle; a thousandth of the length where the ends meet, in
-  // which no tension is needed across.
-  Vec2 start = 0.5 * total +
-               total.norm() * d / std::max(d.norm(), 1e-3 * length * static_cast<double>(pieces));
-  for (int round = 0; round < most_rounds; ++round) {
-    Vec2 gradient = -d, tension = start;
-    Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-    for (std::size_t k = 0; k < pieces; ++k) {
-      const double norm = std::max(tension.norm(), 1e-300);  // N: nothing divides by zero
-      const Vec2 u = directions[k] = tension / norm;
-      gradient += length * u;
-      hessian += length / norm * (Eigen::Matrix2d::Identity() - u * u.transpose());
-      if (k < weights.size()) tension -= weights[k];
-    }
-    if (gradient.norm() <= 1e-15 * length * static_cast<double>(pieces)) break;
-    const Vec2 step = -hessian.inverse() * gradient;
-    if (!step.allFinite()) break;
-    const double before = value(start);
-    double share = 1.0;
-    while (share > 1e-12 && !(value(start + share * step) <= before)) share *= 0.5;
-    if (share <= 1e-12) break;
-    start += share * step;
-  }
-  return directions;
-}
-
-/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) /
-/// l^2, and a leapfrog is stable to omega h = 2.
-double shortest_that_bends(const Scene& scene, const Cable& cable) {
-  const double speed = std::sqrt(cable.bending_stiffness / cable.mass_per_metre);  // m^2/s
-  return std::sqrt(2.0 * step_length(scene) * speed);
-}
-
-/// m, of each piece, where the scene leaves it open.
-double shortest_piece(const Scene& scene, const Cable& cable, double length) {
-  const double wave = step_length(scene) * std::sqrt(scene.gravity.norm() * length);
-  return std::max({4.0 * cable.half_width, length / (most_nodes_chosen + 1.0), wave,
-                   1.1 * shortest_that_bends(scene, cable)});
 }
 
 void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
@@ -127,56 +74,41 @@ Body node_of(const Cable& cable, int number, const Vec2& position, double mass) 
   return node;
 }
 
-/// A power of two, as pieces become one in pairs.
-int count_adaptive_pieces(const Cable& cable, int pieces, const std::string& place) {
-  int power = 2;
-  while (2 * power <= pieces) power *= 2;
-  if (cable.nodes > 0 && power != pieces) {
-    throw SceneError(place + "/nodes",
-                     fmt::format("pieces of a cable whose number of nodes adapts become one in "
-                                 "pairs, so that it has 1, 3, 7, 15 and so on at most; {} or {}, "
-                                 "not {}",
-                                 power - 1, 2 * power - 1, cable.nodes));
-  }
-  return power;
+/// How far into the outline of a body the end is held (m); below 0 outside of it.
+double depth_of(const Scene& scene, const Attachment& end, int body) {
+  const Body& outline = at(scene.bodies, body);
+  const Vec2 from_centre = place_of(scene, end) - outline.position;
+  if (!is_polygon(outline)) return outline.radius - from_centre.norm();
+  return outline.corner_radius -
+         outside_of(outline.corners, turned(from_centre, -outline.angle)).distance;
 }
 
-/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
-/// can follow.
-int count_pieces(const Scene& scene, const Cable& cable, double length, const std::string& place) {
-  int pieces = cable.nodes > 0
-                   ? cable.nodes + 1
-                   : std::max(2, static_cast<int>(length / shortest_piece(scene, cable, length)));
-  if (cable.node_tolerance != 0.0) pieces = count_adaptive_pieces(cable, pieces, place);
-  const double piece = length / pieces;
-  if (piece <= 2.0 * cable.half_width) {
-    throw SceneError(
-        place + "/nodes",
-        fmt::format(
-            "pieces of {} between nodes are no longer than the cable is wide; at most {} nodes fit",
-            in_mm(piece), static_cast<int>(length / (2.0 * cable.half_width)) - 1));
-  }
-  if (const double least = shortest_that_bends(scene, cable); piece < least) {
-    throw SceneError(
-        place + "/nodes",
-        fmt::format("pieces of {} between nodes bend to and fro faster than {} steps a frame "
-                    "follow; at most {} nodes, or more steps a frame",
-                    in_mm(piece), scene.steps_per_frame,
-                    std::max(static_cast<int>(length / least) - 1, 1)));
-  }
-  return pieces;
+/// Of a cable whose number of nodes adapts pieces reach further than the nodes that they are made
+/// of, so that these may come back within the body's reach.
+double reach_of_pieces(const Scene& scene, const Attachment& end, int body) {
+  const Body& outline = at(scene.bodies, body);
+  return (place_of(scene, end) - outline.position).norm() + outline.radius;
 }
 
-/// Nodes that are nearer along the cable to the body that holds an end than that is large are never
-/// clear of it.
-void keep_off_end(Scene& scene, const NodeChain& chain, const Attachment& end, bool is_start) {
+/// Nodes that are nearer along the cable to the end than the outline that holds it reaches are
+/// never clear of that outline; nor is the node after them at the start, where the cable is bent.
+void keep_off_end(Scene& scene, const NodedCable& made, const Cable& whole, double piece,
+                  bool is_start) {
+  const Attachment& end = is_start ? whole.start : whole.end;
   if (end.body < 0) return;
+  const double half_width = whole.half_width;
+  const bool adapts = whole.node_tolerance != 0.0;
   for (const int body : outlines_of(scene, end.body)) {
-    const Body& outline = at(scene.bodies, body);
-    const double reach = (place_of(scene, end) - outline.position).norm() + outline.radius +
-                         at(scene.cables, chain.cable).half_width;
-    for (int i = 1; i < chain.pieces && i * chain.piece_length <= reach; ++i) {
-      keep_apart(scene, chain.first_body + (is_start ? i : chain.pieces - i) - 1, body);
+    const double reach =
+        half_width + (adapts ? reach_of_pieces(scene, end, body) : depth_of(scene, end, body));
+    for (int i = 1; i <= made.bodies; ++i) {
+      const int node = made.first_body + (is_start ? i - 1 : made.bodies - i);
+      if (i * piece > reach) {
+        const bool follows = i > 1 && (i - 1) * piece <= reach;
+        const Attachment centre{node, Vec2::Zero(), false};
+        if (!follows || depth_of(scene, centre, body) + half_width <= 0.0) break;
+      }
+      keep_apart(scene, node, body);
     }
   }
 }
@@ -208,11 +140,30 @@ std::vector<double> weigh_nodes(Scene& scene, const Cable& whole, int pieces, do
 void add_chain(Scene& scene, const NodedCable& made, const Cable& whole, double piece) {
   scene.chains.push_back({made.cable, made.first_piece, made.first_body, made.pieces + 1, piece,
                           whole.mass_per_metre, whole.node_tolerance});
-  keep_off_end(scene, scene.chains.back(), whole.start, true);
-  keep_off_end(scene, scene.chains.back(), whole.end, false);
 }
 
-NodedCable spread(Scene& scene, std::size_t c) {
+bool stands(const Scene& scene, const Attachment& end) {
+  if (end.body < 0) return true;
+  const Body& body = at(scene.bodies, end.body);
+  return is_static(body) || (!can_move(body) && end.point == Vec2::Zero());
+}
+
+/// Straight across gravity between two points that stand, a cable that cannot stretch bears its
+/// weight by no tension: a sag s asks for rho g L^2 / 8 s.
+void refuse_what_cannot_sag(const Scene& scene, const Cable& cable, const Vec2& d,
+                            const std::string& place) {
+  constexpr double rounding = 1e-12;
+  if (cable.slack > 0.0 || cable.axial_stiffness < infinity) return;
+  if (!stands(scene, cable.start) || !stands(scene, cable.end)) return;
+  if (std::abs(cross(d, scene.gravity)) <= rounding * d.norm() * scene.gravity.norm()) return;
+  throw SceneError(
+      place + "/slack_m",
+      "between two points that stand a cable with mass hangs, and no tension bears its "
+      "weight where it is only as long as their distance; give it slack, or an axial "
+      "stiffness");
+}
+
+NodedCable spread(Scene& scene, std::size_t c, double tension) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(whole, place);
@@ -221,16 +172,19 @@ NodedCable spread(Scene& scene, std::size_t c) {
   const double straight = d.norm(), length = straight + whole.slack;
   if (!(length > 0.0))
     throw SceneError(place, "the cable has no length; give it slack or move its ends apart");
-  const int pieces = count_pieces(scene, whole, length, place);
+  refuse_what_cannot_sag(scene, whole, d, place);
+  const int pieces = count_pieces(scene, whole, length, tension, place);
   const double piece = length / pieces;
   const std::vector<double> masses = weigh_nodes(scene, whole, pieces, piece);
   std::vector<Vec2> directions(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
-  const bool hangs = whole.slack > 0.0 && scene.gravity.norm() > 0.0;
+  const bool hangs = whole.slack > 0.0;
   if (hangs) {
+    // Without gravity it is at rest in any shape.
+    const Vec2 gravity = scene.gravity.norm() > 0.0 ? scene.gravity : Vec2(0.0, -1.0);
     std::vector<Vec2> weights;
     weights.reserve(masses.size());
-    for (const double mass : masses) weights.push_back(mass * scene.gravity);
-    directions = hanging_pieces(weights, piece, d);
+    for (const double mass : masses) weights.push_back(mass * gravity);
+    directions = hang(weights, piece, d).directions;
   }
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), pieces - 1,
                   static_cast<int>(scene.cables.size()), pieces - 1};
@@ -240,6 +194,7 @@ NodedCable spread(Scene& scene, std::size_t c) {
     part.node_tolerance = 0.0;
     part.mass_per_metre = 0.0;
     part.nodes = 0;
+    part.piece = true;
     part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
     part.bending_stiffness = 0.0;
     if (whole.bending_stiffness > 0.0 && k + 1 < pieces) {
@@ -265,6 +220,8 @@ NodedCable spread(Scene& scene, std::size_t c) {
     }
   }
   if (whole.node_tolerance != 0.0) add_chain(scene, made, whole, piece);
+  keep_off_end(scene, made, whole, piece, true);
+  keep_off_end(scene, made, whole, piece, false);
   return made;
 }
 
@@ -272,9 +229,14 @@ NodedCable spread(Scene& scene, std::size_t c) {
 
 std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
-  const std::size_t given = scene.cables.size();
-  for (std::size_t c = 0; c < given; ++c) {
-    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c));
+  std::vector<double> tensions;  // N, before nodes are among the bodies
+  tensions.reserve(scene.cables.size());
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const bool chosen = becomes_nodes(scene.cables[c]) && scene.cables[c].nodes == 0;
+    tensions.push_back(chosen ? expected_tension(scene, c) : 0.0);
+  }
+  for (std::size_t c = 0; c < tensions.size(); ++c) {
+    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c, tensions[c]));
   }
   return made;
 }

@@ -30,12 +30,12 @@ inline bool becomes_nodes(const Cable& cable) {
 /// Nodes are discs as wide as the cable that do not turn: they lie on walls and bodies, and on one
 /// another, with friction.
 ///
-/// A cable with slack starts where its chain hangs at rest, exactly; a taut one, or one without
-/// gravity, straight. How many nodes: as many as it says, or so many that pieces are no shorter
-/// than twice the cable's width, a two-hundredth of it, and what a wave of its own weight's tension
-/// runs in a step, h sqrt(g L), beyond which nodes vibrate faster than steps can follow; and, with
-/// a bending stiffness EI and the mass rho a metre, than sqrt(2 h sqrt(EI / rho)), beyond which
-/// their bending does.
+/// A cable with slack starts where its chain hangs at rest, exactly (without gravity as if it had
+/// one); a taut one straight. How many nodes: as many as it says, or so many that pieces are no
+/// shorter than twice the cable's width, a two-hundredth of it, and what a wave runs in two steps
+/// under the tension that is to be expected (node_count.h), beyond which nodes swing faster than
+/// steps can follow; and, with a bending stiffness EI and the mass rho a metre, than
+/// sqrt(2 h sqrt(EI / rho)), beyond which their bending does.
 ///
 /// With a node tolerance their number adapts as it moves (motion/adapt_nodes.h): it starts with the
 /// most, 2^k - 1 of them, and a body that holds an end has the end's half piece itself.
@@ -43,8 +43,8 @@ inline bool becomes_nodes(const Cable& cable) {
 /// With a bending stiffness pieces bear force both ways, and bend against one another
 /// (cable/bending.h).
 ///
-/// Throws SceneError where a cable has no length, or more nodes than fit, or cannot adapt their
-/// number.
+/// Throws SceneError where a cable has no length, cannot hang as it is straight between two points
+/// that stand, has more nodes than fit, or cannot adapt their number.
 std::vector<NodedCable> spread_nodes(Scene& scene);
 
 }  // namespace pinchlab

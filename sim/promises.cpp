@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/mass.h"
+#include "sim/compound.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -34,6 +36,18 @@ std::string name_of_side(const Scene& scene, const World& world, int side) {
                    : fmt::format("the end of cable '{}'", at(scene.cables, cable).name);
 }
 
+/// J. Lengths and gaps are exact to the round-off d of the largest coordinate, and a step puts it
+/// right with velocities of d / h: where nothing else moves that is all the energy there is.
+double energy_of_round_off(const Scene& scene, const World& world) {
+  double largest = 0.0, mass = 0.0;  // m, kg
+  for (const Body& body : scene.bodies) {
+    largest = std::max(largest, body.position.cwiseAbs().maxCoeff() + body.radius);
+    if (can_move(body)) mass += body.mass;
+  }
+  const double speed = std::numeric_limits<double>::epsilon() * largest / world.step_length;
+  return 0.5 * mass * speed * speed;
+}
+
 }  // namespace
 
 Promises::Promises(const Scene& scene, const World& world) {
@@ -48,6 +62,7 @@ Promises::Promises(const Scene& scene, const World& world) {
   for (const Body& body : scene.bodies) {
     if (can_move(body)) at_play_ += body.mass * scene.gravity.norm() * body.radius;
   }
+  round_off_ = energy_of_round_off(scene, world);
   start_energy_ = kinetic + potential_;
   at_play_ = std::max(at_play_, kinetic);
 }
@@ -79,8 +94,44 @@ void Promises::note_cables(const Scene& scene, const World& world) {
   }
 }
 
-// A parabola's, w l^2 / 8 T by the weight w of a metre across the span; slack, it hangs by all of
-// its length.
+namespace {
+
+/// Whether a span is between two places of one rigid body: it has no tension of its own.
+bool is_within_body(const World& world, const CableState& cable, std::size_t span) {
+  const int tail = at(cable.links, previous_link(cable, static_cast<int>(span))).body;
+  const int head = cable.links[span].body;
+  return tail >= 0 && head >= 0 && mover_of(world, tail) == mover_of(world, head);
+}
+
+/// N, of a span; within a rigid body the lesser of those on either side of it, between which it is
+/// by the capstan law.
+double least_tension(const World& world, const CableState& cable, std::size_t span) {
+  if (!is_within_body(world, cable, span)) return cable.segments[span].tension;
+  const std::size_t first = first_segment(cable), count = cable.links.size() - first;
+  double least = infinity;
+  for (const std::size_t way : {std::size_t{1}, count - 1}) {
+    std::size_t i = span;
+    for (std::size_t k = 1; k < count && is_within_body(world, cable, i); ++k) {
+      const std::size_t next = first + (i - first + way) % count;
+      if (!cable.closed && (way == 1 ? next < i : next > i)) break;  // beyond an end
+      i = next;
+    }
+    if (!is_within_body(world, cable, i)) least = std::min(least, cable.segments[i].tension);
+  }
+  return least < infinity ? least : 0.0;
+}
+
+/// Of a span's length: a parabola's sag, w l^2 / 8 T by the weight w of a metre across the span.
+/// Where nothing pulls, that of a parabola with the cable that it has to spare, whose length is
+/// l + 8 s^2 / 3 l.
+double sag_of(const Segment& span, double tension, double weight_of_metre) {
+  if (tension > 0.0) return std::min(0.125 * weight_of_metre * span.length / tension, 1.0);
+  const double spare = std::max(span.rest_length - span.length, 0.0);
+  return std::min(std::sqrt(0.375 * spare / span.length), 1.0);
+}
+
+}  // namespace
+
 void Promises::note_sag(const Scene& scene, const World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
@@ -88,10 +139,10 @@ void Promises::note_sag(const Scene& scene, const World& world) {
     double sag = 0.0;
     for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
       const Segment& span = cable.segments[i];
-      const double weight =
-          cable.density * span.length * std::abs(cross(span.direction, scene.gravity));
-      if (weight > 0.0)
-        sag = std::max(sag, std::min(0.125 * weight / std::max(span.tension, 0.0), 1.0));
+      const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(i)));
+      if (!(span.length > 0.0) || is_side(tail, cable.links[i])) continue;
+      const double weight = cable.density * std::abs(cross(span.direction, scene.gravity));
+      if (weight > 0.0) sag = std::max(sag, sag_of(span, least_tension(world, cable, i), weight));
     }
     note_value(Promise::straight, sag, limits_.sag, world.step, static_cast<int>(c), -1);
   }
@@ -120,8 +171,8 @@ void Promises::note_energy(const Scene& scene, const World& world) {
   at_play_ = std::max(at_play_, kinetic);
   const bool whole = world.diagnostics.intervals - intervals_ <= 1 && world.lag > 0.0;
   if (at_play_ > 0.0 && whole) {
-    note_value(Promise::energy, (kinetic + potential_ - start_energy_) / at_play_, limits_.energy,
-               world.step, -1, -1);
+    const double gained = kinetic + potential_ - start_energy_ - round_off_;
+    note_value(Promise::energy, gained / at_play_, limits_.energy, world.step, -1, -1);
   }
   potential_ = potential_energy(scene, world);
   note_instant(world, before_);

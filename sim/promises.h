@@ -60,6 +60,7 @@ class Promises {
   std::int64_t fallbacks_ = 0;
 
   double start_energy_ = 0.0;   // J
+  double round_off_ = 0.0;      // J, that positions' round-off may make of nothing
   double at_play_ = 0.0;        // J: the largest kinetic energy so far, or what lifts each body
                                 // by its radius, whichever is more
   double potential_ = 0.0;      // J, at the last step's end

@@ -113,6 +113,7 @@ struct Cable {
   bool closed = false;
   bool creep = false;  ///< elastic: rims carry it over as stretched as it came on (creep.h)
   bool rod = false;    ///< bears force both ways, and nothing hits it: between nodes, and joints
+  bool piece = false;  ///< between nodes, by spread_nodes: nothing hits it
   Joint joint = Joint::none;
   Attachment start, end;  ///< unused when closed
   std::vector<Wrap> wraps;

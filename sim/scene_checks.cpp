@@ -41,6 +41,33 @@ double distance_to(const std::vector<Vec2>& corners, const Vec2& p, const Vec2& 
   return std::max(least, 0.0);
 }
 
+/// How far a line from p to q, which runs into a polygon, is in it (m): by the shortest way that
+/// parts them, out of one of the sides or to one side of the line.
+double depth_in(const std::vector<Vec2>& corners, const Vec2& p, const Vec2& q) {
+  double least = infinity;
+  const auto note = [&least](double depth) { least = std::min(least, depth); };
+  const Vec2 across = left((q - p).normalized());
+  double over = -infinity, under = -infinity;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2 &a = corners[i], &b = corners[(i + 1) % corners.size()];
+    const Vec2 out = -left((b - a).normalized());
+    note(-std::min(out.dot(p - a), out.dot(q - a)));
+    over = std::max(over, across.dot(a - p));
+    under = std::max(under, -across.dot(a - p));
+  }
+  note(over);
+  note(under);
+  return least;
+}
+
+/// Between the outline of a polygon and a wall (m); below 0 they overlap by that.
+double gap_to_wall(const World& world, int body, const Wall& wall) {
+  const std::vector<Vec2> corners = corners_of(world, body);
+  const double distance = distance_to(corners, wall.a, wall.b);
+  return (distance > 0.0 ? distance : -depth_in(corners, wall.a, wall.b)) -
+         at(world.bodies, body).corner_radius;
+}
+
 void refuse_impossible_outline(const BodyProperties& body, const std::string& place) {
   const auto refuse = [&place](bool wrong, const std::string& message) {
     if (wrong) throw SceneError(place, message);
@@ -178,6 +205,38 @@ void refuse_impossible_cable(const Scene& scene, std::size_t c) {
   }
 }
 
+/// The cable of the scene's author that a node is part of, or -1: the first of the pieces that lead
+/// up to it.
+int cable_of_node(const Scene& scene, int node) {
+  int cable = -1;
+  while (node >= 0 && at(scene.bodies, node).node) {
+    const auto piece =
+        std::find_if(scene.cables.begin(), scene.cables.end(), [node](const Cable& candidate) {
+          return candidate.end.body == node && candidate.wraps.empty() && !candidate.closed;
+        });
+    if (piece == scene.cables.end()) break;
+    cable = static_cast<int>(piece - scene.cables.begin());
+    node = piece->start.body;
+  }
+  return cable;
+}
+
+/// `what` is what a body overlaps, by `depth` (m). Nodes are in no scene file: of one it is told
+/// what its cable does.
+[[noreturn]] void refuse_overlap(const Scene& scene, int body, const std::string& what,
+                                 double depth, const char* cure) {
+  const int cable = cable_of_node(scene, body);
+  if (cable < 0) {
+    throw SceneError(pointer("bodies", index(body)),
+                     fmt::format("body '{}' overlaps {} by {}; {}", at(scene.bodies, body).name,
+                                 what, in_mm(depth), cure));
+  }
+  throw SceneError(pointer("cables", index(cable)),
+                   fmt::format("as it hangs at the start the cable runs through {} ({} deep at its "
+                               "node '{}'); give it another slack or other ends, or move that",
+                               what, in_mm(depth), at(scene.bodies, body).name));
+}
+
 }  // namespace
 
 void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& broad) {
@@ -188,22 +247,19 @@ void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& b
                            ? separation(world, pair.a, pair.b)
                            : (b.position - a.position).norm() - a.radius - b.radius;
     if (gap < -allowed) {
-      throw SceneError(pointer("bodies", index(pair.b)),
-                       fmt::format("body '{}' overlaps body '{}' by {}; move them apart", b.name,
-                                   a.name, in_mm(-gap)));
+      const bool first = a.node && !b.node;
+      refuse_overlap(scene, first ? pair.a : pair.b, name_of_body(scene, first ? pair.b : pair.a),
+                     -gap, "move them apart");
     }
   }
   for (const WallPair& pair : broad.wall_pairs) {
     const Body& body = at(scene.bodies, pair.body);
     const Wall& wall = at(scene.walls, pair.wall);
-    const double gap =
-        is_polygon(body)
-            ? distance_to(corners_of(world, pair.body), wall.a, wall.b) - body.corner_radius
-            : distance_from_line(wall.a, wall.b, body.position) - body.radius;
+    const double gap = is_polygon(body)
+                           ? gap_to_wall(world, pair.body, wall)
+                           : distance_from_line(wall.a, wall.b, body.position) - body.radius;
     if (gap < -allowed) {
-      throw SceneError(pointer("bodies", index(pair.body)),
-                       fmt::format("body '{}' overlaps wall {} by {}; move it away", body.name,
-                                   pair.wall, in_mm(-gap)));
+      refuse_overlap(scene, pair.body, fmt::format("wall {}", pair.wall), -gap, "move it away");
     }
   }
 }
@@ -236,6 +292,7 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
 void refuse_squeezed_wraps(const Scene& scene, const World& world) {
   const double allowed = overlap_allowed(scene);
   for (const Contact& contact : world.contacts) {
+    if (contact.b < 0) continue;  // no cable is between: refuse_overlaps has seen it
     if (contact.gap < contact.target - allowed) {
       const Body &a = at(scene.bodies, contact.a), &b = at(scene.bodies, contact.b);
       throw SceneError(

@@ -108,6 +108,7 @@ struct alignas(64) CableState {
   int bends_with = -1;            // a piece between nodes that goes on from its end: bending.h
   bool closed = false;
   bool rod = false;    // bears force both ways: a piece between nodes, or a joint
+  bool piece = false;  // between nodes
   bool fills = false;  // lies in layers on a body that holds an end of it
   Joint joint = Joint::none;
   // By update_wraps_and_rest_lengths, which has all at hand:

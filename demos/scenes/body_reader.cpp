@@ -78,9 +78,11 @@ void BodyReader::read_mass_and_outline(Body& body) {
   const double density = from_.value("density_kg_m2", 0.0);
   if (!is_polygon(body)) {
     if (density > 0.0) body.mass = density * std::numbers::pi * body.radius * body.radius;
+    check_mass_of_density(from_, place_, body.mass, problems_);
     return;
   }
   if (density > 0.0) body.mass = density * plate_of(body.corners, body.corner_radius).area;
+  check_mass_of_density(from_, place_, body.mass, problems_);
   std::vector<Vec2> corners = std::move(body.corners);
   make_polygon(body, std::move(corners), body.corner_radius);
 }
@@ -211,6 +213,17 @@ void read_surface(const json& from, BodyProperties& to) {
   }
   take(from, "contact_friction", to.contact_friction);
   take(from, "restitution", to.restitution);
+}
+
+void check_mass_of_density(const json& from, const std::string& place, double mass,
+                           std::vector<SceneProblem>& problems) {
+  constexpr double least = 1e-9, most = 1e12;  // kg, of mass_kg
+  if (!from.contains("density_kg_m2") || (mass >= least && mass <= most)) return;
+  problems.push_back(
+      {place + "/density_kg_m2",
+       fmt::format("makes a body of {:.3g} kg of it, whose mass must be {:g} to {:g} "
+                   "kg",
+                   mass, least, most)});
 }
 
 Body read_body(const json& from, const std::string& place, std::vector<SceneProblem>& problems) {

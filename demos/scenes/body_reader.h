@@ -18,6 +18,10 @@ bool read_outline(const nlohmann::json& from, const std::string& place, BodyProp
 /// Frictions and restitution.
 void read_surface(const nlohmann::json& from, BodyProperties& to);
 
+/// Notes a mass (kg) that `density_kg_m2` gives and `mass_kg` could not.
+void check_mass_of_density(const nlohmann::json& from, const std::string& place, double mass,
+                           std::vector<SceneProblem>& problems);
+
 /// A body of a scene file, at `place` in it, checked by check_format; what does not go together is
 /// noted.
 Body read_body(const nlohmann::json& from, const std::string& place,

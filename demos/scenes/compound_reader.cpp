@@ -37,6 +37,7 @@ Vec2 weigh(const json& from, const std::string& place, std::vector<Shape>& shape
   const Plate plate = plate_of(shapes);
   if (from.contains("density_kg_m2")) {
     body.mass = from["density_kg_m2"].get<double>() * plate.area;
+    check_mass_of_density(from, place, body.mass, problems);
   }
   if (body.kind == BodyKind::fixed || (from.contains("mass_kg") && body.inertia)) {
     return Vec2::Zero();

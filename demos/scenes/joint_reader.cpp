@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/at.h"
 #include "demos/scenes/json_values.h"
@@ -40,6 +41,8 @@ class JointReader {
     if (wrong_) return;
     const Attachment start = read_end("start"), end = read_end("end");
     if (wrong_) return;
+    refuse_between_fixed(scene, start.body, end.body);
+    if (wrong_) return;
     if (!spring) return add_bar(scene, name, start, end);
     double natural = 0.0, damping = 0.0;
     take(from_, "natural_length_m", natural);
@@ -59,6 +62,25 @@ class JointReader {
   }
   void refuse(std::initializer_list<const char*> keys, const std::string& what) {
     refuse_keys(from_, place_, keys, what, problems_);
+  }
+
+  /// A fixed body and the world, or another: nothing moves, with the joint or without.
+  void refuse_between_fixed(const Scene& scene, int body, int other) {
+    if (body < 0) std::swap(body, other);
+    if (body < 0) return;  // both on the world, which is refused with every joint
+    const auto is_fixed = [&scene](int b) {
+      if (b < 0) return true;
+      const int carrier = at(scene.bodies, b).carrier;  // of a shape
+      return at(scene.bodies, carrier >= 0 ? carrier : b).kind == BodyKind::fixed;
+    };
+    if (!is_fixed(body) || !is_fixed(other)) return;
+    problem(place_,
+            fmt::format("holds the fixed body \"{}\" to {}, where it does nothing; leave it "
+                        "out, or let one of the two move",
+                        at(scene.bodies, body).name,
+                        other < 0 ? std::string("the world")
+                                  : fmt::format("\"{}\", which is fixed too",
+                                                at(scene.bodies, other).name)));
   }
 
   int read_body(const json& from, const char* key, const std::string& place) {
@@ -93,6 +115,7 @@ class JointReader {
     if (wrong_) return;
     const int first = read_body(from_, "body", place_);
     const int other = from_.contains("other") ? read_body(from_, "other", place_) : -1;
+    if (!wrong_) refuse_between_fixed(scene, first, other);
     if (!wrong_) add_hinge(scene, name, first, other, vector_of(from_["at_m"]));
   }
 

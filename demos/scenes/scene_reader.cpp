@@ -47,6 +47,7 @@ class Reader {
 
   void check_grip(const json& cables, const Scene& scene);
   void check_rim(const json& cable, const char* end, const std::string& place, const Scene& scene);
+  void check_creep(const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
                              double half_width);
   std::vector<Wrap> read_wraps(const json& from, const std::string& place, bool closed);
@@ -272,6 +273,24 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   return cable;
 }
 
+// Only a disc that the cable cannot slip on carries it over as stretched as it came on.
+void Reader::check_creep(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const Cable& cable = scene.cables[i];
+    if (!cable.creep || cable.wraps.empty()) continue;
+    const bool creeps = std::ranges::any_of(cable.wraps, [&](const Wrap& wrap) {
+      const Body& body = at(scene.bodies, wrap.body);
+      const bool fills = (cable.start.layers && wrap.body == cable.start.body) ||
+                         (cable.end.layers && wrap.body == cable.end.body);
+      return !is_polygon(body) && !std::isfinite(body.cable_friction) && !fills;
+    });
+    if (creeps) continue;
+    problem(fmt::format("/cables/{}/creep", i),
+            "has no effect where all that the cable runs round is polygons, bodies with a "
+            "cable_friction or drums with layers; leave it out");
+  }
+}
+
 // Without slip, all of a pinch's friction and half of it are the same.
 void Reader::check_grip(const json& cables, const Scene& scene) {
   const bool slips = std::ranges::any_of(scene.bodies, [](const Body& body) {
@@ -430,6 +449,7 @@ SceneContent Reader::read(const json& file) {
     claim_name(cable_names_, scene.cables[i].name, static_cast<int>(i), "cables");
   }
   check_grip(cables, scene);
+  check_creep(scene);
   const json walls = file.value("walls", json::array());
   for (std::size_t i = 0; i < walls.size(); ++i) {
     scene.walls.push_back(read_wall(walls[i], fmt::format("/walls/{}", i)));
@@ -445,8 +465,8 @@ SceneContent Reader::read(const json& file) {
   }
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
   claim_joints(file.value("joints", json::array()));
+  read_joints(file, to);  // by which a cable with mass may hold more
   spread(to);
-  read_joints(file, to);
   const auto baseline = configuration_from_string(file["baseline"]["method"].get<std::string>());
   scene.baseline = baseline.value().method;
   scene.baseline_reason = file["baseline"]["reason"].get<std::string>();

@@ -73,7 +73,7 @@ inline bool yields(const CableState& cable) {
 
 /// Whether bodies pass through it: a piece between nodes, or a joint.
 inline bool is_passed(const CableState& cable) {
-  return cable.rod || cable.joint != Joint::none;
+  return cable.rod || cable.piece || cable.joint != Joint::none;
 }
 
 /// Whether it is part of another piece of its chain (held.h).

@@ -290,6 +290,7 @@ CableState lay_cable(const Scene& scene, const World& world, double allowed, std
   cable.grip = given.grip;
   cable.closed = given.closed;
   cable.rod = given.rod;
+  cable.piece = given.piece;
   cable.bends_with = given.bends_with;
   cable.bend = given.bend;
   cable.joint = given.joint;

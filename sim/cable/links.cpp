@@ -168,8 +168,18 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   const double free_length = first.length + second.length;
   const double share = free_length > 0.0 ? first.length / free_length : 0.5;
   double arrives = start + share * (end - start - stored);
-  if (is_side(cable.links[from], added)) arrives = start + first.length;
-  if (is_side(added, cable.links[to])) arrives = end - second.length - stored;
+  const auto make_side = [](Segment& side) {  // without a row, which alone would change them
+    side.tension = 0.0;
+    side.slack = false;
+  };
+  if (is_side(cable.links[from], added)) {
+    arrives = start + first.length;
+    make_side(first);
+  }
+  if (is_side(added, cable.links[to])) {
+    arrives = end - second.length - stored;
+    make_side(second);
+  }
   added.material += arrives - tail_material(cable, position, body_angle(world, added));
   begin_to_carry(world, cable, position);
   update_wraps_and_rest_lengths(world, cable);

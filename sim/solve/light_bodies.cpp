@@ -19,10 +19,19 @@ namespace {
 /// Below this part of a body's mass a span's share is not worth adding up.
 constexpr double negligible = 0.05;
 
-/// Whether the segment counts for `body` at its one end; `other` is at its other end.
-bool note_end(const World& world, const Parts& parts, const Segment& segment, int body, int other,
-              double h, PartSystem& system) {
-  if (body >= 0) body = mover_of(world, body);
+/// Velocity of the circle that the cable touches at a link, whose body may carry it off its centre
+/// (m/s).
+Vec2 velocity_at(const World& world, const Link& link) {
+  const Vec2 velocity = at(world.velocity, link.body);
+  if (is_central(link)) return velocity;
+  const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
+  return velocity + at(world.angular_velocity, link.body) * left(from_centre);
+}
+
+/// Whether the segment counts for the body at its end `link`; `other` is its other end.
+bool note_end(const World& world, const Parts& parts, const Segment& segment, const Link& link,
+              const Link& other, double h, PartSystem& system) {
+  const int body = link.body >= 0 ? mover_of(world, link.body) : -1;
   if (body < 0 || !can_move(at(world.bodies, body))) return false;
   const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
   if (!(twice > negligible * at(world.bodies, body).mass * segment.length)) return false;
@@ -33,9 +42,10 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, in
   const Vec2 n = left(segment.direction);
   const Eigen::Matrix2d across = mass * n * n.transpose();
   span.mass += across;
-  if (other < 0) return true;
-  span.momentum_x += at(world.velocity, other).x() * across;
-  span.momentum_y += at(world.velocity, other).y() * across;
+  if (other.body < 0) return true;
+  const Vec2 velocity = velocity_at(world, other);
+  span.momentum_x += velocity.x() * across;
+  span.momentum_y += velocity.y() * across;
   return true;
 }
 
@@ -103,8 +113,8 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
       const Segment& segment = cable.segments[s];
       if (!(segment.tension > least * segment.length)) continue;
       if (segment.length <= 2.0 * cable.half_width) continue;
-      const int head = cable.links[s].body;
-      const int tail = at(cable.links, previous_link(cable, static_cast<int>(s))).body;
+      const Link& head = cable.links[s];
+      const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(s)));
       any = note_end(world, parts, segment, head, tail, kick, system) || any;
       any = note_end(world, parts, segment, tail, head, kick, system) || any;
     }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "demos/scenes/shape_scenes.h"
+#include "sim/cable/cable.h"
 #include "sim/outline.h"
 #include "tests/sim/scenes.h"
 
@@ -180,6 +181,30 @@ TEST(Corners, TheCapstanLawHoldsOverAllCorners) {
     const std::vector<Segment>& s = world.cables[0].segments;
     EXPECT_NEAR(s.back().tension / s[1].tension, k, 1e-9);
   }
+}
+
+// Sides have no tension of their own, also those that were spans.
+TEST(Corners, SidesHaveNoTension) {
+  Scene scene;
+  scene.bodies.push_back(polygon("drum", BodyKind::fixed_axle, Vec2::Zero(),
+                                 {{0.28660, 0.08866}, {-0.22008, 0.20387}, {-0.06652, -0.29253}},
+                                 3.0));
+  scene.bodies.push_back(body("left", BodyKind::free, -0.5, -1.2, 0.1, 1.3));
+  scene.bodies.push_back(body("right", BodyKind::free, 0.5, -1.5, 0.1, 1.0));
+  scene.cables.push_back(cable(on(1), {{0, -1, 0}}, on(2), 0.02));
+  const Vec2 centre = plate_of(scene.bodies[0].corners, 0.0).centre;
+  for (Vec2& corner : scene.bodies[0].corners) corner -= centre;
+  World world = make_world(scene, Method::pinch);
+  const int links = world.cables[0].changes;
+  for (int i = 0; i < 480; ++i) {
+    run(scene, world, 1);
+    const CableState& state = world.cables[0];
+    for (std::size_t s = 1; s < state.links.size(); ++s) {
+      if (!is_side(state.links[s - 1], state.links[s])) continue;
+      ASSERT_EQ(state.segments[s].tension, 0.0) << i;
+    }
+  }
+  EXPECT_GT(world.cables[0].changes, links);
 }
 
 Scene box_on_wall(const Vec2& along, double friction) {

@@ -46,6 +46,24 @@ TEST(LightBodies, RideWithAMovingLine) {
   }
 }
 
+// The line ends where the heavy body holds it: on its rim, which turns with it as it swings.
+TEST(LightBodies, RideWithALineThatIsHeldAtARim) {
+  Scene scene = weighted_line(1e6, 0.0);
+  const Vec2 along(std::sin(0.7), -std::cos(0.7));
+  scene.bodies[0].position = along;
+  scene.bodies[1].position = 2.2 * along;
+  scene.cables[1].end.point = -0.2 * along;
+  World world = make_world(scene, measured());
+  Workspace work;
+  double start = 0.0;
+  for (int i = 0; i < 240 * 5; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    if (i == 0) start = world.diagnostics.energy;
+    const double swing = 1e6 * g * 2.2 * (1.0 - std::cos(0.7));  // J
+    ASSERT_LT(std::abs(world.diagnostics.energy - start), 2e-3 * swing) << i;
+  }
+}
+
 TEST(LightBodies, NothingChangesWhereStepsCanFollow) {
   const Scene scene = weighted_line(100.0, 0.05);
   World world = make_world(scene, measured());

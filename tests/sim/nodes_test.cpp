@@ -47,8 +47,14 @@ TEST(Nodes, AreAsManyAsStepsCanFollow) {
   Scene scene = catenary(0, 4);
   const std::vector<NodedCable> made = spread_nodes(scene);
   ASSERT_EQ(made.size(), 1U);
-  EXPECT_EQ(made[0].bodies, 107);  // a piece no shorter than h sqrt(g L)
-  EXPECT_NEAR(sag_of(make_world(scene, Method::pinch)), 0.7963884, 1e-4);
+  // A piece no shorter than 2 h sqrt(T / rho), of the tension with which the catenary hangs.
+  EXPECT_EQ(made[0].bodies, static_cast<int>(2.0 / (2.0 / 240.0 * std::sqrt(1.0260286 * g))) - 1);
+  // Of a chain of n pieces the sag is 0.74 / n^2 more; to its nodes on either side of the lowest
+  // place, l / 2 away where the curvature is 1 / 0.2296402 m, it is l^2 / 8 0.2296402 m less.
+  const double n = made[0].pieces + 1;
+  ASSERT_EQ(made[0].pieces % 2, 0);
+  EXPECT_NEAR(sag_of(make_world(scene, Method::pinch)),
+              0.7963884 + (0.74 - 0.5 / 0.2296402) / (n * n), 2e-6);
 }
 
 // Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g
@@ -214,6 +220,137 @@ TEST(Nodes, RefuseWhatCannotBe) {
   EXPECT_NE(stiff.find("more steps a frame"), std::string::npos) << stiff;
   Scene scene = catenary(0, 1);
   EXPECT_THROW(make_world(scene, Method::pinch), SceneError);  // its nodes were forgotten
+}
+
+/// A weight on a cable of 0.5 kg/m from [0, 1], let go at [0.8, 0] with its cable straight.
+Scene let_go(double mass, double radius, int nodes, int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("bob", BodyKind::free, 0.8, 0.0, radius, mass));
+  Attachment rim = on(0);
+  rim.point = radius * Vec2(-0.8, 1.0).normalized();
+  scene.cables.push_back(cable(at(0.0, 1.0), {}, rim, 0.005));
+  scene.cables[0].mass_per_metre = 0.5;
+  scene.cables[0].nodes = nodes;
+  spread_nodes(scene);
+  return scene;
+}
+
+// As many nodes as steps can follow under what hangs at the cable: a swing of 2 s by the steps that
+// scenes have is that by fine ones, and keeps its energy.
+TEST(Nodes, AreAsManyAsStepsCanFollowUnderALoad) {
+  for (const auto& [mass, radius] :
+       {std::pair(0.5, 0.05), std::pair(2.0, 0.1), {20.0, 0.1}, {200.0, 0.1}}) {
+    const Scene fine = let_go(mass, radius, 24, 64);
+    World reference = make_world(fine, measured());
+    run(fine, reference, 120 * 64);
+    const Scene scene = let_go(mass, radius, 0, 4);
+    World world = make_world(scene, measured());
+    Workspace work;
+    double first = 0.0;
+    for (int i = 0; i < 120 * 4; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+      if (i == 0) first = world.diagnostics.energy;
+      ASSERT_LT(std::abs(world.diagnostics.energy - first), 1e-3 * mass) << mass << ", step " << i;
+    }
+    EXPECT_EQ(world.diagnostics.fallbacks, 0);
+    EXPECT_LT((world.position[0] - reference.position[0]).norm(), 6e-3) << mass;
+  }
+}
+
+// Twice the wave's way in a step, at three times the weight: l = 2 h sqrt(3 (m + rho L) g / rho);
+// what hangs below counts, and what the other end would let go of does not.
+TEST(Nodes, AreChosenByWhatHangsAtTheCable) {
+  const auto pieces = [](Scene scene) { return spread_nodes(scene)[0].pieces + 1; };
+  Scene scene;
+  scene.bodies.push_back(body("bob", BodyKind::free, 1.5, 0.0, 0.1, 2.0));
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.005));
+  scene.cables[0].mass_per_metre = 0.5;
+  const auto expected = [](double mass) {
+    return static_cast<int>(1.5 / (2.0 / 240.0 * std::sqrt(3.0 * (mass + 0.75) * g / 0.5)));
+  };
+  EXPECT_EQ(pieces(scene), expected(2.0));
+  scene.bodies.push_back(body("below", BodyKind::free, 1.5, -1.0, 0.1, 5.0));
+  scene.cables.push_back(cable(on(0), {}, on(1), 0.005));
+  EXPECT_EQ(pieces(scene), expected(7.0));
+  scene.bodies.push_back(body("above", BodyKind::free, 0.0, 0.0, 0.1, 1.0));
+  scene.cables[0].start = on(2);  // nothing holds it up
+  EXPECT_EQ(pieces(scene), expected(1.0));
+}
+
+// The end's default: nodes within the disc are never clear of it.
+TEST(Nodes, AWeightIsHeldAtItsCentre) {
+  for (const double slack : {0.0, 0.02}) {
+    Scene scene;
+    scene.bodies.push_back(body("bob", BodyKind::free, 0.3, 0.0, 0.1, 1.0));
+    scene.cables.push_back(cable(at(0.0, 1.0), {}, on(0), 0.01));
+    scene.cables[0].mass_per_metre = 1.0;
+    scene.cables[0].slack = slack;
+    spread_nodes(scene);
+    World world = make_world(scene, measured());
+    run(scene, world, 480);
+    EXPECT_EQ(world.diagnostics.fallbacks, 0);
+  }
+}
+
+// Nodes are in no file: what is wrong with where they start is told of their cable.
+TEST(Nodes, ACableThatHangsThroughABodyIsRefusedByName) {
+  const auto refused = [](Scene scene, const std::string& words) {
+    spread_nodes(scene);
+    try {
+      make_world(scene, Method::pinch);
+      ADD_FAILURE() << words;
+    } catch (const SceneError& error) {
+      EXPECT_EQ(error.place, "/cables/0");
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  Scene scene;
+  scene.cables.push_back(cable(at(-1.0, 0.0), {}, at(1.0, 0.0), 0.01));
+  scene.cables[0].mass_per_metre = 1.0;
+  scene.cables[0].slack = 0.1;
+  Scene wall = scene;
+  scene.bodies.push_back(body("post", BodyKind::fixed, 0.0, -0.3, 0.2));
+  refused(scene, "the cable runs through body 'post' (");
+  wall.walls.push_back({{0.0, -1.0}, {0.013, 1.0}, 0.5, 0.0});
+  refused(wall, "the cable runs through wall 0 (");
+}
+
+// Its sag would have to be 0, and rho g L^2 / 8 s its tension.
+TEST(Nodes, ACableThatCannotSagIsRefused) {
+  Scene scene;
+  scene.cables.push_back(cable(at(-1.0, 0.0), {}, at(1.0, 0.0), 0.01));
+  scene.cables[0].mass_per_metre = 1.0;
+  EXPECT_THROW(spread_nodes(scene), SceneError);
+  for (const auto& change : {+[](Scene& s) { s.cables[0].slack = 1e-6; },
+                             +[](Scene& s) { s.cables[0].axial_stiffness = 1e4; },
+                             +[](Scene& s) { s.gravity = Vec2::Zero(); },
+                             +[](Scene& s) { s.gravity = Vec2(9.81, 0.0); }}) {
+    Scene sags = scene;
+    change(sags);
+    spread_nodes(sags);
+    World world = make_world(sags, measured());
+    run(sags, world, 120);
+    EXPECT_EQ(world.diagnostics.fallbacks, 0);
+  }
+}
+
+// Bodies meet them by their nodes, whether they stretch or not.
+TEST(Nodes, NothingHitsThePiecesBetweenThem) {
+  for (const double stiffness : {infinity, 1e3}) {
+    Scene scene;
+    scene.bodies.push_back(body("ball", BodyKind::free, 0.25, 0.3, 0.05, 1.0));
+    scene.cables.push_back(cable(at(0.0, 0.0), {}, at(1.0, 0.0), 0.01));
+    scene.cables[0].mass_per_metre = 1.0;
+    scene.cables[0].axial_stiffness = stiffness;
+    scene.cables[0].slack = 0.01;
+    scene.cables[0].nodes = 1;
+    spread_nodes(scene);
+    World world = make_world(scene, measured());
+    run(scene, world, 240);
+    EXPECT_LT(world.position[0].y(), -2.0);
+    EXPECT_EQ(world.changes, 0);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,12 @@
 // The watch over what is promised: silent where all is well, exact where something is not.
 #include "sim/promises.h"
 
+#include <algorithm>
+#include <array>
+
+#include "sim/compound.h"
+#include "sim/nodes.h"
+#include "sim/outline.h"
 #include "tests/sim/random_scene.h"
 
 namespace pinchlab::testing {
@@ -50,6 +56,75 @@ TEST(Promises, AreSilentWhereAllIsWell) {
   EXPECT_EQ(slipping.broken(), std::vector<std::string>());
   Watched pinched(roller_on_wheel(), {}, 240);
   EXPECT_EQ(pinched.broken(), std::vector<std::string>());
+}
+
+/// Loads on a cable with mass over a wheel: a square, a pair of discs in one body, or a disc.
+Scene massed(int kind) {
+  Scene scene;
+  const double reach = kind == 1 ? 0.32 : 0.27;
+  for (const double side : {-1.0, 1.0}) {
+    scene.bodies.push_back(body("load", BodyKind::free, side * reach, -1.0, 0.1, 10.0));
+  }
+  scene.bodies.push_back(body("wheel", BodyKind::fixed_axle, 0.0, 0.0, 0.25, 2.0));
+  if (kind == 0) {
+    make_polygon(scene.bodies[2], {{-0.25, -0.25}, {0.25, -0.25}, {0.25, 0.25}, {-0.25, 0.25}},
+                 0.0);
+  }
+  std::vector<Wrap> wraps = {{2, -1, 0}};
+  if (kind == 1) {
+    std::array<Shape, 2> discs;
+    for (Shape& disc : discs) disc.properties.radius = 0.1;
+    discs[0].place = {-0.22, 0.0};
+    discs[1].place = {0.22, 0.0};
+    add_shapes(scene, 2, discs);
+    wraps = {{3, -1, 0}, {4, -1, 0}};
+  }
+  Attachment left = on(0), right = on(1);
+  left.point = right.point = {0.0, 0.1};
+  scene.cables.push_back(cable(left, wraps, right, 0.02));
+  scene.cables[0].mass_per_metre = 0.1;
+  return scene;
+}
+
+// Sides of polygons are rigid, and what is within one body is as tight as beside it.
+TEST(Promises, NothingSagsThatIsHeldWithinABody) {
+  for (const int kind : {0, 1, 2}) {
+    Watched watched(massed(kind), {}, 60);
+    EXPECT_EQ(watched.broken(), std::vector<std::string>()) << kind;
+  }
+}
+
+// What a slack span has to spare is what it hangs by: 8 s^2 / 3 l for a sag s.
+TEST(Promises, SlackSpansSagByWhatTheyHaveToSpare) {
+  Watched watched(massed(2));
+  Segment& span = watched.world.cables[0].segments[1];
+  span.tension = 0.0;
+  span.direction = Vec2(1.0, 0.0);
+  const double taut = watched.world.cables[0].length;
+  const auto note = [&](double sag) {
+    const double spare = span.length * 8.0 / 3.0 * sag * sag;
+    span.rest_length = span.length + spare;
+    watched.world.cables[0].length = taut + spare;
+    watched.promises.note(watched.scene, watched.world);
+    return watched.broken();
+  };
+  EXPECT_EQ(note(0.12), std::vector<std::string>());
+  expect_one(note(0.2),
+             "cable 'cable', whose spans have mass and are straight, would have hung by 20 %");
+}
+
+// At rest without gravity round-off is all the energy that there is.
+TEST(Promises, RoundOffIsNoEnergyFromNowhere) {
+  Scene scene;
+  scene.gravity = Vec2::Zero();
+  scene.bodies.push_back(body("load", BodyKind::free, 1.0, 0.0, 0.03, 0.2));
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.01));
+  scene.cables[0].slack = 0.3;
+  scene.cables[0].mass_per_metre = 1.0;
+  scene.cables[0].nodes = 11;
+  spread_nodes(scene);
+  Watched watched(scene, {}, 240);
+  EXPECT_EQ(watched.broken(), std::vector<std::string>());
 }
 
 // Steps that events divide end with velocities of another time than the rest: a body that falls

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "tests/sim/scenes.h"
 
@@ -39,6 +40,23 @@ TEST(MakeWorld, RefusesABodyInAWall) {
   Scene scene = drum_scene();
   scene.walls.push_back({Vec2(-1.0, 0.4), Vec2(1.0, 0.4), 0.5, 0.0});
   expect_refused(scene, "/bodies/0", "overlaps wall 0 by 100 mm");
+}
+
+// Of sharp corners, which no rounding gives a gap: by the shortest way out, whatever crosses what.
+TEST(MakeWorld, RefusesAPolygonAcrossAWall) {
+  const auto refused = [](const Vec2& from, const Vec2& to, const std::string& depth) {
+    Scene scene;
+    Body box = body("box", BodyKind::free, 0.0, 0.0, 0.1);
+    make_polygon(box, {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}, 0.0);
+    scene.bodies = {box};
+    scene.walls.push_back({from, to, 0.5, 0.0});
+    expect_refused(scene, "/bodies/0", "body 'box' overlaps wall 0 by " + depth);
+  };
+  refused({-1.0, 0.0}, {1.0, 0.0}, "100 mm");
+  refused({-1.0, 0.04}, {1.0, 0.04}, "60 mm");
+  refused({0.07, -1.0}, {0.07, 0.02}, "30 mm");    // out to its right
+  refused({0.0, 0.08}, {0.0, 1.0}, "20 mm");       // its end is inside
+  refused({-0.05, 0.09}, {0.05, 0.085}, "15 mm");  // all of it is
 }
 
 // A scene that a program makes has passed no reader.

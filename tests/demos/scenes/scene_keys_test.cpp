@@ -317,6 +317,68 @@ TEST(SceneErrors, PartsOfJointsHaveNamesOfTheirOwn) {
             "something else is; choose another name");
 }
 
+// Nothing moves that they could hold.
+TEST(SceneErrors, JointsBetweenFixedBodiesDoNothing) {
+  json scene = small_scene();
+  for (const char* name : {"post", "beam"}) {
+    scene["bodies"].push_back({{"name", name},
+                               {"kind", "fixed"},
+                               {"radius_m", 0.1},
+                               {"position_m", {name == std::string("post") ? 3.0 : 4.0, 3.0}}});
+  }
+  const auto error = [&scene](const char* joint) {
+    scene["joints"] = {json::parse(joint)};
+    return error_of(scene.dump());
+  };
+  EXPECT_EQ(error(R"({"name": "pin", "kind": "hinge", "body": "post", "at_m": [3, 3]})"),
+            "s.json: /joints/0: holds the fixed body \"post\" to the world, where it does nothing; "
+            "leave it out, or let one of the two move");
+  EXPECT_EQ(error(R"({"name": "bar", "kind": "distance", "start": {"world_m": [0, 3]},
+                      "end": {"body": "beam"}})"),
+            "s.json: /joints/0: holds the fixed body \"beam\" to the world, where it does nothing; "
+            "leave it out, or let one of the two move");
+  EXPECT_EQ(error(R"({"name": "bar", "kind": "distance", "start": {"body": "post"},
+                      "end": {"body": "beam"}})"),
+            "s.json: /joints/0: holds the fixed body \"post\" to \"beam\", which is fixed too, "
+            "where it does nothing; leave it out, or let one of the two move");
+  EXPECT_EQ(error(R"({"name": "bar", "kind": "distance", "start": {"body": "post"},
+                      "end": {"body": "left weight"}})"),
+            "no error");
+}
+
+TEST(SceneErrors, CreepNeedsARimThatCreeps) {
+  json scene = small_scene();
+  scene["cables"][0]["axial_stiffness_n"] = 1000;
+  scene["cables"][0]["creep"] = true;
+  EXPECT_EQ(error_of(scene.dump()), "no error");
+  const std::string none =
+      "s.json: /cables/0/creep: has no effect where all that the cable runs round is polygons, "
+      "bodies with a cable_friction or drums with layers; leave it out";
+  json slips = scene;
+  slips["bodies"][0]["cable_friction"] = 0.3;
+  EXPECT_EQ(error_of(slips.dump()), none);
+  json fills = scene;
+  fills["cables"][0]["end"] = {{"body", "wheel"}, {"rim_angle_rad", 0}, {"layers", true}};
+  EXPECT_EQ(error_of(fills.dump()), none);
+  scene["bodies"][0].erase("radius_m");
+  scene["bodies"][0]["corners_m"] = {{-0.4, -0.4}, {0.4, -0.4}, {0.4, 0.4}, {-0.4, 0.4}};
+  EXPECT_EQ(error_of(scene.dump()), none);
+}
+
+// Not less than mass_kg itself may be.
+TEST(SceneErrors, DensitiesGiveAMassWithinRange) {
+  json scene = small_scene();
+  json& weight = scene["bodies"][1];
+  weight.erase("mass_kg");
+  weight["density_kg_m2"] = 1e-12;
+  EXPECT_EQ(
+      error_of(scene.dump()),
+      "s.json: /bodies/1/density_kg_m2: makes a body of 1.26e-13 kg of it, whose mass must be "
+      "1e-09 to 1e+12 kg");
+  weight["density_kg_m2"] = 1e-8;
+  EXPECT_EQ(error_of(scene.dump()), "no error");
+}
+
 TEST(SceneErrors, TravelEndsOnEitherSideOfTheStart) {
   const auto error = [](int body, const char* travel) {
     json scene = small_scene();
@@ -335,7 +397,7 @@ TEST(SceneErrors, TravelEndsOnEitherSideOfTheStart) {
       "s.json: /bodies/0/travel_m: has no effect on a body that is not on a rail; leave it out");
 }
 
-TEST(SceneJson, JointsFollowTheCablesAndTheirNodes) {
+TEST(SceneJson, JointsComeBeforePiecesBetweenNodes) {
   json scene = hanging_scene();
   scene["joints"] = {{{"name", "pin"},
                       {"kind", "hinge"},
@@ -345,10 +407,10 @@ TEST(SceneJson, JointsFollowTheCablesAndTheirNodes) {
   const SceneFile file = parse_scene(scene.dump(), "s.json");
   ASSERT_EQ(file.scene.cables.size(), 12U);
   ASSERT_EQ(file.look.cables.size(), 12U);
-  EXPECT_EQ(file.scene.cables[10].name, "pin:x");
-  EXPECT_EQ(file.scene.cables[11].name, "pin:y");
-  EXPECT_EQ(file.scene.cables[11].joint, Joint::pin);
-  EXPECT_EQ(file.look.cables[11].colour->blue, 0x30);
+  EXPECT_EQ(file.scene.cables[1].name, "pin:x");
+  EXPECT_EQ(file.scene.cables[2].name, "pin:y");
+  EXPECT_EQ(file.scene.cables[2].joint, Joint::pin);
+  EXPECT_EQ(file.look.cables[2].colour->blue, 0x30);
   EXPECT_FALSE(file.look.cables[9].colour.has_value());
 }
 
