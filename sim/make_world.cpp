@@ -17,6 +17,7 @@
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"
+#include "sim/seams.h"
 #include "sim/step.h"
 #include "sim/touch.h"
 
@@ -27,7 +28,7 @@ namespace {
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
-  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall});
+  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall, 0.0, -1, {}});
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);
@@ -44,6 +45,9 @@ World bodies_of_scene(const Scene& scene) {
     if (body.carrier >= 0) world.carried.push_back(static_cast<int>(world.bodies.size()) - 1);
   }
   carry(world, world.carried);
+  if (std::any_of(scene.bodies.begin(), scene.bodies.end(), is_polygon)) {
+    join_walls(world.obstacles);
+  }
   return world;
 }
 

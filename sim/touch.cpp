@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
+#include "sim/seams.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
 
@@ -108,18 +109,14 @@ Outside outside_of_body(const World& world, int body, const Vec2& point, const T
   return out;
 }
 
-/// Of a point from a wall's line, on the side of the body that the point belongs to.
-Outside outside_of_wall(const Wall& wall, const Vec2& centre, const Vec2& point) {
+/// Of a point from a wall's line, on the side of the body that the point belongs to; or on its own,
+/// where the body is round an end of the wall.
+Outside outside_of_wall(const Obstacle& wall, const Vec2& centre, const Vec2& point) {
   Vec2 normal = left((wall.b - wall.a).normalized());
   if (normal.dot(centre - wall.a) < 0.0) normal = -normal;
-  return {normal.dot(point - wall.a), normal};
-}
-
-/// Whether the wall is beside the point, rather than before or behind it.
-bool is_beside(const Wall& wall, const Vec2& point) {
-  const Vec2 d = wall.b - wall.a;
-  const double along = d.dot(point - wall.a);
-  return along >= 0.0 && along <= d.squaredNorm();
+  const double distance = normal.dot(point - wall.a);
+  if (distance < 0.0 && leads_round(wall, centre, point)) return {-distance, -normal};
+  return {distance, normal};
 }
 
 /// Of two discs, or a disc and a wall.
@@ -251,7 +248,8 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     const Obstacle& obstacle = at(world.obstacles, wall);
     const bool is_point = obstacle.cable >= 0;
     for (int k = 0; !is_point && k < points_of(body); ++k) {
-      if (is_beside(obstacle, place_of_point(world, a, k))) append(Touch::point_of_a, k);
+      const Vec2 point = place_of_point(world, a, k);
+      if (is_beside(obstacle, at(world.position, a), point)) append(Touch::point_of_a, k);
     }
     append(Touch::end_of_wall, 0);
     if (!is_point) append(Touch::end_of_wall, 1);

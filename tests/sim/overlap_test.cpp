@@ -73,6 +73,77 @@ TEST(Overlap, ACrateStopsAtARampOnItsFloor) {
   expect_no_overlap(scene, 1.5, "ramp");
 }
 
+// The tip that slides into the nook is beyond the ends of both walls by round-off.
+TEST(Overlap, ATipThatSlidesIntoANookStopsThere) {
+  for (const double turn : {0.0, 0.1, 0.7, -0.4}) {
+    for (const double lean : {0.0, 0.3, 1.2, -0.9}) {  // rad, of the wall that the floor meets
+      for (const bool in_the_middle : {false, true}) {
+        Scene scene;
+        scene.bodies = {triangle("slides", 0.8)};
+        scene.bodies[0].velocity = {-2.0, 0.0};
+        scene.bodies[0].contact_friction = 0.0;
+        const Vec2 up = turned({0.0, 1.0}, lean);
+        scene.walls.push_back({{3.0, 0.0}, {0.0, 0.0}, 0.0, 0.0});
+        scene.walls.push_back(
+            {in_the_middle ? Vec2(-1.0 * up) : Vec2(0.0, 0.0), 1.1 * up, 0.0, 0.0});
+        for (Body& b : scene.bodies) {
+          b.position = turned(b.position, turn);
+          b.velocity = turned(b.velocity, turn);
+          b.angle = turn;
+        }
+        for (Wall& wall : scene.walls) {
+          wall.a = turned(wall.a, turn) + Vec2(0.1, 0.7);
+          wall.b = turned(wall.b, turn) + Vec2(0.1, 0.7);
+        }
+        scene.bodies[0].position += Vec2(0.1, 0.7);
+        expect_no_overlap(scene, 1.0, fmt::format("{} {} {}", turn, lean, in_the_middle).c_str());
+      }
+    }
+  }
+}
+
+// A box whose corner stands where two walls of a straight floor meet.
+TEST(Overlap, ACornerOnTheSeamOfAFloorStandsThere) {
+  for (const double turn : {0.0, 0.1, 0.3, -0.25}) {
+    Scene scene;
+    scene.bodies = {polygon("box", BodyKind::free, {0.2, 0.1},
+                            {{-0.2, -0.1}, {0.2, -0.1}, {0.2, 0.1}, {-0.2, 0.1}})};
+    scene.bodies[0].contact_friction = 2.0;
+    scene.walls.push_back({{-1.0, 0.0}, {0.0, 0.0}, 2.0, 0.0});
+    scene.walls.push_back({{1.3, 0.0}, {0.0, 0.0}, 2.0, 0.0});
+    scene.bodies[0].position = turned(scene.bodies[0].position, turn);
+    scene.bodies[0].angle = turn;
+    for (Wall& wall : scene.walls) {
+      wall.a = turned(wall.a, turn);
+      wall.b = turned(wall.b, turn);
+    }
+    expect_no_overlap(scene, 1.0, fmt::format("{}", turn).c_str());
+  }
+}
+
+// A corner that hangs over a low wall, behind it, is free to move down there.
+TEST(Overlap, WhatHangsOverAStubIsNotHeldByTheFloorBeyond) {
+  Scene scene;
+  scene.bodies = {
+      polygon("hangs", BodyKind::free, {0.0, 0.5}, {{0.3, -0.6}, {0.4, 0.5}, {-0.7, 0.1}})};
+  scene.walls.push_back({{-2.0, 0.0}, {0.1, 0.0}, 0.5, 0.0});
+  scene.walls.push_back({{0.1, 0.0}, {0.1, 0.03}, 0.5, 0.0});
+  const World world = make_world(scene, Method::pinch);
+  for (const Contact& contact : world.contacts) EXPECT_GT(contact.gap, 0.0);
+}
+
+// A bar that leans on the end of a shelf, one of its corners below it.
+TEST(Overlap, WhatReachesRoundTheEndOfAWallIsOnBothItsSides) {
+  Scene scene;
+  scene.bodies = {polygon("leans", BodyKind::free, {0.31, 0.1},
+                          {{-0.45, -0.35}, {-0.35, -0.45}, {0.45, 0.35}, {0.35, 0.45}})};
+  scene.walls.push_back({{-2.0, 0.0}, {0.1, 0.0}, 0.5, 0.0});
+  const World world = make_world(scene, Method::pinch);
+  ASSERT_GE(world.contacts.size(), 1U);
+  for (const Contact& contact : world.contacts) EXPECT_GE(contact.gap, 0.0);
+  expect_no_overlap(scene, 0.3, "leans");
+}
+
 // What contacts do not see, watchers do.
 TEST(Overlap, APromiseOfGapsIsOneOfOutlines) {
   Scene scene = two_triangles(0.0);
@@ -110,13 +181,39 @@ void expect_sound(Scene scene, double seconds, unsigned seed) {
 }
 
 TEST(RandomOverlap, SharpPolygonsPileUpOnAFloor) {
-  for (unsigned seed = 0; seed < 24; ++seed) {
+  for (unsigned seed = 0; seed < 16; ++seed) {
     Scene scene = pile(seed);
     scene.walls.push_back({{-1.5, 0.0}, {1.5, 0.0}, 0.5, 0.0});
     scene.walls.push_back({{-1.0, -0.5}, {-1.0, 6.0}, 0.5, 0.0});
     scene.walls.push_back({{1.0, -0.5}, {1.0, 6.0}, 0.5, 0.0});
     expect_sound(scene, 1.5, seed);
   }
+}
+
+// A trough of random slopes, whose walls meet at their ends; at times one ends on another's middle.
+Scene trough(unsigned seed) {
+  Scene scene = pile(seed);
+  Random random(1000 + seed);
+  const int pieces = 1 + random.below(4);
+  std::vector<Vec2> corners{{-0.9 - random.uniform(0.0, 0.5), 6.0}};
+  for (int i = 0; i <= pieces; ++i) {
+    const double x = -0.6 + 1.2 * i / pieces + 0.1 * random.uniform(-1.0, 1.0);
+    corners.emplace_back(x, random.below(2) == 0 ? 0.0 : x * x * random.uniform(0.0, 0.5));
+  }
+  corners.emplace_back(0.9 + random.uniform(0.0, 0.5), 6.0);
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    Wall wall{corners[i - 1], corners[i], 0.5, 0.0};
+    if (random.below(2) == 0) std::swap(wall.a, wall.b);
+    scene.walls.push_back(wall);
+  }
+  const Vec2 &p = corners[0], &q = corners[1];
+  const Vec2 middle = p + random.uniform(0.7, 0.95) * (q - p);
+  if (random.below(2) == 0) scene.walls.push_back({middle, middle + Vec2(0.3, 0.1), 0.5, 0.0});
+  return scene;
+}
+
+TEST(RandomOverlap, SharpPolygonsPileUpInATroughWhoseWallsMeet) {
+  for (unsigned seed = 8; seed < 24; ++seed) expect_sound(trough(seed), 1.5, seed);
 }
 
 }  // namespace
