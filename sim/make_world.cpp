@@ -63,12 +63,13 @@ void lay_cables(const Scene& scene, World& world) {
   world.cables = laid;
 }
 
-/// Whether a body that can move is where the last obstacle is, by more than `allowed` (m).
+/// Whether a body that may change gaps is where the last obstacle is, by more than `allowed` (m).
 bool is_covered(const World& world, double allowed) {
   Contact with_obstacle;
   with_obstacle.wall = static_cast<int>(world.obstacles.size()) - 1;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    if (!can_move(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b])) continue;
+    if (!may_change_gaps(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b]))
+      continue;
     with_obstacle.a = static_cast<int>(b);
     with_obstacle.touch = is_polygon(world.bodies[b]) ? Touch::end_of_wall : Touch::circles;
     if (gap_of(world, with_obstacle) < -allowed) return true;

@@ -157,6 +157,10 @@ Apart circles_apart(const World& world, const Contact& contact) {
 
 }  // namespace
 
+bool may_change_gaps(const BodyProperties& body) {
+  return can_move(body) || (is_polygon(body) && !is_static(body));
+}
+
 bool is_end_of_cable(const World& world, const Contact& contact) {
   return contact.b < 0 && at(world.obstacles, contact.wall).cable >= 0;
 }
