@@ -17,6 +17,7 @@
 #include "sim/detect/pinch.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"
+#include "sim/seams.h"
 #include "sim/step.h"
 #include "sim/touch.h"
 
@@ -27,7 +28,7 @@ namespace {
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
-  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall});
+  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall, 0.0, -1, {}});
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);
@@ -44,6 +45,9 @@ World bodies_of_scene(const Scene& scene) {
     if (body.carrier >= 0) world.carried.push_back(static_cast<int>(world.bodies.size()) - 1);
   }
   carry(world, world.carried);
+  if (std::any_of(scene.bodies.begin(), scene.bodies.end(), is_polygon)) {
+    join_walls(world.obstacles);
+  }
   return world;
 }
 
@@ -59,12 +63,13 @@ void lay_cables(const Scene& scene, World& world) {
   world.cables = laid;
 }
 
-/// Whether a body that can move is where the last obstacle is, by more than `allowed` (m).
+/// Whether a body that may change gaps is where the last obstacle is, by more than `allowed` (m).
 bool is_covered(const World& world, double allowed) {
   Contact with_obstacle;
   with_obstacle.wall = static_cast<int>(world.obstacles.size()) - 1;
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    if (!can_move(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b])) continue;
+    if (!may_change_gaps(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b]))
+      continue;
     with_obstacle.a = static_cast<int>(b);
     with_obstacle.touch = is_polygon(world.bodies[b]) ? Touch::end_of_wall : Touch::circles;
     if (gap_of(world, with_obstacle) < -allowed) return true;

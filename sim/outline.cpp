@@ -52,6 +52,37 @@ Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   return {distance, (point - end) / distance};
 }
 
+Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
+                         double most) {
+  Outside out;
+  out.distance = -infinity;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    double length = 0.0;
+    const Vec2 normal = way_out(corners, i, length);
+    if (normal.dot(way) > most) continue;
+    const double distance = normal.dot(point - corners[i]);
+    if (distance > out.distance) out = {distance, normal};
+  }
+  return out;
+}
+
+Vec2 way_out_at(std::span<const Vec2> corners, int corner) {
+  const auto here = static_cast<std::size_t>(corner), count = corners.size();
+  double length = 0.0;
+  return way_out(corners, (here + count - 1) % count, length) + way_out(corners, here, length);
+}
+
+double parted_by(std::span<const Vec2> corners, std::span<const Vec2> points) {
+  double most = -infinity;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    double length = 0.0, least = infinity;
+    const Vec2 normal = way_out(corners, i, length);
+    for (const Vec2& point : points) least = std::min(least, normal.dot(point - corners[i]));
+    most = std::max(most, least);
+  }
+  return most;
+}
+
 double inner_radius(const BodyProperties& body) {
   if (!is_polygon(body)) return body.radius;
   return body.corner_radius - outside_of(body.corners, Vec2::Zero()).distance;

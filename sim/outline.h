@@ -47,6 +47,18 @@ struct Outside {
 /// Of a point from the polygon of these corners, counter-clockwise, all in one frame.
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point);
 
+/// The same from the polygon's sides whose ways out make an angle with `way` whose cosine is at
+/// most `most`, gone on with to both ends: below 0 where the point is behind all of them.
+Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
+                         double most);
+
+/// The way out of a polygon at a corner: the sum of those across the two sides that meet there.
+Vec2 way_out_at(std::span<const Vec2> corners, int corner);
+
+/// Least over `points` of how far they are in front of the polygon's side that parts them from it
+/// most (m); below 0 no side does.
+double parted_by(std::span<const Vec2> corners, std::span<const Vec2> points);
+
 /// What a plate of this outline and of unit density has.
 struct Plate {
   double area = 0.0;           // m^2

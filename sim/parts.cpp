@@ -9,6 +9,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
+#include "sim/touch.h"
 #include "sim/trees.h"
 #include "sim/workspace.h"
 
@@ -104,8 +105,8 @@ int number_parts(const World& world, Parts& parts) {
   parts.immobile.resize(index(bodies));
   parts.movers.clear();
   for (int b = 0; b < bodies; ++b) {
-    at(parts.immobile, b) = !can_move(at(world.bodies, b));
-    if (!at(parts.immobile, b)) parts.movers.push_back(b);
+    at(parts.immobile, b) = !may_change_gaps(at(world.bodies, b));
+    if (can_move(at(world.bodies, b))) parts.movers.push_back(b);
     if (is_static(at(world.bodies, b))) continue;
     const int root = find_root(parts.root, b);
     at(parts.of_body, b) = root == b ? count++ : at(parts.of_body, root);
@@ -136,9 +137,10 @@ void describe(const World& world, Parts& parts, Part& part) {
   for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
     const int b = at(parts.bodies, k);
     at(parts.local, b) = k - part.bodies_begin;
-    if (!can_move(at(world.bodies, b))) continue;
-    part.lightest = std::min(part.lightest, at(world.bodies, b).mass);
-    part.can_move = true;
+    part.can_move = part.can_move || may_change_gaps(at(world.bodies, b));
+    if (can_move(at(world.bodies, b))) {
+      part.lightest = std::min(part.lightest, at(world.bodies, b).mass);
+    }
   }
   for (const int shape : carried_of(parts, part)) {
     at(parts.local, shape) = at(parts.local, at(world.bodies, shape).carrier);

@@ -20,7 +20,7 @@ struct Part {
   int cables_begin = 0, cables_end = 0;      // of Parts::cables
   int contacts_begin = 0, contacts_end = 0;  // of Parts::contacts
   double lightest = infinity;                // kg, of the bodies that can do more than turn
-  bool can_move = false;                     // a body of it can do more than turn
+  bool can_move = false;                     // a body of it may change gaps: touch.h
   bool creeps = false;                       // a cable of it does
   bool may_slide = false;                    // a cable of it touches a body of finite friction
   bool has_sleeves = false;                  // a cable with mass that may slip on bodies
@@ -57,8 +57,8 @@ struct Parts {
   std::vector<int> of_cable;   // part
   std::vector<int> local;      // place of the body, or of what carries it, in its part's bodies, or
                                // -1: fixed
-  bool any_moves = true;       // a body of a part that is awake can do more than turn
-  std::vector<char> immobile;  // whether the body's centre cannot move
+  bool any_moves = true;       // a body of a part that is awake may change gaps
+  std::vector<char> immobile;  // whether the body cannot change gaps
   std::vector<int> movers;     // bodies whose centre can
   std::vector<int> structure;  // what the parts were found for: pairs in contact
   int changes = -1;            // and CableState::changes of all cables
@@ -88,7 +88,7 @@ inline std::span<const int> contacts_of(const Parts& parts, const Part& part) {
 /// sleep. A part of the same bodies and cables as before keeps its system.
 void find_parts(const World& world, Workspace& work);
 
-/// Whether the body's centre is where it was: it cannot move, or its part is idle.
+/// Whether the body's outline is where it was: it cannot change, or its part is idle.
 inline bool is_still(const Parts& parts, int body) {
   if (parts.immobile.empty()) return false;  // not divided yet
   const auto b = static_cast<std::size_t>(body);

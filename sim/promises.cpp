@@ -13,6 +13,7 @@
 #include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 namespace {
@@ -148,9 +149,25 @@ void Promises::note_sag(const Scene& scene, const World& world) {
   }
 }
 
+namespace {
+
+/// How much nearer a contact is than it may be (m). Of two polygons the first of their contacts has
+/// that by which they overlap, whatever points they are found to touch with.
+double depth_of(const World& world, std::size_t number) {
+  const Contact& contact = world.contacts[number];
+  const double depth = contact.target - contact.gap;
+  if (contact.b < 0 || contact.touch == Touch::circles) return depth;
+  const bool is_first = number == 0 || world.contacts[number - 1].a != contact.a ||
+                        world.contacts[number - 1].b != contact.b;
+  return is_first ? std::max(depth, -separation(world, contact.a, contact.b)) : depth;
+}
+
+}  // namespace
+
 void Promises::note_contacts(const Scene& scene, const World& world) {
-  for (const Contact& contact : world.contacts) {
-    const double depth = contact.target - contact.gap;
+  for (std::size_t i = 0; i < world.contacts.size(); ++i) {
+    const Contact& contact = world.contacts[i];
+    const double depth = depth_of(world, i);
     if (!(depth > 0.0)) continue;
     double size = contact.target;
     if (!(size > 0.0)) {

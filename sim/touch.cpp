@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
+#include <span>
 
 #include "base/at.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
+#include "sim/seams.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
 
@@ -19,8 +22,79 @@ int points_of(const BodyProperties& body) {
   return is_polygon(body) ? static_cast<int>(body.corners.size()) : 1;
 }
 
+/// What a point that touches is a tip of: a corner of a polygon, or an end of a wall. A disc's
+/// centre is none.
+struct Tip {
+  int body = -1;            // the polygon, or -1
+  Vec2 way = Vec2::Zero();  // along the bisector, outwards, in the world's frame; 0: no tip
+  double most = 0.0;        // of way . n, for sides of way out n that it may touch
+};
+
+Tip tip_of(const World& world, int body, int point) {
+  const BodyProperties& b = at(world.bodies, body);
+  if (!is_polygon(b)) return {};
+  return {body, turned(way_out_at(b.corners, point), at(world.angle, body)), 0.0};
+}
+
+/// A wall is without width: what lies flat on it may be tilted either way by round-off.
+Tip tip_of_wall(const Obstacle& wall, int end) {
+  if (wall.cable >= 0) return {};
+  const Vec2 way = (wall.b - wall.a).normalized();
+  return {-1, end == 0 ? Vec2(-way) : way, std::numbers::sqrt2 / 2.0};
+}
+
+/// Where corners are this near (m), which of two sides they are in front of is round-off.
+double one_place(const World& world, int body, int other) {
+  constexpr double share = 1e-11;
+  const double coordinate = at(world.position, body).cwiseAbs().maxCoeff();
+  return share * (coordinate + at(world.bodies, body).radius +
+                  (other >= 0 ? at(world.bodies, other).radius : 0.0));
+}
+
+/// How far the points of `other` are in front of the body's side that parts the two most (m).
+double separation_by_sides(const World& world, int body, int other) {
+  const BodyProperties& points = at(world.bodies, other);
+  const double angle = at(world.angle, body), turn = at(world.angle, other) - angle;
+  const Vec2 centre = turned(at(world.position, other) - at(world.position, body), -angle);
+  std::array<Vec2, most_corners> places{centre};
+  for (std::size_t k = 0; k < points.corners.size(); ++k) {
+    places[k] = centre + turned(points.corners[k], turn);
+  }
+  return parted_by(at(world.bodies, body).corners,
+                   std::span(places).first(index(points_of(points))));
+}
+
+/// Whether two polygons overlap by `depth` (m, > 0) or more along every side's way out.
+bool overlap_by(const World& world, int body, int other, double depth) {
+  return separation_by_sides(world, body, other) <= -depth &&
+         separation_by_sides(world, other, body) <= -depth;
+}
+
+/// Of a tip (m) from the body's core: where it is not in front of a side that it may touch, all of
+/// what it is a tip of is nearer to the body than itself, or has come into it. Two polygons on one
+/// floor are such a case: the tip of one lies on the line of the other's underside, and would go
+/// along that for ever.
+///
+/// A tip of bisector b may touch sides of way out n where n . b <= 0: -n is then in the cone of its
+/// own two ways out, or by half of its angle beside it. So is any that what it belongs to rests on
+/// or slides along, tilted by round-off or not, and none that is behind it.
+Outside in_front(const World& world, int body, const Vec2& point, const Tip& tip,
+                 const Outside& out) {
+  const std::vector<Vec2>& corners = at(world.bodies, body).corners;
+  const double angle = at(world.angle, body);
+  const Vec2 way = turned(tip.way, -angle);
+  const double near = one_place(world, body, tip.body);
+  if (out.distance > near && (tip.body < 0 || out.normal.dot(way) <= tip.most)) return out;
+  const Outside sides = outside_of_sides(corners, point, way, tip.most);
+  if (out.distance <= near) return sides;
+  // Two tips that lean over each other as they meet pass by below both: neither is in the other.
+  const bool has_passed =
+      sides.distance < -out.distance && overlap_by(world, body, tip.body, -sides.distance - near);
+  return has_passed ? sides : out;
+}
+
 /// Of a point (m) from the body's core, in the world's frame.
-Outside outside_of_body(const World& world, int body, const Vec2& point) {
+Outside outside_of_body(const World& world, int body, const Vec2& point, const Tip& tip) {
   const BodyProperties& b = at(world.bodies, body);
   const Vec2 from = point - at(world.position, body);
   if (!is_polygon(b)) {
@@ -28,43 +102,21 @@ Outside outside_of_body(const World& world, int body, const Vec2& point) {
     return {distance, distance > 0.0 ? Vec2(from / distance) : Vec2(1.0, 0.0)};
   }
   const double angle = at(world.angle, body);
-  Outside out = outside_of(b.corners, turned(from, -angle));
+  const Vec2 inside = turned(from, -angle);
+  Outside out = outside_of(b.corners, inside);
+  if (tip.most > 0.0 || tip.body >= 0) out = in_front(world, body, inside, tip, out);
   out.normal = turned(out.normal, angle);
   return out;
 }
 
-/// Of a point from a wall's line, on the side of the body that the point belongs to.
-Outside outside_of_wall(const Wall& wall, const Vec2& centre, const Vec2& point) {
+/// Of a point from a wall's line, on the side of the body that the point belongs to; or on its own,
+/// where the body is round an end of the wall.
+Outside outside_of_wall(const Obstacle& wall, const Vec2& centre, const Vec2& point) {
   Vec2 normal = left((wall.b - wall.a).normalized());
   if (normal.dot(centre - wall.a) < 0.0) normal = -normal;
-  return {normal.dot(point - wall.a), normal};
-}
-
-/// Whether the wall is beside the point, rather than before or behind it.
-bool is_beside(const Wall& wall, const Vec2& point) {
-  const Vec2 d = wall.b - wall.a;
-  const double along = d.dot(point - wall.a);
-  return along >= 0.0 && along <= d.squaredNorm();
-}
-
-/// Least over the points of `other` of how far they are in front of the body's side that parts the
-/// two most.
-double separation_by_sides(const World& world, int body, int other) {
-  const std::vector<Vec2>& corners = at(world.bodies, body).corners;
-  const double angle = at(world.angle, body);
-  double most = -infinity;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Vec2& here = corners[i];
-    const Vec2& next = corners[(i + 1) % corners.size()];
-    const Vec2 out = turned(-left((next - here).normalized()), angle);
-    const Vec2 origin = at(world.position, body) + turned(here, angle);
-    double least = infinity;
-    for (int k = 0; k < points_of(at(world.bodies, other)); ++k) {
-      least = std::min(least, out.dot(place_of_point(world, other, k) - origin));
-    }
-    most = std::max(most, least);
-  }
-  return most;
+  const double distance = normal.dot(point - wall.a);
+  if (distance < 0.0 && leads_round(wall, centre, point)) return {-distance, -normal};
+  return {distance, normal};
 }
 
 /// Of two discs, or a disc and a wall.
@@ -104,6 +156,10 @@ Apart circles_apart(const World& world, const Contact& contact) {
 }
 
 }  // namespace
+
+bool may_change_gaps(const BodyProperties& body) {
+  return can_move(body) || (is_polygon(body) && !is_static(body));
+}
 
 bool is_end_of_cable(const World& world, const Contact& contact) {
   return contact.b < 0 && at(world.obstacles, contact.wall).cable >= 0;
@@ -156,7 +212,7 @@ Meeting meeting_of(const World& world, const Contact& contact) {
     const Obstacle& obstacle = at(world.obstacles, contact.wall);
     point = contact.point == 0 ? obstacle.a : obstacle.b;
     radius = obstacle.radius;
-    out = outside_of_body(world, other, point);
+    out = outside_of_body(world, other, point, tip_of_wall(obstacle, contact.point));
     other_radius = rim_radius(at(world.bodies, other));
   } else {
     point = place_of_point(world, owner, contact.point);
@@ -164,7 +220,7 @@ Meeting meeting_of(const World& world, const Contact& contact) {
     if (other < 0) {
       out = outside_of_wall(at(world.obstacles, contact.wall), at(world.position, owner), point);
     } else {
-      out = outside_of_body(world, other, point);
+      out = outside_of_body(world, other, point, tip_of(world, owner, contact.point));
       other_radius = rim_radius(at(world.bodies, other));
     }
   }
@@ -196,7 +252,8 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     const Obstacle& obstacle = at(world.obstacles, wall);
     const bool is_point = obstacle.cable >= 0;
     for (int k = 0; !is_point && k < points_of(body); ++k) {
-      if (is_beside(obstacle, place_of_point(world, a, k))) append(Touch::point_of_a, k);
+      const Vec2 point = place_of_point(world, a, k);
+      if (is_beside(obstacle, at(world.position, a), point)) append(Touch::point_of_a, k);
     }
     append(Touch::end_of_wall, 0);
     if (!is_point) append(Touch::end_of_wall, 1);
@@ -207,15 +264,20 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     for (int k = 0; k < points_of(body); ++k) append(Touch::point_of_a, k);
   }
   if (!is_polygon(body)) return;
-  // Where corner meets corner, one of the two is enough.
+  // Where corner meets corner, one of the two is enough, that with the lesser gap.
   const auto of_a = static_cast<std::ptrdiff_t>(to.size());
   const double same = 1e-9 * (body.radius + other.radius);
   for (int k = 0; k < points_of(other); ++k) {
     const Vec2 point = place_of_point(world, b, k);
+    const auto before = static_cast<std::ptrdiff_t>(to.size());
+    append(Touch::point_of_b, k);
+    const auto now = static_cast<std::ptrdiff_t>(to.size());
+    if (now == before) continue;
+    const double least = to.back().gap + one_place(world, a, b);
     const bool repeats = std::any_of(to.begin() + first, to.begin() + of_a, [&](const Contact& c) {
-      return (place_of_point(world, a, c.point) - point).norm() <= same;
+      return c.gap <= least && (place_of_point(world, a, c.point) - point).norm() <= same;
     });
-    if (!repeats) append(Touch::point_of_b, k);
+    if (repeats) to.pop_back();
   }
 }
 

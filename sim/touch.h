@@ -16,6 +16,9 @@ namespace pinchlab {
 
 struct World;
 
+/// Whether the body's motion can change gaps: its centre moves, or it turns and is not round.
+bool may_change_gaps(const BodyProperties& body);
+
 /// Where a contact's two surfaces are now.
 struct Meeting {
   double gap = 0.0;            // m, below 0: they overlap

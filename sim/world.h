@@ -4,6 +4,7 @@
 // (that is in a Workspace). Bodies and cables are indexed as in Scene; links and segments come and
 // go.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -155,11 +156,20 @@ inline double stored_length(const Link& link) {
   return link.layers.way == 0 ? link.radius * link.wrap : link.layers.length(link.wrap);
 }
 
+/// Where another wall goes on from a wall's end, on one side of it: by join_walls.
+struct Nook {
+  Vec2 way = Vec2::Zero();  // unit, along the other wall from there
+  double length = 0.0;      // m, of the other wall along that; 0: there is none
+  bool straight = false;    // the two are one line
+};
+
 /// What stands for good and bodies cannot pass: a wall of the scene; or the end of a cable that is
 /// held in the world, a smooth point with the cable's half width about it.
 struct Obstacle : Wall {
   double radius = 0.0;  // m, how far from its line its surface is
   int cable = -1;       // whose end it is, or -1: a wall
+  std::array<std::array<Nook, 2>, 2>
+      nooks;  // of a and b, on the left of the way out of the wall there and on its right
 };
 
 /// What came of a step. It fails where a value is not finite, or where cables bend round more

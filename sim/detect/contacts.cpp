@@ -152,7 +152,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     add_contacts(world, pair.a, pair.b, -1, d, a + b, most);
   }
   for (const WallPair& pair : broad.wall_pairs) {
-    if (!can_move(at(world.bodies, pair.body))) continue;
+    if (!may_change_gaps(at(world.bodies, pair.body))) continue;
     if (is_still(work.parts, pair.body)) {
       kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
       continue;

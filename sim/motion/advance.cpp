@@ -24,6 +24,7 @@
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/rubbing.h"
+#include "sim/touch.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -83,8 +84,8 @@ bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
   for (const int number : contacts_of(parts, part)) {
     const Contact& c = at(world.contacts, number);
     if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
-    if (can_move(at(world.bodies, c.a))) return true;
-    if (c.b >= 0 && can_move(at(world.bodies, c.b))) return true;
+    if (may_change_gaps(at(world.bodies, c.a))) return true;
+    if (c.b >= 0 && may_change_gaps(at(world.bodies, c.b))) return true;
   }
   return false;
 }

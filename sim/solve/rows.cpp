@@ -270,6 +270,18 @@ void add_friction(PartSystem& s, const Friction& friction) {
 }
 
 /// The rows of a contact that can give way.
+/// Whether all that a contact can move is one body's turning: its normal row says all about that.
+bool only_turns_one(const World& world, const Contact& contact) {
+  int turning = 0;
+  for (const int touching : {contact.a, contact.b}) {
+    if (touching < 0) continue;
+    const BodyProperties& body = at(world.bodies, mover_of(world, touching));
+    if (can_move(body)) return false;
+    turning += is_static(body) ? 0 : 1;
+  }
+  return turning == 1;
+}
+
 void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
                          const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   const Contact& contact = at(world.contacts, number);
@@ -281,7 +293,7 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   weigh(s, normal);
 
   const double mu = coefficient_of(world, contact);
-  if (mu == 0.0) return;
+  if (mu == 0.0 || only_turns_one(world, contact)) return;
   const int tangent = append_row(s, a, b);
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
@@ -463,8 +475,8 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
   for (const int number : part.can_move ? contacts : std::span<const int>()) {
     const Contact& contact = at(world.contacts, number);
-    const bool gives = can_move(at(world.bodies, contact.a)) ||
-                       (contact.b >= 0 && can_move(at(world.bodies, contact.b)));
+    const bool gives = may_change_gaps(at(world.bodies, contact.a)) ||
+                       (contact.b >= 0 && may_change_gaps(at(world.bodies, contact.b)));
     if (gives) append_contact_rows(scene, world, parts, number, interval, s, scratch);
   }
   s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
