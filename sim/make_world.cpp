@@ -63,24 +63,29 @@ void lay_cables(const Scene& scene, World& world) {
   world.cables = laid;
 }
 
-/// Whether a body that may change gaps is where the last obstacle is, by more than `allowed` (m).
-bool is_covered(const World& world, double allowed) {
+/// Whether a body that may change gaps is where the last obstacle is, a cable's end, by more than
+/// `allowed` (m). Any is in its box, with room.
+bool is_covered(const World& world, const BroadPhase& broad, double allowed) {
+  const Obstacle& end = world.obstacles.back();
+  const Vec2 thick = Vec2::Constant(end.radius);
   Contact with_obstacle;
   with_obstacle.wall = static_cast<int>(world.obstacles.size()) - 1;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    if (!may_change_gaps(world.bodies[b]) || !bars(world.obstacles.back(), world.bodies[b]))
-      continue;
-    with_obstacle.a = static_cast<int>(b);
-    with_obstacle.touch = is_polygon(world.bodies[b]) ? Touch::end_of_wall : Touch::circles;
-    if (gap_of(world, with_obstacle) < -allowed) return true;
-  }
-  return false;
+  bool covered = false;
+  visit_overlapping(broad, {end.a - thick, end.a + thick}, [&](int body) {
+    const BodyProperties& properties = at(world.bodies, body);
+    if (covered || !may_change_gaps(properties) || !bars(end, properties)) return;
+    with_obstacle.a = body;
+    with_obstacle.touch = is_polygon(properties) ? Touch::end_of_wall : Touch::circles;
+    covered = gap_of(world, with_obstacle) < -allowed;
+  });
+  return covered;
 }
 
 /// Ends of cables that are held in the world bar the way as their cables do; but for one over which
 /// a body starts. At the end of a cable with mass a span would shrink to nothing, whose turning,
 /// and with it what flows along it, has no bound.
-void add_ends(const Scene& scene, World& world) {
+void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
+  const double allowed = overlap_allowed(scene);
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     const Cable& cable = scene.cables[c];
     if (cable.closed || is_passed(world.cables[c]) || is_massed(world.cables[c])) continue;
@@ -92,7 +97,7 @@ void add_ends(const Scene& scene, World& world) {
       obstacle.radius = cable.half_width;
       obstacle.cable = static_cast<int>(c);
       world.obstacles.push_back(obstacle);
-      if (is_covered(world, overlap_allowed(scene))) world.obstacles.pop_back();
+      if (is_covered(world, broad, allowed)) world.obstacles.pop_back();
     }
   }
 }
@@ -141,7 +146,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   refuse_overlaps(scene, world, work.broad_phase);
   lay_cables(scene, world);
   if (configuration.method == Method::pinch && locates_events(configuration)) {
-    add_ends(scene, world);
+    add_ends(scene, work.broad_phase, world);
   }
   find_body_pairs(scene, world, work);
   find_span_pairs(world, work);

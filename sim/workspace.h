@@ -93,7 +93,7 @@ struct Workspace {
   SolveScratch solve;               // of the part being solved
 
   BroadPhase broad_phase;         // by find_body_pairs and find_span_pairs
-  std::vector<Release> released;  // since update_segments; by remove_links
+  std::vector<Release> released;  // since update_segments, by their cables; by note_release
   bool spans_moved = true;        // any of them, by update_segments
   ContactScratch contacts;
   SweepScratch sweeps;  // of the iterative solver
@@ -105,6 +105,7 @@ struct Workspace {
   std::vector<Trial> trials;                     // the last of each part
   Trial trial;                                   // the last, of all that were tried
   std::vector<Happening> events;                 // of the interval being tried
+  std::vector<int> known_events;                 // of them, before the trial, by what they are
 
   Neighbourhoods neighbourhoods;  // by advance
   StepStart step_start;           // of a step that has been divided

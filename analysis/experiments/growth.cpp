@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "demos/scenes/build.h"
 #include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
@@ -62,6 +63,21 @@ Scene bouncing_balls(int count) {
   return scene;
 }
 
+/// Discs that fall, each on a taut span of its own, from heights that are all different: for a
+/// second some land in every step.
+Scene discs_on_spans(int count) {
+  constexpr double golden = 0.6180339887498949, half_span = 0.5, half_width = 0.02;  // m
+  Scene scene = discs_in_a_row("discs-on-spans", count,
+                               [](int i) { return 0.1 + 5.0 * std::fmod(golden * i, 1.0); });
+  for (int i = 0; i < count; ++i) {
+    const double x = disc_spacing * i;
+    scene.cables.push_back(
+        build::cable(build::at(x - half_span, 0.0), {}, build::at(x + half_span, 0.0), half_width));
+    scene.cables.back().name = "span " + std::to_string(i);
+  }
+  return scene;
+}
+
 Scene frictionless_chain(int pulleys) {
   Scene scene = chain_scene(pulleys);
   for (Body& body : scene.bodies) body.cable_friction = 0.0;
@@ -106,10 +122,15 @@ const std::vector<GrowingScene>& growing_scenes() {
        {100, 1000, 10000},
        [](int n) { return disconnected_scene(n, n); }},
       {"balls that bounce, each by itself, a step", {100, 1000, 10000}, bouncing_balls, 48},
+      {"discs that land on spans of their own, a step", {100, 1000, 10000}, discs_on_spans, 48},
       {"discs on walls of their own, a step", {100, 1000, 10000}, discs_on_walls},
       {"pulleys without friction under one cable, a step",
        {11, 33, 101, 331, 1001},
        frictionless_chain},
+      {"swinging cables, `make_world`",
+       {100, 1000, 10000},
+       [](int n) { return disconnected_scene(n, n); },
+       0},
       {"pinched stress scene, `make_world`",
        {20, 200, 2000},
        [](int n) { return stress_scene(n, pinched_spacing); },

@@ -18,8 +18,8 @@ struct GrowingScene {
   int steps = 1;  // timed at once, where what happens differs from step to step; 0: its make_world
 };
 
-/// Swinging cables, balls that bounce, discs on walls, pulleys without friction under one cable,
-/// and make_world of the pinched stress scene.
+/// Swinging cables, balls that bounce, discs that land on spans, discs on walls, pulleys without
+/// friction under one cable, and make_world of swinging cables and of the pinched stress scene.
 const std::vector<GrowingScene>& growing_scenes();
 
 /// One kind of scene at several sizes, two decades apart: the processor time of a step, or of

@@ -91,6 +91,13 @@ bool needed(const CableState& cable, std::size_t i) {
   return true;
 }
 
+void note_release(Workspace& work, const Release& release) {
+  const auto place =
+      std::upper_bound(work.released.begin(), work.released.end(), release,
+                       [](const Release& p, const Release& q) { return p.cable < q.cable; });
+  work.released.insert(place, release);
+}
+
 bool remove_links(World& world, Workspace& work) {
   bool any = false;
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
@@ -101,7 +108,7 @@ bool remove_links(World& world, Workspace& work) {
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         const Link& link = cable.links[i];
         if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
-          work.released.push_back({static_cast<int>(c), link.body, link.orientation});
+          note_release(work, {static_cast<int>(c), link.body, link.orientation});
           leave_body(world, cable, static_cast<int>(i));
           changed = any = true;
           break;

@@ -10,11 +10,15 @@ namespace pinchlab {
 struct BodyProperties;
 struct CableState;
 struct Link;
+struct Release;
 struct Workspace;
 struct World;
 
 /// Whether without link i a closed cable would lie on one body only: there would be no tangent.
 bool needed(const CableState& cable, std::size_t i);
+
+/// Notes it in Workspace::released, in its cable's place.
+void note_release(Workspace& work, const Release& release);
 
 /// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
 /// RemoveJoints). Returns whether there were any.

@@ -22,11 +22,29 @@ struct Margin {
   double widest = 0.0;  // m, half width of the widest cable
   double fall = 0.0;    // m, by gravity in one step
 
-  Margin(const Scene& scene, const World& world) {
-    for (const CableState& cable : world.cables) widest = std::max(widest, 0.5 * thickness(cable));
-    fall = scene.gravity.norm() * world.step_length * world.step_length;
-  }
+  Margin(const Scene& scene, const World& world)
+      : fall(scene.gravity.norm() * world.step_length * world.step_length) {}
+
+  void include(const CableState& cable) { widest = std::max(widest, 0.5 * thickness(cable)); }
 };
+
+Margin margin_of_all(const Scene& scene, const World& world) {
+  Margin margin(scene, world);
+  for (const CableState& cable : world.cables) margin.include(cable);
+  return margin;
+}
+
+/// The same in a divided step, in which only these parts have moved since the last time.
+Margin margin_of_movers(const Scene& scene, const World& world, const Workspace& work) {
+  Margin margin(scene, world);
+  margin.widest = work.broad_phase.widest;
+  for (const int p : work.neighbourhoods.moving) {
+    for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
+      margin.include(at(world.cables, c));
+    }
+  }
+  return margin;
+}
 
 /// How far from its centre a body and the cables round it may reach from the last step to the next.
 double reach_of_body(const World& world, const Margin& margin, std::size_t b) {
@@ -36,13 +54,13 @@ double reach_of_body(const World& world, const Margin& margin, std::size_t b) {
   return 1.02 * radius + margin.widest + 2.0 * (speed * world.step_length + margin.fall);
 }
 
+bool comes_before(const SpanPair& p, const SpanPair& q) {
+  return std::tie(p.cable, p.segment, p.body) < std::tie(q.cable, q.segment, q.body);
+}
+
 bool holds(const Box& box, const Vec2& point, double reach) {
   return point.x() - reach >= box.low.x() && point.x() + reach <= box.high.x() &&
          point.y() - reach >= box.low.y() && point.y() + reach <= box.high.y();
-}
-
-bool overlap(const Box& a, const Box& b, int axis) {
-  return a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis];
 }
 
 /// Sweeps along the axis in which the scene is longer; the order is nearly that of the last time.
@@ -104,19 +122,6 @@ void list_body_pairs(const Scene& scene, const World& world, BroadPhase& broad) 
       [](const BodyPair& p, const BodyPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
 }
 
-/// Calls visit(body) for the bodies whose boxes overlap with `box`.
-template <class Visit>
-void visit_overlapping(const BroadPhase& broad, const Box& box, Visit visit) {
-  const int axis = broad.axis;
-  const double least = box.low[axis] - broad.longest_box;
-  auto it = std::lower_bound(broad.key.begin(), broad.key.end(), least);
-  for (; it != broad.key.end() && *it <= box.high[axis]; ++it) {
-    const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];
-    const Box& other = at(broad.boxes, body);
-    if (overlap(box, other, axis) && overlap(box, other, 1 - axis)) visit(body);
-  }
-}
-
 void list_wall_pairs(const World& world, BroadPhase& broad) {
   broad.wall_pairs.clear();
   for (std::size_t w = 0; w < world.obstacles.size(); ++w) {
@@ -138,64 +143,84 @@ void list_wall_pairs(const World& world, BroadPhase& broad) {
             });
 }
 
+/// Appends what a cable's spans may meet.
+void list_spans_of(const World& world, std::size_t c, BroadPhase& broad) {
+  const CableState& cable = world.cables[c];
+  SpanList& list = broad.of_cable[c];
+  list.changes = cable.changes;
+  list.first_box = static_cast<int>(broad.span_boxes.size());
+  list.begin = static_cast<int>(broad.span_pairs.size());
+  for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+    const Segment& segment = cable.segments[s];
+    Box box = span_box(segment);
+    box.low -= Vec2::Constant(broad.skin);
+    box.high += Vec2::Constant(broad.skin);
+    broad.span_boxes.push_back(box);
+    const Link& to = cable.links[s];
+    const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
+    if (is_passed(cable) || is_side(from, to)) continue;
+    const auto first = static_cast<std::ptrdiff_t>(broad.span_pairs.size());
+    visit_overlapping(broad, box, [&](int body) {
+      if (!meets_spans(at(world.bodies, body))) return;
+      if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
+      broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
+    });
+    std::sort(broad.span_pairs.begin() + first, broad.span_pairs.end(), comes_before);
+  }
+  list.end = static_cast<int>(broad.span_pairs.size());
+  for (int i = list.begin; i < list.end; ++i) {
+    int& last = at(broad.last_of_body, at(broad.span_pairs, i).body);
+    broad.one_before.push_back(last);
+    last = i;
+  }
+}
+
 void list_span_pairs(const World& world, BroadPhase& broad) {
   broad.span_pairs.clear();
   broad.span_boxes.clear();
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    const CableState& cable = world.cables[c];
-    for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
-      const Segment& segment = cable.segments[s];
-      Box box = span_box(segment);
-      box.low -= Vec2::Constant(broad.skin);
-      box.high += Vec2::Constant(broad.skin);
-      broad.span_boxes.push_back(box);
-      const Link& to = cable.links[s];
-      const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
-      if (is_passed(cable) || is_side(from, to)) continue;
-      visit_overlapping(broad, box, [&](int body) {
-        if (!meets_spans(at(world.bodies, body))) return;
-        if (holds_span(world, cable, from, body) || holds_span(world, cable, to, body)) return;
-        broad.span_pairs.push_back({static_cast<int>(c), static_cast<int>(s), body});
-      });
-    }
-  }
-  std::sort(broad.span_pairs.begin(), broad.span_pairs.end(),
-            [](const SpanPair& p, const SpanPair& q) {
-              return std::tie(p.cable, p.segment, p.body) < std::tie(q.cable, q.segment, q.body);
-            });
+  broad.one_before.clear();
+  broad.last_of_body.assign(world.bodies.size(), -1);
+  broad.of_cable.resize(world.cables.size());
+  for (std::size_t c = 0; c < world.cables.size(); ++c) list_spans_of(world, c, broad);
+  broad.bodies_changed = broad.patched = false;
+  broad.changes = world.changes;
 }
 
-/// Whether all spans are where their boxes allow for. Where a span was a step ago was checked then.
-bool spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& broad) {
-  std::size_t box = 0;
+/// Whether all spans of a cable are where their boxes allow for. Where a span was a step ago was
+/// checked then.
+bool spans_in_boxes(const World& world, const BroadPhase& broad, std::size_t c) {
+  const CableState& cable = world.cables[c];
+  auto box = index(broad.of_cable[c].first_box);
+  for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s, ++box) {
+    const Segment& segment = cable.segments[s];
+    if (!segment.moved) continue;
+    if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
+        !holds(broad.span_boxes[box], segment.head, 0.0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool all_spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& broad) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    const CableState& cable = world.cables[c];
-    const std::size_t first = first_segment(cable);
-    if (is_idle(parts, c)) {
-      box += cable.segments.size() - first;
-      continue;
-    }
-    for (std::size_t s = first; s < cable.segments.size(); ++s, ++box) {
-      const Segment& segment = cable.segments[s];
-      if (!segment.moved) continue;
-      if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
-          !holds(broad.span_boxes[box], segment.head, 0.0)) {
-        return false;
-      }
-    }
+    if (!is_idle(parts, c) && !spans_in_boxes(world, broad, c)) return false;
   }
   return true;
 }
 
 /// Whether all bodies are where their boxes allow for; of a divided step, those that may have
 /// moved.
-bool boxes_hold(const Scene& scene, const World& world, const Workspace& work) {
+bool boxes_hold(const Scene& scene, const World& world, Workspace& work) {
   const Parts& parts = work.parts;
-  const BroadPhase& broad = work.broad_phase;
+  BroadPhase& broad = work.broad_phase;
+  const bool divided = work.neighbourhoods.divided;
+  const Margin margin =
+      divided ? margin_of_movers(scene, world, work) : margin_of_all(scene, world);
+  broad.widest = margin.widest;
   if (broad.boxes.size() != world.bodies.size() || broad.cables != world.cables.size())
     return false;
   if (parts.immobile.empty()) return world.bodies.empty();  // not divided yet
-  const Margin margin(scene, world);
   const auto is_in_box = [&](int b) {
     return is_still(parts, b) ||
            holds(at(broad.boxes, b), at(world.position, b), reach_of_body(world, margin, index(b)));
@@ -203,7 +228,7 @@ bool boxes_hold(const Scene& scene, const World& world, const Workspace& work) {
   const auto all_in_boxes = [&is_in_box](std::span<const int> bodies) {
     return std::all_of(bodies.begin(), bodies.end(), is_in_box);
   };
-  if (!work.neighbourhoods.divided) return all_in_boxes(parts.movers);
+  if (!divided) return all_in_boxes(parts.movers);
   const std::span<const int> moving = work.neighbourhoods.moving;
   return std::all_of(moving.begin(), moving.end(), [&](int p) {
     const Part& part = at(parts.list, p);
@@ -222,7 +247,7 @@ void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs) {
 
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes) {
   boxes.resize(world.bodies.size());
-  const Margin margin(scene, world);
+  const Margin margin = margin_of_all(scene, world);
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const Vec2 reach =
         Vec2::Constant(reach_of_body(world, margin, b) + (can_move(world.bodies[b]) ? skin : 0.0));
@@ -259,14 +284,46 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
 
 void find_span_pairs(const World& world, Workspace& work) {
   BroadPhase& broad = work.broad_phase;
-  const int changes = world.changes;
-  if (!broad.bodies_changed && broad.changes == changes &&
-      (!work.spans_moved || spans_in_boxes(world, work.parts, broad))) {
+  if (!broad.bodies_changed && !broad.patched && broad.changes == world.changes &&
+      (!work.spans_moved || all_spans_in_boxes(world, work.parts, broad))) {
     return;
   }
-  broad.bodies_changed = false;
-  broad.changes = changes;
   list_span_pairs(world, broad);
+}
+
+void find_moving_pairs(const Scene& scene, const World& world, Workspace& work) {
+  BroadPhase& broad = work.broad_phase;
+  const Parts& parts = work.parts;
+  find_body_pairs(scene, world, work);
+  if (broad.bodies_changed) list_span_pairs(world, broad);
+  broad.moving_pairs.clear();
+  for (const int p : work.neighbourhoods.moving) {
+    const Part& part = at(parts.list, p);
+    for (const int c : cables_of(parts, part)) {
+      const SpanList& list = at(broad.of_cable, c);
+      if (list.changes != at(world.cables, c).changes || !spans_in_boxes(world, broad, index(c))) {
+        list_spans_of(world, index(c), broad);
+        broad.patched = true;
+      }
+      const auto pairs = broad.span_pairs.begin();
+      broad.moving_pairs.insert(broad.moving_pairs.end(), pairs + list.begin, pairs + list.end);
+    }
+  }
+  broad.changes = world.changes;
+  const auto add_others = [&](int body) {
+    for (int i = at(broad.last_of_body, body); i >= 0; i = at(broad.one_before, i)) {
+      const SpanPair& pair = at(broad.span_pairs, i);
+      const SpanList& list = at(broad.of_cable, pair.cable);
+      const bool counts = list.begin <= i && i < list.end;
+      if (counts && is_idle(parts, index(pair.cable))) broad.moving_pairs.push_back(pair);
+    }
+  };
+  for (const int p : work.neighbourhoods.moving) {
+    const Part& part = at(parts.list, p);
+    for (const int body : bodies_of(parts, part)) add_others(body);
+    for (const int shape : carried_of(parts, part)) add_others(shape);
+  }
+  std::sort(broad.moving_pairs.begin(), broad.moving_pairs.end(), comes_before);
 }
 
 }  // namespace pinchlab

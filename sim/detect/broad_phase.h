@@ -2,8 +2,11 @@
 #pragma once
 // Which bodies, and which spans and bodies, may touch: boxes swept along the scene's longer axis.
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
+#include "base/at.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -25,10 +28,18 @@ struct Box {
   Vec2 low, high;
 };
 
+/// Where what is known of a cable's spans stands.
+struct SpanList {
+  int changes = -1;        // CableState::changes that it is for
+  int first_box = 0;       // of BroadPhase::span_boxes
+  int begin = 0, end = 0;  // of BroadPhase::span_pairs
+};
+
 struct BroadPhase {
   double skin = 0.0;            // m, the room: a share of the bodies' mean radius
+  double widest = 0.0;          // m, half width of the widest cable, that the boxes allow for
   std::vector<Box> boxes;       // of bodies: where they were, are, and may be next, and the skin
-  std::vector<Box> span_boxes;  // of spans, cable after cable, likewise
+  std::vector<Box> span_boxes;  // of spans, likewise, where SpanList has them
   std::vector<int> order;       // bodies by the low end of their box; nearly sorted
   std::vector<double> key;      // low end along the swept axis, in `order`
   double longest_box = 0.0;     // m, along the swept axis
@@ -38,8 +49,32 @@ struct BroadPhase {
   bool bodies_changed = false;  // since span_pairs were found
   std::vector<BodyPair> body_pairs;  // sorted
   std::vector<WallPair> wall_pairs;  // sorted
-  std::vector<SpanPair> span_pairs;  // sorted
+  std::vector<SpanPair> span_pairs;  // sorted, unless patched
+  std::vector<SpanList> of_cable;
+  std::vector<int> last_of_body;  // the last of span_pairs with each body, or -1
+  std::vector<int> one_before;    // of each of span_pairs, that with the same body before it, or -1
+  bool patched =
+      false;  // within a divided step pairs of single cables were found anew: they are at
+              // the end of span_pairs, and those that they had count no more
+  std::vector<SpanPair> moving_pairs;  // sorted; by find_moving_pairs
 };
+
+inline bool overlap(const Box& a, const Box& b, int axis) {
+  return a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis];
+}
+
+/// Calls visit(body) for the bodies whose boxes overlap with `box`.
+template <class Visit>
+void visit_overlapping(const BroadPhase& broad, const Box& box, Visit visit) {
+  const int axis = broad.axis;
+  const double least = box.low[axis] - broad.longest_box;
+  auto it = std::lower_bound(broad.key.begin(), broad.key.end(), least);
+  for (; it != broad.key.end() && *it <= box.high[axis]; ++it) {
+    const int body = broad.order[static_cast<std::size_t>(it - broad.key.begin())];
+    const Box& other = at(broad.boxes, body);
+    if (overlap(box, other, axis) && overlap(box, other, 1 - axis)) visit(body);
+  }
+}
 
 /// Whether two bodies are never in each other's way: fixed, nodes of cables, or without an outline.
 inline bool never_touch(const BodyProperties& a, const BodyProperties& b) {
@@ -74,5 +109,9 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work);
 /// The bodies that may meet free spans within the last step (zero-length ones cannot hit anything),
 /// likewise kept.
 void find_span_pairs(const World& world, Workspace& work);
+
+/// Of a divided step, the pairs of which the span or the body moves: BroadPhase::moving_pairs.
+/// Costs what moves, where no body leaves its box; all pairs must have been found for the round.
+void find_moving_pairs(const Scene& scene, const World& world, Workspace& work);
 
 }  // namespace pinchlab

@@ -17,6 +17,16 @@ void find_pairs(const Scene& scene, const World& world, Workspace& work) {
   (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
 }
 
+const std::vector<SpanPair>& find_pairs_of_interval(const Scene& scene, const World& world,
+                                                    Workspace& work) {
+  if (work.neighbourhoods.divided && world.configuration.detection == Detection::sweep) {
+    find_moving_pairs(scene, world, work);
+    return work.broad_phase.moving_pairs;
+  }
+  find_pairs(scene, world, work);
+  return work.broad_phase.span_pairs;
+}
+
 void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
   update_segments(world, work);
@@ -29,7 +39,7 @@ void detect_after_moving(const Scene& scene, World& world, Workspace& work, bool
   Stopwatch watch(times);
   const bool removed = remove_links(world, work);
   watch.lap(Stage::remove_links);
-  if (removed || !pairs_stand) find_pairs(scene, world, work);
+  if (removed || !pairs_stand || work.broad_phase.patched) find_pairs(scene, world, work);
   watch.lap(Stage::broad_phase);
   add_hit_links(world, work);
   watch.lap(Stage::intersect_segments);

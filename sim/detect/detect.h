@@ -2,11 +2,14 @@
 #pragma once
 // What touches what, and the course that the cables take.
 
+#include <vector>
+
 #include "sim/stages.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
+struct SpanPair;
 struct Workspace;
 
 /// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
@@ -18,5 +21,10 @@ void detect_after_moving(const Scene& scene, World& world, Workspace& work, bool
 
 /// The pairs that may touch or hit.
 void find_pairs(const Scene& scene, const World& world, Workspace& work);
+
+/// The spans and bodies that may have met within the interval being tried: of a divided step, those
+/// that move in it.
+const std::vector<SpanPair>& find_pairs_of_interval(const Scene& scene, const World& world,
+                                                    Workspace& work);
 
 }  // namespace pinchlab

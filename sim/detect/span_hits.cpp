@@ -77,10 +77,11 @@ int orientation_left(const World& world, const Workspace& work, const CableState
                      const Segment& segment, int body) {
   const bool fresh = segment.previous_tail == segment.tail && segment.previous_head == segment.head;
   if (!fresh) return 0;
-  for (const Release& release : work.released) {
-    if (&at(world.cables, release.cable) == &cable && release.body == body) {
-      return release.orientation;
-    }
+  const int number = static_cast<int>(&cable - world.cables.data());
+  auto release = std::lower_bound(work.released.begin(), work.released.end(), number,
+                                  [](const Release& r, int c) { return r.cable < c; });
+  for (; release != work.released.end() && release->cable == number; ++release) {
+    if (release->body == body) return release->orientation;
   }
   return 0;
 }
@@ -100,12 +101,17 @@ Hit test_left(const Segment& segment, std::size_t s, const Circle& circle, int o
   return hit;
 }
 
-/// Whether a link is an end of its cable that bars the way.
+/// Whether a link is an end of its cable that bars the way. Obstacles are sorted by their cables,
+/// behind those that are walls.
 bool is_solid_end(const World& world, const CableState& cable, const Link& link) {
   if (link.body >= 0) return false;
-  return std::any_of(world.obstacles.begin(), world.obstacles.end(), [&](const Obstacle& o) {
-    return o.cable >= 0 && &at(world.cables, o.cable) == &cable && o.a == link.offset;
-  });
+  const int number = static_cast<int>(&cable - world.cables.data());
+  auto end = std::lower_bound(world.obstacles.begin(), world.obstacles.end(), number,
+                              [](const Obstacle& o, int c) { return o.cable < c; });
+  for (; end != world.obstacles.end() && end->cable == number; ++end) {
+    if (end->a == link.offset) return true;
+  }
+  return false;
 }
 
 /// Over which end of the span, an end of its cable that bars the way, something has come that was
@@ -248,8 +254,8 @@ double span_clearance(const World& world, const Happening& hit) {
   return std::max(clearance, hit.over_end < 0 ? -along : along - segment.length);
 }
 
-void find_hits(const World& world, Workspace& work, std::vector<Happening>& events) {
-  for (const SpanPair& pair : work.broad_phase.span_pairs) {
+void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pairs) {
+  for (const SpanPair& pair : pairs) {
     const CableState& cable = at(world.cables, pair.cable);
     const auto s = index(pair.segment);
     if (!may_hit(world, work, pair, s)) continue;
@@ -266,7 +272,7 @@ void find_hits(const World& world, Workspace& work, std::vector<Happening>& even
     event.corner = hit.corner;
     event.orientation = hit.orientation;
     event.over_end = hit.over_end;
-    events.push_back(event);
+    work.events.push_back(event);
   }
 }
 

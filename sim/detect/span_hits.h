@@ -2,6 +2,7 @@
 #pragma once
 // Bodies against free spans: new links (thesis: SegmentIntersections and AddJoints).
 
+#include <span>
 #include <vector>
 
 #include "sim/world.h"
@@ -9,6 +10,7 @@
 namespace pinchlab {
 
 struct Happening;
+struct SpanPair;
 struct Workspace;
 
 /// Gives every body that has met a free span a link on it. A body meets a span when its margin
@@ -17,9 +19,8 @@ struct Workspace;
 /// was before.
 void add_hit_links(World& world, const Workspace& work);
 
-/// Hits of the bodies and spans of find_span_pairs since the interval's start, appended to
-/// `events`.
-void find_hits(const World& world, Workspace& work, std::vector<Happening>& events);
+/// Hits of these bodies and spans since the interval's start, appended to Workspace::events.
+void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pairs);
 
 /// How far the body of a hit, or its corner, is with its margin from the span's centre line, on the
 /// side on which a cable that ran round it would have that orientation (m); below 0 where it is

@@ -203,6 +203,7 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   catch_up(scene, world, parts, course.time, course.lag, work);
   course.lag = 0.0;
   change_courses(world, work);
+  if (work.neighbourhoods.divided) find_pairs_of_interval(scene, world, work);
 }
 
 /// Kinetic energy (J) of these at the time of their positions before an interval of `length` (s).
@@ -258,6 +259,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   course.located = course.events < most_events;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
+    if (near.divided) find_pairs_of_interval(scene, world, work);
   } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
     length = shorten_interval(scene, world, work, movers, length, met, watch);
@@ -329,6 +331,7 @@ bool move_all(const Scene& scene, World& world, Workspace& work, const Round& ro
     course.moved = course.happened = course.violated = false;
   }
   if (near.list.size() == 1) return move(scene, world, work, 0, true, round, watch);
+  find_pairs(scene, world, work);  // links have come and gone since
   for (Part& part : work.parts.list) part.waits = true;
   return move_one_by_one(scene, world, work, true, round, watch);
 }

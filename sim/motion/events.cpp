@@ -2,10 +2,7 @@
 #include "sim/motion/events.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <span>
+#include <numeric>
 #include <tuple>
 
 #include "base/at.h"
@@ -21,27 +18,41 @@ namespace pinchlab {
 
 namespace {
 
-/// The event of that key, or null.
-Happening* find(std::span<Happening> events, const Happening& key) {
-  const auto it = std::find_if(events.begin(), events.end(), [&key](const Happening& e) {
-    return e.kind == key.kind && e.part == key.part && e.row == key.row && e.cable == key.cable &&
-           e.item == key.item && e.body == key.body && e.corner == key.corner;
-  });
-  return it == events.end() ? nullptr : std::to_address(it);
+auto key_of(const Happening& e) {
+  return std::tie(e.kind, e.part, e.row, e.cable, e.item, e.body, e.corner);
+}
+
+/// The event of earlier trials that has that key, or null. In one trial every key is measured once.
+Happening* find(Workspace& work, const Happening& key) {
+  const std::vector<int>& known = work.known_events;
+  const auto it = std::lower_bound(
+      known.begin(), known.end(), key,
+      [&work](int e, const Happening& k) { return key_of(at(work.events, e)) < key_of(k); });
+  if (it == known.end() || key_of(at(work.events, *it)) != key_of(key)) return nullptr;
+  return &at(work.events, *it);
 }
 
 /// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0:
 /// or nearly there).
-void measure(std::vector<Happening>& events, const Happening& key, double clearance, double late) {
-  if (events.empty() && clearance >= -late) return;
-  Happening* event = find(events, key);
+void measure(Workspace& work, const Happening& key, double clearance, double late) {
+  Happening* event = find(work, key);
   if (!event && clearance >= -late) return;
-  if (!event) event = &events.emplace_back(key);
+  if (!event) event = &work.events.emplace_back(key);
   event->clearance = clearance;
   event->seen = true;
 }
 
 }  // namespace
+
+void begin_trial(Workspace& work) {
+  std::vector<int>& known = work.known_events;
+  known.resize(work.events.size());
+  std::iota(known.begin(), known.end(), 0);
+  std::sort(known.begin(), known.end(), [&work](int p, int q) {
+    return key_of(at(work.events, p)) < key_of(at(work.events, q));
+  });
+  for (Happening& event : work.events) event.seen = false;
+}
 
 void find_catches(const World& world, Workspace& work, int number) {
   const Part& part = at(work.parts.list, number);
@@ -61,9 +72,9 @@ void find_catches(const World& world, Workspace& work, int number) {
     key.row = static_cast<int>(r);
     const double clearance = clearance_of(world, row);
     if (releases) {
-      if (row.clearance < -s.reach) measure(work.events, key, -clearance, late);
+      if (row.clearance < -s.reach) measure(work, key, -clearance, late);
     } else {
-      measure(work.events, key, clearance, row.clearance > s.reach ? -late : late);
+      measure(work, key, clearance, row.clearance > s.reach ? -late : late);
     }
   }
   if (!slides) return;
@@ -77,7 +88,7 @@ void find_catches(const World& world, Workspace& work, int number) {
         now += clearance_of(world, row);
       }
       key.row = at(capstan.members, group.begin);
-      if (before < -s.reach) measure(work.events, key, -now, late);
+      if (before < -s.reach) measure(work, key, -now, late);
       continue;
     }
     for (int k = group.slack_begin; k < group.slack_end; ++k) {
@@ -87,7 +98,7 @@ void find_catches(const World& world, Workspace& work, int number) {
       now += term.coefficient * clearance_of(world, row);
     }
     key.row = at(capstan.members, group.slack);
-    if (before > s.reach) measure(work.events, key, now, -late);
+    if (before > s.reach) measure(work, key, now, -late);
   }
 }
 
@@ -106,7 +117,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
       if (link.orientation == 0 || link.pinch_middle) continue;
       if (needed(cable, index(i))) continue;
       key.item = i;
-      measure(work.events, key, link.wrap * link.radius, 0.5 * s.reach);
+      measure(work, key, link.wrap * link.radius, 0.5 * s.reach);
     }
   }
 }
@@ -117,9 +128,8 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
     event.clearance = span_clearance(world, event);
     event.seen = true;
   }
-  find_pairs(scene, world, work);
   const std::size_t known = work.events.size();
-  find_hits(world, work, work.events);
+  find_hits(world, work, find_pairs_of_interval(scene, world, work));
   std::size_t kept = known;
   for (std::size_t i = known; i < work.events.size(); ++i) {
     Happening event = work.events[i];
@@ -128,10 +138,7 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
     event.clearance = span_clearance(world, event);
     event.seen = true;
     const bool met = event.clearance < -0.5 * event.reach;
-    if (getenv("DBG"))
-      fprintf(stderr, "  event b%d clearance %.3e reach %.2e o %d over %d\n", event.body,
-              event.clearance, event.reach, event.orientation, event.over_end);
-    if (met && !find(std::span(work.events).first(known), event)) work.events[kept++] = event;
+    if (met && !find(work, event)) work.events[kept++] = event;
   }
   work.events.resize(kept);
 }
@@ -157,7 +164,7 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     if (event.kind == EventKind::link_gone) {
       const Link& link = at(cable.links, event.item);
-      work.released.push_back({event.cable, link.body, link.orientation});
+      note_release(work, {event.cable, link.body, link.orientation});
       leave_body(world, cable, event.item);
     } else {
       meet_body(world, cable, index(event.item), event.body, event.corner, event.orientation);

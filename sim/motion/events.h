@@ -11,6 +11,9 @@ namespace pinchlab {
 struct Happening;
 struct Workspace;
 
+/// Another trial of the interval begins.
+void begin_trial(Workspace& work);
+
 /// Catches of a part: rows that idle and would have to bear force at the present positions,
 /// contacts that close and cables that are pulled tight. New ones are listed, known ones measured
 /// anew.

@@ -197,7 +197,7 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
   t.start = work.start.time;
   work.trial = Trial{};
   work.trials.resize(work.parts.list.size());
-  for (Happening& event : work.events) event.seen = false;
+  begin_trial(work);
   for (const int p : movers.parts) {
     Part& part = at(work.parts.list, p);
     PartSystem& s = at(work.systems, part.system);

@@ -57,6 +57,63 @@ TEST(Neighbourhoods, HoweverManyLandInOneStepAllRebound) {
   EXPECT_EQ(world.diagnostics.clusters, 0);
 }
 
+/// Balls that fall each on a taut span of its own.
+Scene balls_on_spans(int count) {
+  const auto height = [count](int i) { return 0.02 + 1e-3 * (7 * i % count); };
+  Scene scene = balls(0, height_of_ball);
+  scene.walls.clear();
+  for (int i = 0; i < count; ++i) {
+    scene.bodies.push_back(
+        body(fmt::format("ball {}", i), BodyKind::free, i, 0.12 + height(i), 0.1, 1.0));
+    scene.cables.push_back(cable(at(i - 0.4, 0.0), {}, at(i + 0.4, 0.0), 0.02));
+    scene.cables.back().name = fmt::format("span {}", i);
+    scene.cables.back().slack = 0.01;
+  }
+  return scene;
+}
+
+TEST(Neighbourhoods, BallsLandOnSpansAsIfEachWereAlone) {
+  constexpr int count = 40;
+  const Scene scene = balls_on_spans(count);
+  World world = make_world(scene, measured());
+  std::vector<Scene> alone(count, scene);
+  std::vector<World> worlds;
+  for (int i = 0; i < count; ++i) {
+    alone[index(i)].bodies = {scene.bodies[index(i)]};
+    alone[index(i)].cables = {scene.cables[index(i)]};
+    worlds.push_back(make_world(alone[index(i)], measured()));
+  }
+  Workspace work;
+  for (int k = 0; k < 120; ++k) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    for (int i = 0; i < count; ++i) {
+      run(alone[index(i)], worlds[index(i)], 1);
+      ASSERT_NEAR(world.position[index(i)].y(), worlds[index(i)].position[0].y(), 1e-9)
+          << "ball " << i << ", step " << k;
+    }
+  }
+  EXPECT_GE(world.diagnostics.events, count);
+  // The most pairs that an interval of one of them was tried with, however many there are.
+  const std::size_t most = work.broad_phase.moving_pairs.capacity();
+  EXPECT_GT(most, 0U);
+  EXPECT_LE(most, 4U);
+}
+
+// Pairs that are found for what moves alone are those that matter: all pairs give the same bits.
+TEST(Neighbourhoods, PairsOfWhatMovesAreEnough) {
+  const Scene scene = balls_on_spans(30);
+  Configuration all = measured();
+  all.detection = Detection::all_pairs;
+  World world = make_world(scene, measured()), reference = make_world(scene, all);
+  Workspace work, other;
+  for (int k = 0; k < 120; ++k) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    ASSERT_EQ(step(scene, reference, other), StepStatus::ok);
+    ASSERT_TRUE(same_state(world, reference)) << "step " << k;
+  }
+  EXPECT_GE(world.diagnostics.events, 30);
+}
+
 // A body of 1 kg hits one of 1 g, which flies twice as fast and meets a third far out of the
 // first's reach, all in one step; far off a ball bounces, so that the step is divided. By then the
 // third has come to the step's end, and is taken back.
@@ -157,6 +214,7 @@ TEST(Neighbourhoods, APendulumSwingsAsBesideNothing) {
 
 TEST(Neighbourhoods, AnotherWorkspaceGivesTheSameBits) {
   EXPECT_TRUE(is_all_state(balls(30, height_of_ball), measured(), 120));
+  EXPECT_TRUE(is_all_state(balls_on_spans(30), measured(), 120));
 }
 
 }  // namespace
