@@ -16,8 +16,8 @@ struct Hanging {
 
 /// A chain of pieces of equal length (m) whose ends are d (m) apart, with `weights` (N) at the
 /// nodes between them. The tension of piece k is t_k = t_0 - sum of the weights before it, and the
-/// pieces l t_k / |t_k| add up to d: where the convex function sum l |t_k| - t_0 . d is least, which
-/// Newton's method finds. The chain must be longer than d.
+/// pieces l t_k / |t_k| add up to d: where the convex function sum l |t_k| - t_0 . d is least,
+/// which Newton's method finds. The chain must be longer than d.
 Hanging hang(const std::vector<Vec2>& weights, double length, const Vec2& d);
 
 }  // namespace pinchlab

@@ -3,16 +3,16 @@
 // How many nodes a cable with mass has that leaves it open: as many as steps can follow.
 //
 // Nodes a distance l apart on a cable of rho kg a metre and tension T swing fastest where each goes
-// against the next: omega = 2 sqrt(T / rho) / l. The step takes tensions at its start, so that omega
-// h must be below 2; and above 1, where half of that is left for ends that move against the node,
-// solve/light_bodies.h damps it. So pieces are no shorter than
+// against the next: omega = 2 sqrt(T / rho) / l. The step takes tensions at its start, so that
+// omega h must be below 2; and above 1, where half of that is left for ends that move against the
+// node, solve/light_bodies.h damps it. So pieces are no shorter than
 //
 //     l = 2 h sqrt(T / rho),      with T the greatest tension that is to be expected.
 //
 // Between two points that stand that is the tension with which the cable hangs there. What an end
 // that moves bears, M with the cable itself, swings about the other end, a length L away: at the
-// lowest point T = M (g + v^2 / L). v^2 is that of the height it may fall through and the speed that
-// it has; at least 2 g L, as of what is let go level, so that T is 3 M g or more.
+// lowest point T = M (g + v^2 / L). v^2 is that of the height it may fall through and the speed
+// that it has; at least 2 g L, as of what is let go level, so that T is 3 M g or more.
 //
 // What catches a cable that is slack, a motor, or a body that falls on it may pull harder.
 
@@ -22,12 +22,15 @@
 
 namespace pinchlab {
 
+/// Of a cable that leaves it open.
+constexpr int most_nodes_chosen = 199;
+
 /// N, of a cable that spread_nodes is to make a chain of. The scene's other cables count as they
 /// are before that.
 double expected_tension(const Scene& scene, std::size_t cable);
 
-/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps can
-/// follow under the tension (N), at least two. Throws SceneError where they do not fit, or bend
+/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
+/// can follow under the tension (N), at least two. Throws SceneError where they do not fit, or bend
 /// faster than steps can follow.
 int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,
                  const std::string& place);
