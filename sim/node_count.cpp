@@ -9,7 +9,6 @@
 
 #include "base/at.h"
 #include "sim/hanging.h"
-#include "sim/nodes.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"

@@ -22,6 +22,9 @@
 
 namespace pinchlab {
 
+/// Of a cable that leaves it open.
+constexpr int most_nodes_chosen = 199;
+
 /// N, of a cable that spread_nodes is to make a chain of. The scene's other cables count as they
 /// are before that.
 double expected_tension(const Scene& scene, std::size_t cable);

@@ -5,12 +5,10 @@
 
 #include <vector>
 
+#include "sim/node_count.h"
 #include "sim/scene.h"
 
 namespace pinchlab {
-
-/// Of a cable that leaves it open.
-constexpr int most_nodes_chosen = 199;
 
 /// What a cable with mass has become.
 struct NodedCable {
