@@ -3,6 +3,7 @@
 
 #include "tests/sim/overlap.h"
 #include "sim/promises.h"
+#include "sim/scene_error.h"
 
 namespace pinchlab::testing {
 namespace {
@@ -231,15 +232,11 @@ TEST(RandomOverlap, PolygonsOnAxlesTurnIntoNothing) {
   int ran = 0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     const Scene scene = gears(seed);
-    World start = make_world(balls(1, height_of_ball), Method::pinch);
-    start.bodies.assign(scene.bodies.begin(), scene.bodies.end());
-    start.position.clear();
-    start.angle.clear();
-    for (const Body& b : scene.bodies) {
-      start.position.push_back(b.position);
-      start.angle.push_back(b.angle);
+    try {
+      make_world(scene, Method::pinch);
+    } catch (const SceneError&) {
+      continue;  // they overlap at the start
     }
-    if (largest_overlap(scene, start) > -1e-3) continue;
     expect_sound(scene, 1.0, seed);
     ++ran;
   }
