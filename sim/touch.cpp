@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/at.h"
+#include "sim/compound.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
 #include "sim/seams.h"
@@ -159,6 +160,22 @@ Apart circles_apart(const World& world, const Contact& contact) {
 
 bool may_change_gaps(const BodyProperties& body) {
   return can_move(body) || (is_polygon(body) && !is_static(body));
+}
+
+bool can_give(const World& world, const Contact& contact) {
+  return may_change_gaps(at(world.bodies, contact.a)) ||
+         (contact.b >= 0 && may_change_gaps(at(world.bodies, contact.b)));
+}
+
+bool only_turns_one(const World& world, const Contact& contact) {
+  int turning = 0;
+  for (const int touching : {contact.a, contact.b}) {
+    if (touching < 0) continue;
+    const BodyProperties& body = at(world.bodies, mover_of(world, touching));
+    if (can_move(body)) return false;
+    turning += is_static(body) ? 0 : 1;
+  }
+  return turning == 1;
 }
 
 bool is_end_of_cable(const World& world, const Contact& contact) {

@@ -19,6 +19,12 @@ struct World;
 /// Whether the body's motion can change gaps: its centre moves, or it turns and is not round.
 bool may_change_gaps(const BodyProperties& body);
 
+/// Whether a body of the contact can.
+bool can_give(const World& world, const Contact& contact);
+
+/// Whether all that a contact can move is one body's turning: its normal row says all about that.
+bool only_turns_one(const World& world, const Contact& contact);
+
 /// Where a contact's two surfaces are now.
 struct Meeting {
   double gap = 0.0;            // m, below 0: they overlap

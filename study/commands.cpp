@@ -383,13 +383,46 @@ void add_import(CLI::App& study) {
   });
 }
 
-void add_simulate(CLI::App& study, const Stimuli& stimuli) {
-  struct Options {
-    fs::path clips, answers, config, truth;
-    std::uint64_t seed = 1;
-    SimulationOptions simulation;
+struct SimulateOptions {
+  fs::path clips, answers, config, truth;
+  std::uint64_t seed = 1;
+  SimulationOptions simulation;
+};
+
+void simulate_participants(SimulateOptions& options, const Stimuli& stimuli) {
+  DeskOptions desk_options;
+  const Truth truth = read_truth(options.truth);
+  desk_options.config = read_or_default(options.config);
+  desk_options.config.is_pilot = true;
+  desk_options.config.simulated_by = truth.sha256;
+  desk_options.config.one_time_links = false;
+  desk_options.config.recruiting.reset();
+  desk_options.config.participant_limit = 0;
+  desk_options.clips = prepare(desk_options.config, stimuli, options.clips, true);
+  desk_options.answers = options.answers;
+  desk_options.seed = options.simulation.seed = options.seed;
+  check_truth(desk_options.config, truth);
+  Desk desk(std::move(desk_options));
+  std::optional<pinchlab::Progress> progress;
+  std::mutex mutex;
+  options.simulation.begin = [&](int to_come) {
+    progress.emplace("simulating", "participants", to_come);
   };
-  auto options = std::make_shared<Options>();
+  options.simulation.progress = [&](int) {
+    const std::scoped_lock lock(mutex);
+    progress->add(1);
+  };
+  const int added = simulate(desk, truth, options.simulation);
+  progress.reset();
+  const auto all = desk.overview().finished;
+  const auto before = all - static_cast<std::size_t>(added);
+  fmt::print("{}{}; answers in {}\n", counted(all, "simulated participant"),
+             before == 0 ? "" : fmt::format(", {} of them from before", before),
+             options.answers.string());
+}
+
+void add_simulate(CLI::App& study, const Stimuli& stimuli) {
+  auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = study.add_subcommand(
       "simulate", "Let participants who are not there take part, by a truth that is known");
   command
@@ -408,44 +441,13 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
   command->footer(
       "They start, see clips, answer and save over HTTP, at full speed, and their answers are "
       "marked as a pilot's.\nThe same seed gives the same answers, and an interrupted simulation "
-      "is "
-      "continued by the next. Try a design,\nits analysis and its report with it before anybody "
+      "is continued by the next. Try a design,\nits analysis and its report with it before anybody "
       "comes.\n\n"
       "Example:\n"
       "  pinchlab study simulate --participants 40 --truth truth.json --clips clips --answers "
       "simulated\n"
       "  pinchlab analyse simulated --out report");
-  command->callback([options, stimuli] {
-    DeskOptions desk_options;
-    const Truth truth = read_truth(options->truth);
-    desk_options.config = read_or_default(options->config);
-    desk_options.config.is_pilot = true;
-    desk_options.config.simulated_by = truth.sha256;
-    desk_options.config.one_time_links = false;
-    desk_options.config.recruiting.reset();
-    desk_options.config.participant_limit = 0;
-    desk_options.clips = prepare(desk_options.config, stimuli, options->clips, true);
-    desk_options.answers = options->answers;
-    desk_options.seed = options->simulation.seed = options->seed;
-    check_truth(desk_options.config, truth);
-    Desk desk(std::move(desk_options));
-    std::optional<pinchlab::Progress> progress;
-    std::mutex mutex;
-    options->simulation.begin = [&](int to_come) {
-      progress.emplace("simulating", "participants", to_come);
-    };
-    options->simulation.progress = [&](int) {
-      const std::scoped_lock lock(mutex);
-      progress->add(1);
-    };
-    const int added = simulate(desk, truth, options->simulation);
-    progress.reset();
-    const auto all = desk.overview().finished;
-    const auto before = all - static_cast<std::size_t>(added);
-    fmt::print("{}{}; answers in {}\n", counted(all, "simulated participant"),
-               before == 0 ? "" : fmt::format(", {} of them from before", before),
-               options->answers.string());
-  });
+  command->callback([options, stimuli] { simulate_participants(*options, stimuli); });
 }
 
 void add_withdraw(CLI::App& study) {

@@ -46,6 +46,7 @@ class Reader {
   int body_index(const json& name, const std::string& place);
 
   void check_grip(const json& cables, const Scene& scene);
+  void check_rims(const json& cable, const std::string& place, const Scene& scene);
   void check_rim(const json& cable, const char* end, const std::string& place, const Scene& scene);
   void check_creep(const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
@@ -183,6 +184,12 @@ void Reader::check_rim(const json& cable, const char* end, const std::string& pl
                       from["body"].get<std::string>(), is_start ? "first" : "last"));
 }
 
+void Reader::check_rims(const json& cable, const std::string& place, const Scene& scene) {
+  for (const char* end : {"start", "end"}) {
+    if (cable.contains(end)) check_rim(cable, end, place, scene);
+  }
+}
+
 std::vector<Wrap> Reader::read_wraps(const json& from, const std::string& place, bool closed) {
   std::vector<Wrap> wraps;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -253,9 +260,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
     }
   }
   cable.wraps = read_wraps(from.value("wraps", json::array()), place + "/wraps", cable.closed);
-  for (const char* end : {"start", "end"}) {
-    if (!cable.closed && from.contains(end)) check_rim(from, end, place, scene);
-  }
+  if (!cable.closed) check_rims(from, place, scene);
   const bool is_on_one_body =
       !cable.closed && cable.start.body >= 0 && cable.end.body == cable.start.body &&
       std::ranges::all_of(cable.wraps,

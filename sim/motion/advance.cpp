@@ -84,8 +84,7 @@ bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
   for (const int number : contacts_of(parts, part)) {
     const Contact& c = at(world.contacts, number);
     if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
-    if (may_change_gaps(at(world.bodies, c.a))) return true;
-    if (c.b >= 0 && may_change_gaps(at(world.bodies, c.b))) return true;
+    if (can_give(world, c)) return true;
   }
   return false;
 }

@@ -141,30 +141,39 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   make_row(world, given, segment, t, damped, s, number);
 }
 
-void make_sliding_elastic(const Scene& scene, const World& world, const Parts& parts,
-                          const Part& part, const TimeSpan& t, PartSystem& s) {
+void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                      const TimeSpan& t, PartSystem& s) {
   const std::span<const int> cables = cables_of(parts, part);
   for (std::size_t place = 0; place < cables.size(); ++place) {
     const CableState& cable = at(world.cables, cables[place]);
-    if (!cable.elastic || !slides_somewhere(world, cable)) continue;
-    if (t.length > 0.0 && world.configuration.solver == Solver::direct) {
-      s.elastic_ends.resize(s.rows.size());
-    }
+    if (!cable.elastic) continue;
+    const Cable& given = at(scene.cables, cables[place]);
     const std::span<const int> rows(s.row_of_segment.data() + s.segment_begin[place],
                                     cable.segments.size());
     const int count = static_cast<int>(cable.segments.size());
     int first = static_cast<int>(first_segment(cable));
+    if (!slides_somewhere(world, cable)) {
+      for (int i = first; i < count; ++i) {
+        const Segment& segment = at(cable.segments, i);
+        const int number = rows[index(i)];
+        if (number >= 0 && !segment.pinched) make_elastic(world, given, segment, t, s, number);
+      }
+      continue;
+    }
+    if (t.length > 0.0 && world.configuration.solver == Solver::direct) {
+      s.elastic_ends.resize(s.rows.size());
+    }
     for (int i = first; i < count; ++i) {
       const Link& link = at(cable.links, i);
       const bool holds = link.orientation != 0 && !link.pinch_middle &&
                          at(world.bodies, link.body).cable_friction == infinity;
       if (!cable.closed && holds) {
-        make_section(world, at(scene.cables, cables[place]), cable, rows, first, i, t, s);
+        make_section(world, given, cable, rows, first, i, t, s);
         first = i + 1;
       }
     }
     if (first < count) {
-      make_section(world, at(scene.cables, cables[place]), cable, rows, first, count - 1, t, s);
+      make_section(world, given, cable, rows, first, count - 1, t, s);
     }
   }
 }

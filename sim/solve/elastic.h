@@ -36,8 +36,8 @@ struct Parts;
 void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
                   PartSystem& s, int number);
 
-/// The same for all segments of the part's cables that may slide over bodies.
-void make_sliding_elastic(const Scene& scene, const World& world, const Parts& parts,
-                          const Part& part, const TimeSpan& t, PartSystem& s);
+/// The same for all segments of a part whose cables may slide over bodies.
+void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                      const TimeSpan& t, PartSystem& s);
 
 }  // namespace pinchlab

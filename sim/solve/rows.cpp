@@ -270,18 +270,6 @@ void add_friction(PartSystem& s, const Friction& friction) {
 }
 
 /// The rows of a contact that can give way.
-/// Whether all that a contact can move is one body's turning: its normal row says all about that.
-bool only_turns_one(const World& world, const Contact& contact) {
-  int turning = 0;
-  for (const int touching : {contact.a, contact.b}) {
-    if (touching < 0) continue;
-    const BodyProperties& body = at(world.bodies, mover_of(world, touching));
-    if (can_move(body)) return false;
-    turning += is_static(body) ? 0 : 1;
-  }
-  return turning == 1;
-}
-
 void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
                          const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   const Contact& contact = at(world.contacts, number);
@@ -450,7 +438,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
     // would feed back as speed: there they only pull.
     if (cable.rod && (exact || cable.joint != Joint::none)) hold_both_ways(interval, row);
-    if (cable.elastic && !segment.pinched && !(part.may_slide && slides_somewhere(world, cable))) {
+    if (cable.elastic && !segment.pinched && !part.may_slide) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {
@@ -460,7 +448,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     }
   }
   s.elastic_ends.clear();
-  if (part.may_slide) make_sliding_elastic(scene, world, parts, part, interval, s);
+  if (part.may_slide) make_all_elastic(scene, world, parts, part, interval, s);
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
@@ -475,9 +463,9 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
   for (const int number : part.can_move ? contacts : std::span<const int>()) {
     const Contact& contact = at(world.contacts, number);
-    const bool gives = may_change_gaps(at(world.bodies, contact.a)) ||
-                       (contact.b >= 0 && may_change_gaps(at(world.bodies, contact.b)));
-    if (gives) append_contact_rows(scene, world, parts, number, interval, s, scratch);
+    if (can_give(world, contact)) {
+      append_contact_rows(scene, world, parts, number, interval, s, scratch);
+    }
   }
   s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
   s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;

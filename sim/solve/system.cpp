@@ -241,14 +241,6 @@ double find_residuals(PartSystem& s, SolveScratch& set) {
   return largest;
 }
 
-double fastest(const PartSystem& s) {
-  double speed = 0.0;
-  for (const Eigen::Vector3d& v : s.velocity) {
-    speed = std::max({speed, std::abs(v.x()), std::abs(v.y())});
-  }
-  return speed;
-}
-
 /// One step of iterative refinement, and what it leaves. The residual is measured at the
 /// velocities, where heavy and light bodies do not mix, so that it restores what elimination loses
 /// at large mass ratios.
@@ -345,7 +337,7 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
       push(s, index(set.row_of_unknown[u]), -set.residual[u]);
     }
     if (k + 1 == most_times) break;
-    if (k == 0) rounding = 1e-13 * first + 4e-16 * fastest(s);
+    if (k == 0) rounding = 1e-13 * first + 4e-16 * greatest_speed(s.velocity);
     if (k > 0 && missing * missing <= rounding * first) {
       missing = rounding;
       break;
@@ -391,7 +383,7 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
   }
   const double before = start(s, set);
   double residual = refine(s, set);
-  const double rounding = 1e-13 * before + 4e-16 * fastest(s);
+  const double rounding = 1e-13 * before + 4e-16 * greatest_speed(s.velocity);
   for (int k = 0; k < 2 && repeated == 0 && residual > rounding; ++k) residual = refine(s, set);
   if (repeated > 0) spread_over_repeated_rows(s, set, rounding);
 }

@@ -12,31 +12,6 @@ Scene read(const std::string& name) {
   return read_scene_file(PINCHLAB_SOURCE_DIR "/tests/sim/defects/" + name + ".json").scene;
 }
 
-/// The largest of each over a run. Energies in J, lengths in m.
-struct Extremes {
-  double energy_gain = -infinity;  // over that at the start
-  double kinetic = 0.0;
-  double stretch = 0.0;
-  double gap_violation = 0.0;
-};
-
-Extremes play(const Scene& scene, World& world, double seconds) {
-  Extremes most;
-  Workspace work;
-  double start = 0.0;
-  for (int i = 0; world.time() < seconds; ++i) {
-    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-    const Diagnostics& d = world.diagnostics;
-    if (i == 0) start = d.energy;
-    most.energy_gain = std::max(most.energy_gain, d.energy - start);
-    most.kinetic = std::max(most.kinetic, kinetic_energy(world));
-    most.stretch = std::max(most.stretch, d.largest_stretch);
-    most.gap_violation = std::max(most.gap_violation, d.largest_gap_violation);
-    if (::testing::Test::HasFailure()) break;
-  }
-  return most;
-}
-
 // A slack group's slack row lies between the peg and the world and cannot give way; the weight can.
 TEST(Defects, ASlackCableOverASmoothPegIsPulledTaut) {
   const Scene scene = read("01-slack-over-smooth-peg");

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "demos/scenes/build.h"
+#include "sim/diagnostics.h"
 #include "sim/step.h"
 #include "sim/world.h"
 
@@ -33,6 +34,31 @@ inline void run(const Scene& scene, World& world, int steps) {
   for (int i = 0; i < steps; ++i) {
     ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
   }
+}
+
+/// The largest of each over a run. Energies in J, lengths in m.
+struct Extremes {
+  double energy_gain = -infinity;  // over that at the start
+  double kinetic = 0.0;
+  double stretch = 0.0;
+  double gap_violation = 0.0;
+};
+
+inline Extremes play(const Scene& scene, World& world, double seconds) {
+  Extremes most;
+  Workspace work;
+  double start = 0.0;
+  for (int i = 0; world.time() < seconds; ++i) {
+    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    const Diagnostics& d = world.diagnostics;
+    if (i == 0) start = d.energy;
+    most.energy_gain = std::max(most.energy_gain, d.energy - start);
+    most.kinetic = std::max(most.kinetic, kinetic_energy(world));
+    most.stretch = std::max(most.stretch, d.largest_stretch);
+    most.gap_violation = std::max(most.gap_violation, d.largest_gap_violation);
+    if (::testing::Test::HasFailure()) break;
+  }
+  return most;
 }
 
 inline double height_of_ball(int i) {  // m, of its lowest point at time 0
