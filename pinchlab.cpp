@@ -45,10 +45,14 @@ void add_fps(CLI::App& command, Timing& timing) {
                   "Frames a second [the scene's]; the steps get no longer than the scene's")
       ->type_name("N")
       ->check(CLI::Range(1, 1000));
-  command
+}
+
+CLI::Option* add_error(CLI::App& command, Timing& timing) {
+  return command
       .add_option("--error", timing.error,
-                  "About how far bodies may be from their exact places, m; steps are divided where "
-                  "that takes it, 0: nowhere [the scene's error_m, or 0]")
+                  "How far bodies may be from their exact places, m: steps are divided, up to 8 "
+                  "times as many are taken, until a simulation with half as long ones confirms it; "
+                  "0: not measured [the scene's error_m, or 0]")
       ->type_name("M")
       ->check(number_in(0.0, 1.0));
 }
@@ -82,6 +86,7 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
   add_size(command, size,
            "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
   add_fps(command, options.timing);
+  add_error(command, options.timing);
   command
       .add_option_function<std::string>(
           "--codec",
@@ -201,6 +206,7 @@ void add_render(CLI::App& app) {
 struct StillCommand : StillOptions {
   std::string scene, method = "pinch";
   std::vector<std::string> table;
+  Timing timing;  // its error alone
   bool both = false;
   Size size;
 };
@@ -243,9 +249,11 @@ void draw_still(StillCommand& options) {
     options.height = of_sheet.height;
     return write_series(read_sweep(options.scene, options.table), options.method, options);
   }
-  const SceneFile file = read_scene_file(options.scene);
+  SceneFile file = read_scene_file(options.scene);
+  file.scene = with_timing(file.scene, options.timing);
   options.methods = {method_of(file.scene, options.method)};
   if (options.both) options.methods = {Method::pinch, file.scene.baseline};
+  check_error_is_heeded(options.timing, options.methods);
   const bool sheet = frames_at(file.scene, options.times).size() * options.methods.size() > 1 &&
                      options.out.filename().string().find('#') == std::string::npos;
   if (options.neutral && !sheet) {
@@ -264,6 +272,7 @@ void add_still(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("still", "One frame as PNG, SVG or PDF; several make a contact sheet");
   add_frames(*command, *options);
+  add_error(*command, options->timing)->excludes(command->get_option("--table"));
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
   add_time_limit(*command, options->time_limit, "Give up");
@@ -300,6 +309,7 @@ void add_simulate(CLI::App& app) {
                    "The last row is the last frame's up to this time, s [the clip's last frame]")
       ->type_name("S");
   add_fps(*command, options->timing);
+  add_error(*command, options->timing);
   command
       ->add_option("--steps-per-frame", options->timing.steps_per_frame,
                    "Steps a frame [the scene's]")

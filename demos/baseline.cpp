@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "demos/scenes/player.h"
+#include "demos/scenes/fineness.h"
 
 namespace pinchlab {
 namespace {
@@ -22,9 +22,19 @@ struct Motion {
   std::vector<std::vector<char>> at_wall;  // whether a body touches a wall
 };
 
+/// What clips show. A simulation that fails is told by the one that follows.
+Scene as_fine_as_asked(const SceneFile& file, const Scene& scene, const MethodFigures& figures) {
+  try {
+    const int last = scene.frame_count - 1;
+    return made_finer(scene, find_fineness(file, scene, figures.method, last, {}).factor);
+  } catch (const std::runtime_error&) {
+    return scene;
+  }
+}
+
 Motion play(const SceneFile& file, const Scene& scene, MethodFigures& figures) {
-  Player player(file, scene, figures.method);
   Motion motion;
+  Player player(file, as_fine_as_asked(file, scene, figures), figures.method);
   try {
     for (int frame = 0; frame < scene.frame_count; ++frame) {
       player.advance_to(frame);

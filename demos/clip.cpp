@@ -10,7 +10,7 @@
 #include "base/partial_file.h"
 #include "base/sha256.h"
 #include "demos/pair_report.h"
-#include "demos/scenes/player.h"
+#include "demos/scenes/fineness.h"
 #include "demos/version.h"
 #include "render/canvas.h"
 #include "render/frame_hash.h"
@@ -49,6 +49,7 @@ void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
 
 struct Made {
   std::string frames_hash;  // of the raw frames (RGBA, top row first, one after the other)
+  ordered_json accuracy;    // of the methods whose error was asked for
   std::vector<std::string> broken_promises;
 };
 
@@ -58,11 +59,30 @@ void add_new(const std::vector<std::string>& lines, std::vector<std::string>& al
   }
 }
 
+/// How fine one method's steps are.
+Fineness find_fineness(const ClipPlan& plan, const Configuration& method,
+                       std::optional<double> time_limit, Made& made) {
+  const Fineness found =
+      find_fineness(*plan.source, plan.scene, method, plan.scene.frame_count - 1, time_limit);
+  if (found.believed) {
+    made.accuracy.push_back({{"method", to_string(method)},
+                             {"steps_per_frame", found.steps_per_frame},
+                             {"believed_error_m", *found.believed}});
+    std::vector<std::string> missed;
+    add_missed_error(found, method, missed);
+    add_new(missed, made.broken_promises);
+  }
+  return found;
+}
+
 Made write_video(const ClipPlan& plan, const std::string& path, const std::function<void()>& tick,
                  std::optional<double> time_limit) {
+  Made made;
   std::deque<Player> players;
+  std::vector<int> factors;
   for (const Configuration& method : plan.methods) {
-    players.emplace_back(*plan.source, plan.scene, method);
+    factors.push_back(find_fineness(plan, method, time_limit, made).factor);
+    players.emplace_back(*plan.source, made_finer(plan.scene, factors.back()), method);
     players.back().give_up_after(time_limit);
   }
   std::vector<Picture> pictures(players.size());
@@ -78,7 +98,7 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
                         (static_cast<double>(players.size()) * plan.video.height);  // of a panel
   for (const std::int64_t step : plan.steps) {
     for (std::size_t i = 0; i < players.size(); ++i) {
-      players[i].advance_to_step(step);
+      players[i].advance_to_step(step * factors[i]);
       compose(plan.scene, scenery, players[i].world(), pictures[i]);
       if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time(), aspect));
     }
@@ -95,7 +115,6 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
     }
     tick();
   }
-  Made made;
   for (const Player& player : players) add_new(player.broken_promises(), made.broken_promises);
   video.finish();
   made.frames_hash = frames.hex();
@@ -114,7 +133,8 @@ Made write_poster(const ClipPlan& plan, const std::string& path, const std::func
   std::vector<SheetFrame> sheet;
   Made made;
   for (const Configuration& method : plan.methods) {
-    Player player(*plan.source, plan.scene, method);
+    const Fineness fineness = find_fineness(plan, method, time_limit, made);
+    Player player(*plan.source, made_finer(plan.scene, fineness.factor), method);
     player.give_up_after(time_limit);
     player.advance_to(poster_frame(plan));
     add_new(player.broken_promises(), made.broken_promises);
@@ -211,6 +231,7 @@ ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder
   }
   if (plan.product != Product::report) entry["raw_frames_murmur3"] = made.frames_hash;
   entry["sha256"] = sha256_of_file(path);
+  if (!made.accuracy.empty()) entry["accuracy"] = made.accuracy;
   if (!made.broken_promises.empty()) entry["broken_promises"] = made.broken_promises;
   return entry;
 }

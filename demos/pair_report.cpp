@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "demos/scenes/player.h"
+#include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/mesh.h"
 #include "render/picture/compose.h"
@@ -214,7 +214,12 @@ PairReport report_pair(const SceneFile& file, const Scene& scene, int width, int
     return set_scenery(scene, file.look, {}, rehearsal_limit(file, time_limit));
   });
   Canvas canvas(2 * block * blocks.columns, block * blocks.rows);
-  Player pinch(file, scene, Method::pinch), baseline(file, scene, scene.baseline);
+  const auto fine = [&](Method method) {
+    return made_finer(scene,
+                      find_fineness(file, scene, method, scene.frame_count - 1, time_limit).factor);
+  };
+  Player pinch(file, fine(Method::pinch), Method::pinch),
+      baseline(file, fine(scene.baseline), scene.baseline);
   pinch.give_up_after(time_limit);
   baseline.give_up_after(time_limit);
   Picture pinch_picture, baseline_picture;

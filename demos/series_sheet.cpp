@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "demos/scenes/player.h"
+#include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
 #include "render/png.h"
@@ -59,7 +59,10 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       return set_scenery(scene, stimulus.source.look, options.theme.theme,
                          rehearsal_limit(stimulus.source, options.time_limit));
     });
-    Player player(stimulus.source, scene, stimulus.plan.methods[0]);
+    const Configuration& configuration = stimulus.plan.methods[0];
+    const Fineness fineness = find_fineness(stimulus.source, scene, configuration,
+                                            scene.frame_count - 1, options.time_limit);
+    Player player(stimulus.source, made_finer(scene, fineness.factor), configuration);
     player.give_up_after(options.time_limit);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       player.advance_to(frames[i]);
@@ -69,7 +72,9 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
         frame.picture.add(time_label(scenery, player.time(), 1.0 * options.width / options.height));
       frame.label = fmt::format("{}, {:.2f} s", label_of(sweep.table, column), player.time());
     }
-    tell_broken_promises(sweep.table.place(column), player.broken_promises());
+    std::vector<std::string> broken = player.broken_promises();
+    add_missed_error(fineness, configuration, broken);
+    tell_broken_promises(sweep.table.place(column), broken);
   }
   return sheet;
 }

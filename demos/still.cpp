@@ -11,7 +11,7 @@
 #include <stdexcept>
 
 #include "base/progress.h"
-#include "demos/scenes/player.h"
+#include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
 #include "render/png.h"
@@ -44,10 +44,18 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
   std::vector<std::size_t> by_time(frames.size());
   std::iota(by_time.begin(), by_time.end(), 0U);
   std::ranges::stable_sort(by_time, {}, [&](std::size_t i) { return frames[i]; });
-  Player player(file, file.scene, method);
+  const int last = *std::ranges::max_element(frames);
+  const std::string who = fmt::format("{}, {}", file.scene.name, to_string(method));
+  // Of the whole clip, whose frames these are.
+  const int all = file.scene.frame_count - 1;
+  std::optional<Progress> measuring(std::in_place, "measuring the error of " + who, "frames", all);
+  const Fineness fineness = find_fineness(file, file.scene, method, all, options.time_limit,
+                                          [&measuring] { measuring->add(1); });
+  measuring.reset();
+  Player player(file, made_finer(file.scene, fineness.factor), method);
   player.give_up_after(options.time_limit);
-  Progress progress(fmt::format("simulating {}, {}", file.scene.name, to_string(method)), "steps",
-                    std::int64_t{*std::ranges::max_element(frames)} * file.scene.steps_per_frame);
+  Progress progress("simulating " + who, "steps",
+                    std::int64_t{last} * player.scene().steps_per_frame);
   player.on_step([&progress] { progress.add(1); });
   Picture picture;
   for (const std::size_t i : by_time) {
@@ -58,7 +66,10 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
     show(i, player, picture);
   }
   progress.clear();
-  tell_broken_promises(file.path.string(), player.broken_promises());
+  tell_fineness(fmt::format("{}: {}", file.path.string(), to_string(method)), fineness);
+  std::vector<std::string> broken = player.broken_promises();
+  add_missed_error(fineness, method, broken);
+  tell_broken_promises(file.path.string(), broken);
 }
 
 std::string label_of(const StillOptions& options, std::size_t row, double time) {

@@ -12,7 +12,6 @@
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/advance.h"
-#include "sim/motion/interval.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
@@ -181,10 +180,6 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   }
   for (const NodeChain& chain : scene.chains) carry_velocities(world, chain, now.linear);
   return now;
-}
-
-double believed_error(const World& world) {
-  return world.diagnostics.local_error / share_of_error;
 }
 
 const char* to_string(Stage stage) {

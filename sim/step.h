@@ -26,8 +26,4 @@ struct Velocities {
 };
 Velocities velocities_now(const Scene& scene, const World& world, Workspace& work);
 
-/// About how far bodies may be from their exact places (m): the Configuration::error that every
-/// interval so far would have met. 0 where nothing bends or nothing was located.
-double believed_error(const World& world);
-
 }  // namespace pinchlab

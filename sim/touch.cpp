@@ -65,6 +65,21 @@ double separation_by_sides(const World& world, int body, int other) {
                    std::span(places).first(index(points_of(points))));
 }
 
+/// The least distance of a point of `other` from the body's sides (m).
+double distance_from_sides(const World& world, int body, int other) {
+  const int sides = points_of(at(world.bodies, body));
+  double least = infinity;
+  for (int k = 0; k < points_of(at(world.bodies, other)); ++k) {
+    const Vec2 point = place_of_point(world, other, k);
+    for (int i = 0; i < sides; ++i) {
+      least =
+          std::min(least, distance_from_line(place_of_point(world, body, i),
+                                             place_of_point(world, body, (i + 1) % sides), point));
+    }
+  }
+  return least;
+}
+
 /// Whether two polygons overlap by `depth` (m, > 0) or more along every side's way out.
 bool overlap_by(const World& world, int body, int other, double depth) {
   return separation_by_sides(world, body, other) <= -depth &&
@@ -302,6 +317,10 @@ double separation(const World& world, int a, int b) {
   double most = -infinity;
   if (is_polygon(at(world.bodies, a))) most = separation_by_sides(world, a, b);
   if (is_polygon(at(world.bodies, b))) most = std::max(most, separation_by_sides(world, b, a));
+  // Apart, two cores are nearest where a corner of one is to a side of the other.
+  if (most > 0.0) {
+    most = std::min(distance_from_sides(world, a, b), distance_from_sides(world, b, a));
+  }
   return most - rim_radius(at(world.bodies, a)) - rim_radius(at(world.bodies, b));
 }
 

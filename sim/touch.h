@@ -57,9 +57,8 @@ double gap_of(const World& world, const Contact& contact);
 void append_touches(const World& world, int a, int b, int wall, double most,
                     std::vector<Contact>& to);
 
-/// By how much the outlines of two bodies one of which is a polygon are apart along the direction
-/// that parts them most (m): below 0 they overlap by that. Where they are apart, their distance is
-/// at least that.
+/// The distance of the outlines of two bodies one of which is a polygon (m); below 0 they overlap
+/// by that, along the direction in which they do least.
 double separation(const World& world, int a, int b);
 
 }  // namespace pinchlab

@@ -195,7 +195,6 @@ struct Diagnostics {
   std::int64_t intervals = 0;     // into which steps have been divided, since the start
   std::int64_t node_changes = 0;  // of cables whose number of nodes adapts, since the start
   double node_losses = 0.0;       // J, kinetic energy lost in these
-  double local_error = 0.0;       // m, the largest estimate of an interval since the start
   std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 

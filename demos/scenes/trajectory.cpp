@@ -10,6 +10,7 @@
 
 #include "base/output_file.h"
 #include "base/progress.h"
+#include "demos/scenes/fineness.h"
 #include "demos/scenes/scene_format.h"
 
 namespace pinchlab {
@@ -76,6 +77,15 @@ void tell_last_time(const SceneFile& file, const Scene& scene, std::optional<dou
              file.path.string(), *until, time);
 }
 
+Fineness find_fineness(const SceneFile& file, const Scene& scene, int last,
+                       const TrajectoryOptions& options) {
+  std::optional<Progress> progress;
+  if (!options.quiet) progress.emplace("measuring the error of " + scene.name, "frames", last);
+  return find_fineness(file, scene, options.configuration, last, options.time_limit, [&progress] {
+    if (progress) progress->add(1);
+  });
+}
+
 }  // namespace
 
 void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
@@ -88,10 +98,12 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
           fmt::format("{}: is the scene; give the motion another name", out.string()));
     }
   }
-  const Scene scene = with_timing(file.scene, options.timing);
+  const Scene asked = with_timing(file.scene, options.timing);
   check_error_is_heeded(options.timing, {&options.configuration, 1});
-  const int last = last_frame(scene, options.until);
-  if (!options.quiet) tell_last_time(file, scene, options.until, last);
+  const int last = last_frame(asked, options.until);
+  if (!options.quiet) tell_last_time(file, asked, options.until, last);
+  const Fineness fineness = find_fineness(file, asked, last, options);
+  const Scene scene = made_finer(asked, fineness.factor);
   Player player(file, scene, options.configuration);
   OutputFile bodies(options.out);
   bodies.write("time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n");
@@ -124,16 +136,10 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
   }
   progress.clear();
   if (options.quiet) return;
-  tell_broken_promises(file.path.string(), player.broken_promises());
-  const double asked = player.world().configuration.error,
-               believed = believed_error(player.world());
-  if (asked > 0.0 && believed > 0.0) {
-    fmt::print(
-        stderr,
-        "{}: by what ways bend in an interval, bodies are within about {:.1e} m of their exact "
-        "places ({:g} m asked)\n",
-        file.path.string(), believed, asked);
-  }
+  tell_fineness(file.path.string(), fineness);
+  std::vector<std::string> broken = player.broken_promises();
+  add_missed_error(fineness, options.configuration, broken);
+  tell_broken_promises(file.path.string(), broken);
 }
 
 }  // namespace pinchlab

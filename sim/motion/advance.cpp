@@ -188,7 +188,6 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
       if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
     }
   }
-  d.local_error = std::max(d.local_error, work.trial.local_error);
   course.time = work.start.time + length;
   course.left = length < course.left ? course.left - length : 0.0;
   course.lag = 0.5 * length;

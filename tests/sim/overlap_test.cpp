@@ -4,6 +4,7 @@
 #include "tests/sim/overlap.h"
 #include "sim/promises.h"
 #include "sim/scene_error.h"
+#include "sim/touch.h"
 
 namespace pinchlab::testing {
 namespace {
@@ -241,6 +242,21 @@ TEST(RandomOverlap, PolygonsOnAxlesTurnIntoNothing) {
     ++ran;
   }
   EXPECT_GT(ran, 20);
+}
+
+// In front of neither side by its radius, and yet clear: what is round meets a corner diagonally.
+TEST(Overlap, ADiscBesideACornerIsClearOfIt) {
+  Scene scene;
+  scene.bodies = {square("box", BodyKind::fixed, 0.0, 0.3),
+                  body("disc", BodyKind::free, 0.375, 0.375, 0.1)};
+  const double apart = std::hypot(0.075, 0.075);
+  const World world = make_world(scene, Method::pinch);
+  EXPECT_NEAR(separation(world, 0, 1), apart - 0.1, 1e-15);
+  EXPECT_NEAR(separation(world, 1, 0), apart - 0.1, 1e-15);
+
+  scene.bodies[1] = square("other", BodyKind::free, 0.0, 0.1);
+  scene.bodies[1].position = {0.475, 0.475};
+  EXPECT_NEAR(separation(make_world(scene, Method::pinch), 0, 1), apart, 1e-15);
 }
 
 // What contacts do not see, watchers do.

@@ -75,7 +75,6 @@ inline bool same_state(const World& a, const World& b) {
          a.diagnostics.fallbacks == b.diagnostics.fallbacks &&
          a.diagnostics.events == b.diagnostics.events &&
          a.diagnostics.intervals == b.diagnostics.intervals &&
-         a.diagnostics.local_error == b.diagnostics.local_error &&
          a.diagnostics.clusters == b.diagnostics.clusters;
 }
 
