@@ -54,11 +54,12 @@ struct Start {
 
 /// What came of trying an interval.
 struct Trial {
-  bool met = true;           // lengths and gaps are exact at its end
-  bool settled = true;       // every solve
-  bool violated = false;     // what it began with, by more than it makes up for
-  double missed = 0.0;       // by lengths and gaps, over the part's extent, where not met
-  double local_error = 0.0;  // m
+  bool met = true;            // lengths and gaps are exact at its end
+  bool settled = true;        // every solve
+  bool violated = false;      // what it began with, by more than it makes up for
+  double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
+  double local_error = 0.0;   // m
+  double longest = infinity;  // s, that it may last: vanishing.h
 };
 
 /// A step's start, but for what Start has, to take it back to.

@@ -79,6 +79,14 @@ Vec2 offset_centre(const World& world, const Link& link) {
   return at(world.position, link.body) + turned(link.offset, at(world.angle, link.body));
 }
 
+Vec2 velocity_of(const World& world, const Link& link) {
+  if (link.body < 0) return Vec2::Zero();
+  const Vec2& velocity = at(world.velocity, link.body);
+  if (is_central(link)) return velocity;
+  const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
+  return velocity + at(world.angular_velocity, link.body) * left(from_centre);
+}
+
 bool is_fastened_inside(const World& world, const CableState& cable, const Link& end) {
   const BodyProperties& b = at(world.bodies, end.body);
   constexpr double rounding = 1e-9;  // an end on the rim, in a file's decimal figures, is on it

@@ -26,6 +26,9 @@ inline Vec2 link_centre(const World& world, const Link& link) {
   return at(world.position, link.body);
 }
 
+/// Velocity of that (m/s).
+Vec2 velocity_of(const World& world, const Link& link);
+
 /// Angle (rad) of the body that carries the link; 0 for the world.
 inline double body_angle(const World& world, const Link& link) {
   return link.body >= 0 ? at(world.angle, link.body) : 0.0;

@@ -56,6 +56,11 @@ void solve_present(const Scene& scene, const World& world, Workspace& work, cons
 /// Brings the velocities to the positions' time.
 void catch_up(const Scene& scene, World& world, std::span<const int> parts, double time, double lag,
               Workspace& work) {
+  for (const int p : parts) {
+    for (const int c : contacts_of(work.parts, at(work.parts.list, p))) {
+      if (Contact& contact = at(world.contacts, c); contact.touching) measure(world, contact);
+    }
+  }
   find_present_velocities(scene, world, parts, time, lag, work);
   for (const int p : parts) {
     const Part& part = at(work.parts.list, p);
@@ -258,9 +263,15 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
     if (near.divided) find_pairs_of_interval(scene, world, work);
-  } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
-    if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
-    length = shorten_interval(scene, world, work, movers, length, met, watch);
+  } else {
+    // Where the step may yet be divided all of it is tried: most of the scene may be done with it.
+    if (!round.may_divide) length = std::min(length, longest_interval(world, work, movers));
+    if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
+      if (round.may_divide && divide(scene, world, work)) {
+        return move_each(scene, world, work, watch);
+      }
+      length = shorten_interval(scene, world, work, movers, length, met, watch);
+    }
   }
   if (!are_finite(world, work.parts, movers.parts)) return check_finite(scene, world);
   if (round.first && world.configuration.diagnostics) {
@@ -299,7 +310,8 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   }
   for (int n = 0; n < count; ++n) {
     Neighbourhood& course = at(near.list, n);
-    course.happened = course.happened || !is_sound(world, trial_of(work, parts_of(near, n)));
+    const Trial trial = trial_of(work, parts_of(near, n));
+    course.happened = course.happened || !is_sound(world, trial, course.left);
     if (course.happened) go_back(world, work, parts_of(near, n));
   }
   work.events.clear();

@@ -74,7 +74,7 @@ void find_catches(const World& world, Workspace& work, int number) {
     if (releases) {
       if (row.clearance < -s.reach) measure(work, key, -clearance, late);
     } else {
-      measure(work, key, clearance, row.clearance > s.reach ? -late : late);
+      measure(work, key, clearance, row.clearance > s.reach ? -s.reach : late);
     }
   }
   if (!slides) return;
@@ -98,7 +98,7 @@ void find_catches(const World& world, Workspace& work, int number) {
       now += term.coefficient * clearance_of(world, row);
     }
     key.row = at(capstan.members, group.slack);
-    if (before > s.reach) measure(work, key, now, -late);
+    if (before > s.reach) measure(work, key, now, -s.reach);
   }
 }
 

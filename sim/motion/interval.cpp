@@ -10,6 +10,7 @@
 #include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
+#include "sim/motion/vanishing.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
@@ -128,15 +129,16 @@ double greatest_speed(const World& world, std::span<const int> bodies,
   return greatest;
 }
 
-/// Solves and moves a part; whether its lengths and gaps are exact then.
+/// Solves and moves a part, with at most so many changes of what its motors do; whether its lengths
+/// and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               const Attempt& attempt, Trial& trial, Stopwatch& watch) {
+               const Attempt& attempt, int changes_of_motors, Trial& trial, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   steady_light_bodies(world, work.parts, part, t.kick, s);
-  bool settled = solve_with_motors(scene, world, work, part, t, watch, [&] {
-    return solve_passively(world, work.parts, part, s, set);
-  });
+  bool settled = solve_with_motors(
+      scene, world, work, part, t, watch,
+      [&] { return solve_passively(world, work.parts, part, s, set); }, changes_of_motors);
   double last = infinity, before_last = infinity, fastest = 0.0;
   const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;
@@ -177,12 +179,29 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   }
 }
 
+/// The same, with motors that are within their limits then. The first solution, whose constraints
+/// are those of the interval's start, does not know half of the force that a curved way takes.
+bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
+               const Attempt& attempt, Trial& trial, Stopwatch& watch) {
+  constexpr int most_changes = 8, most_turns = 3;
+  PartSystem& s = at(work.systems, part.system);
+  bool met = move_part(scene, world, work, part, t, attempt, most_changes, trial, watch);
+  for (int turn = 0; met && turn < most_turns && change_limited_motors(s); ++turn) {
+    s.free_velocity = s.unconstrained;
+    drive(s);
+    trial = Trial{};
+    met = move_part(scene, world, work, part, t, attempt, 0, trial, watch);
+  }
+  return met;
+}
+
 void add(const Trial& one, Trial& all) {
   all.met = all.met && one.met;
   all.settled = all.settled && one.settled;
   all.violated = all.violated || one.violated;
   all.missed = std::max(all.missed, one.missed);
   all.local_error = std::max(all.local_error, one.local_error);
+  all.longest = std::min(all.longest, one.longest);
 }
 
 /// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
@@ -206,7 +225,10 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
     t.reach = attempt.locates ? s.reach : infinity;
+    const double longest =
+        attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;
     trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
+    trial.longest = longest;
     add(trial, work.trial);
     if (!attempt.locates) continue;
     find_catches(world, work, p);
@@ -243,6 +265,10 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   const auto misses = [&trial] {
     return !trial.met && (trial.settled || trial.missed > most_missed);
   };
+  if (length > trial.longest) {
+    length = trial.longest;
+    again(shake_rounds);
+  }
   double whole = length;  // before the first halving
   for (int halvings = 0;;) {
     if (errs(world, trial) && length > shortest * world.step_length) {
@@ -373,14 +399,18 @@ Trial trial_of(const Workspace& work, std::span<const int> parts) {
   return all;
 }
 
-bool is_sound(const World& world, const Trial& trial) {
-  return trial.met && !errs(world, trial);
+bool is_sound(const World& world, const Trial& trial, double length) {
+  return trial.met && !errs(world, trial) && length <= trial.longest;
+}
+
+double longest_interval(const World& world, const Workspace& work, const Movers& movers) {
+  return longest_interval(world, work.parts, movers.parts);
 }
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool begins, Stopwatch& watch) {
   try_interval(scene, world, work, movers, {length, shake_rounds, begins}, watch);
-  return is_sound(world, work.trial) && work.events.empty();
+  return is_sound(world, work.trial, length) && work.events.empty();
 }
 
 double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,

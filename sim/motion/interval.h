@@ -27,9 +27,12 @@ struct Movers {
 /// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
-/// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact and the
-/// error is what the scene allows, so that this is the interval. `begins`: it is the first try
-/// since begin_interval.
+/// How long an interval of these may be from here on (s).
+double longest_interval(const World& world, const Workspace& work, const Movers& movers);
+
+/// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact, the error
+/// is what the scene allows and the interval no longer than it may be, so that this is it.
+/// `begins`: it is the first try since begin_interval.
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool begins, Stopwatch& watch);
 
@@ -47,8 +50,9 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
 /// The last trial of these parts.
 Trial trial_of(const Workspace& work, std::span<const int> parts);
 
-/// Whether a trial errs by no more than the scene allows, and needs no repair.
-bool is_sound(const World& world, const Trial& trial);
+/// Whether a trial of that length (s) errs by no more than the scene allows, is no longer than it
+/// may be, and needs no repair.
+bool is_sound(const World& world, const Trial& trial, double length);
 
 /// Puts these back to where their interval began.
 void go_back(World& world, Workspace& work, std::span<const int> parts);

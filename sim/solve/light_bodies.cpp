@@ -19,15 +19,6 @@ namespace {
 /// Below this part of a body's mass a span's share is not worth adding up.
 constexpr double negligible = 0.05;
 
-/// Velocity of the circle that the cable touches at a link, whose body may carry it off its centre
-/// (m/s).
-Vec2 velocity_at(const World& world, const Link& link) {
-  const Vec2 velocity = at(world.velocity, link.body);
-  if (is_central(link)) return velocity;
-  const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
-  return velocity + at(world.angular_velocity, link.body) * left(from_centre);
-}
-
 /// Whether the segment counts for the body at its end `link`; `other` is its other end.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, const Link& link,
               const Link& other, double h, PartSystem& system) {
@@ -43,7 +34,7 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, co
   const Eigen::Matrix2d across = mass * n * n.transpose();
   span.mass += across;
   if (other.body < 0) return true;
-  const Vec2 velocity = velocity_at(world, other);
+  const Vec2 velocity = velocity_of(world, other);
   span.momentum_x += velocity.x() * across;
   span.momentum_y += velocity.y() * across;
   return true;

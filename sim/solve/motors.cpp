@@ -125,8 +125,7 @@ void drive(PartSystem& s) {
   }
 }
 
-bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& s,
-                   const SolveScratch& set) {
+bool change_limited_motors(PartSystem& s) {
   bool changed = false;
   for (Motor& motor : s.motors) {
     if (motor.most == 0.0 || motor.most == infinity) continue;
@@ -147,6 +146,12 @@ bool change_motors(const World& world, const Parts& parts, const Part& part, Par
     changed = changed || next != motor.state;
     motor.state = next;
   }
+  return changed;
+}
+
+bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& s,
+                   const SolveScratch& set) {
+  const bool changed = change_limited_motors(s);
   // What sweeps leave of a row is no contradiction.
   const bool direct = world.configuration.solver == Solver::direct;
   return (direct && stall(world, parts, part, s, set)) || changed;

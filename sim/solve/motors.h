@@ -26,10 +26,13 @@ void find_first_state(Motor& motor);
 /// What the motors do to the free velocities and mobilities of the part's bodies.
 void drive(PartSystem& system);
 
-/// Whether motors have to do something else than what was just solved for. What a motor gives is
-/// what its body's angular momentum has changed by otherwise than by rows,
-/// M = I (omega+ - omega-) - sum p j. One that holds its speed gives where M is beyond its limit,
-/// one that gives all it can holds its speed where it would turn faster. Where cables of the part
+/// Whether motors with a limit have to do something else than what was just solved for. What a
+/// motor gives is what its body's angular momentum has changed by otherwise than by rows, M = I
+/// (omega+ - omega-) - sum p j. One that holds its speed gives where M is beyond its limit, one
+/// that gives all it can holds its speed where it would turn faster.
+bool change_limited_motors(PartSystem& system);
+
+/// The same for all motors. Where cables of the part
 /// that cannot give contradict a motor without a limit, or could only give by throwing a body at
 /// ten times its rim's speed, it stalls: it leaves its body to the cables for this kick, unless
 /// that does not help.
@@ -37,11 +40,11 @@ bool change_motors(const World& world, const Parts& parts, const Part& part, Par
                    const SolveScratch& scratch);
 
 /// Makes the rows of a part and solves them by `solve`, again where its motors change what they do;
-/// returns what the last solve did.
+/// returns what the last solve did. With `most_changes` of 0 they do what they do.
 template <typename Solve>
 bool solve_with_motors(const Scene& scene, const World& world, Workspace& work, const Part& part,
-                       const TimeSpan& interval, Stopwatch& watch, Solve solve) {
-  constexpr int most_changes = 8;
+                       const TimeSpan& interval, Stopwatch& watch, Solve solve,
+                       int most_changes = 8) {
   PartSystem& s = at(work.systems, part.system);
   if (!s.motors.empty()) s.unconstrained = s.free_velocity;
   for (int changes = 0;; ++changes) {

@@ -90,11 +90,11 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0xa235b5117e94accd, 0x32dce44412dcfb35},
+    {"01-roll-over", 0x386e403590a4eff2, 0x6643fdf97ec867e5},
     {"02-stack", 0xf8feeadc69e97f5b, 0x99bc292537cdf6b7},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
-    {"04-two-blocking", 0xf768d3970f7f99d9, 0x1bbf2106bc0d404f},
-    {"05-notch", 0x21e1bdd1f284f664, 0xcb73a0473485c56a},
+    {"04-two-blocking", 0xa151392618a662cd, 0xdfd1246ce4dffe0f},
+    {"05-notch", 0x48066f91851d58a8, 0x3bfad9019bfe0b95},
     {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0x68ce6a0b5241b8e1, 0xc7e6b5b7a971fe87},
     {"08-driven-roller-weights", 0x2765e3feb278ad96, 0x1a76d10c5b042e67},

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/vanishing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/parts.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double slow_share = 1e-6;   // of Delta^2: what turns by a milliradian in vanishing_time
+constexpr double short_share = 0.5;   // of Delta: what is longer hardly turns
+constexpr double least_share = 1e-4;  // of a step
+
+/// The time for which the span that arrives at the link has been there, or will be (s), where that
+/// is less than `most`; else that.
+double time_left(const World& world, const CableState& cable, std::size_t i, double most) {
+  const Segment& span = cable.segments[i];
+  const Link& head = cable.links[i];
+  const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(i)));
+  const double delta = head.signed_radius() - tail.signed_radius();
+  if (!(span.length > 0.0 && span.length < short_share * std::abs(delta))) return most;
+  if (span.pinched || span.slack) return most;
+  const Vec2 apart = span.head_centre - span.tail_centre;
+  const double rate =
+      2.0 * std::abs(apart.dot(velocity_of(world, head) - velocity_of(world, tail)));
+  if (rate * vanishing_time < slow_share * delta * delta) return most;
+  const double square = span.length * span.length;
+  return square < rate * most ? square / rate : most;
+}
+
+}  // namespace
+
+double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
+  if (world.step_length >= vanishing_time) return infinity;
+  double left = vanishing_time;
+  for (const int p : of) {
+    const Part& part = at(parts.list, p);
+    if (!part.can_move) continue;
+    for (const int c : cables_of(parts, part)) {
+      const CableState& cable = at(world.cables, c);
+      if (cable.stands || cable.elastic) continue;
+      for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+        left = time_left(world, cable, i, left);
+      }
+    }
+  }
+  if (left >= vanishing_time) return infinity;
+  const double share = left / vanishing_time;
+  return world.step_length * std::max(std::cbrt(share * share), least_share);
+}
+
+}  // namespace pinchlab
