@@ -27,8 +27,8 @@ namespace pinchlab {
 /// Of a cable that leaves it open.
 constexpr int most_nodes_chosen = 199;
 
-/// N, of each of these cables, of which spread_nodes is to make chains; without repeats. The scene's
-/// other cables count as they are before that.
+/// N, of each of these cables, of which spread_nodes is to make chains; none comes twice. The
+/// scene's other cables count as they are before that.
 std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables);
 
 /// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps

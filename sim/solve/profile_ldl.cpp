@@ -26,12 +26,12 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   factors_.resize(entries_.size());
   factor_first_.resize(count);
   factor_offset_.resize(count);
-  independent_.clear();
+  independent_.resize(count);
   independent_before_.resize(count);
+  int n = 0;            // rows so far that repeat none
   int used = 0;         // of factors_
   double before = 0.0;  // reciprocal of the pivot before
   for (std::size_t u = 0; u < count; ++u) {
-    const int n = static_cast<int>(independent_.size());
     independent_before_[u] = n;
     const int first = at(independent_before_, first_[u]);
     const int offset = used - first;
@@ -62,9 +62,10 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
     at(factor_first_, n) = first;
     at(factor_offset_, n) = offset;
     used = offset + n;
-    independent_.push_back(static_cast<int>(u));
+    at(independent_, n++) = static_cast<int>(u);
   }
-  return static_cast<int>(count - independent_.size());
+  independent_.resize(index(n));
+  return static_cast<int>(count) - n;
 }
 
 int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge) {
