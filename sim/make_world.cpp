@@ -133,8 +133,8 @@ World make_world(const Scene& scene, Configuration configuration) {
     throw std::invalid_argument(fmt::format("configuration: iterations must be at least 1, not {}",
                                             configuration.iterations));
   }
-  if (!(configuration.error >= 0.0)) {
-    throw std::invalid_argument("configuration: error must be at least 0");
+  if (!(configuration.error >= 0.0 && configuration.error < infinity)) {
+    throw std::invalid_argument("configuration: error must be a number of at least 0");
   }
   refuse_impossible_figures(scene);
   refuse_slip_of_mass(scene, configuration);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/at.h"
 #include "sim/hanging.h"
@@ -13,7 +14,6 @@
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
 #include "sim/tangent.h"
-#include "sim/trees.h"
 
 namespace pinchlab {
 
@@ -51,13 +51,6 @@ double length_of(const Scene& scene, const Cable& cable) {
   return (place_of(scene, cable.end) - place_of(scene, cable.start)).norm() + cable.slack;
 }
 
-/// What cables and joints hold together without one of the cables.
-struct Held {
-  std::vector<int> root;       // trees.h, of bodies
-  std::vector<double> mass;    // kg, of what can move, at each root
-  std::vector<bool> anchored;  // something of it is held up, at each root
-};
-
 /// Bodies that a cable is on; -1 for the world.
 std::vector<int> bodies_on(const Cable& cable) {
   std::vector<int> bodies;
@@ -66,55 +59,110 @@ std::vector<int> bodies_on(const Cable& cable) {
   return bodies;
 }
 
-Held held_without(const Scene& scene, std::size_t without) {
-  const std::size_t count = scene.bodies.size();
-  Held held{std::vector<int>(count), std::vector<double>(count), std::vector<bool>(count)};
-  for (std::size_t b = 0; b < count; ++b) held.root[b] = static_cast<int>(b);
-  for (std::size_t b = 0; b < count; ++b) {
-    if (scene.bodies[b].carrier >= 0) join(held.root, static_cast<int>(b), scene.bodies[b].carrier);
-  }
-  const auto visit = [&](auto&& note) {  // with a body of each, and whether all are bodies
-    for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-      const std::vector<int> bodies = bodies_on(scene.cables[c]);
-      const auto first = std::find_if(bodies.begin(), bodies.end(), [](int b) { return b >= 0; });
-      if (c != without && first != bodies.end()) note(scene.cables[c], bodies, *first);
+/// What cables and joints hold together: sets of bodies as trees. The lesser set's root becomes a
+/// child of the other's and no path is shortened, so that what was added last can be taken back.
+class Held {
+ public:
+  /// Without cables.
+  explicit Held(const Scene& scene) : sets_(scene.bodies.size()) {
+    for (std::size_t b = 0; b < sets_.size(); ++b) {
+      const Body& body = scene.bodies[b];
+      sets_[b] = {static_cast<int>(b), 1, can_move(body) ? body.mass : 0.0,
+                  body.carrier < 0 && body.kind != BodyKind::free};
     }
-  };
-  visit([&held](const Cable&, const std::vector<int>& bodies, int first) {
+    for (std::size_t b = 0; b < sets_.size(); ++b) {
+      if (scene.bodies[b].carrier >= 0) join(static_cast<int>(b), scene.bodies[b].carrier);
+    }
+  }
+
+  void add(const Scene& scene, const Cable& cable) {
+    const std::vector<int> bodies = bodies_on(cable);
+    const auto first = std::find_if(bodies.begin(), bodies.end(), [](int b) { return b >= 0; });
+    if (first == bodies.end()) return;
     for (const int b : bodies) {
-      if (b >= 0) join(held.root, first, b);
+      if (b >= 0) join(*first, b);
     }
-  });
-  for (std::size_t b = 0; b < count; ++b) {
-    const Body& body = scene.bodies[b];
-    const auto root = index(find_root(held.root, static_cast<int>(b)));
-    if (can_move(body)) held.mass[root] += body.mass;
-    if (body.carrier < 0 && body.kind != BodyKind::free) held.anchored[root] = true;
+    Set& set = change(root_of(*first));
+    if (!cable.closed) set.mass += cable.mass_per_metre * length_of(scene, cable);
+    if (std::find(bodies.begin(), bodies.end(), -1) != bodies.end()) set.anchored = true;
   }
-  visit([&held, &scene](const Cable& cable, const std::vector<int>& bodies, int first) {
-    const auto root = index(find_root(held.root, first));
-    if (!cable.closed) held.mass[root] += cable.mass_per_metre * length_of(scene, cable);
-    if (std::find(bodies.begin(), bodies.end(), -1) != bodies.end()) held.anchored[root] = true;
-  });
-  return held;
-}
+
+  std::size_t mark() const { return before_.size(); }
+
+  void take_back(std::size_t mark) {
+    for (; before_.size() > mark; before_.pop_back()) {
+      at(sets_, before_.back().first) = before_.back().second;
+    }
+  }
+
+  int root_of(int body) const {
+    while (at(sets_, body).parent != body) body = at(sets_, body).parent;
+    return body;
+  }
+  double mass(int root) const { return at(sets_, root).mass; }        // kg, of what can move
+  bool anchored(int root) const { return at(sets_, root).anchored; }  // something holds it up
+
+ private:
+  struct Set {
+    int parent = 0, size = 0;  // the rest of roots only
+    double mass = 0.0;
+    bool anchored = false;
+  };
+
+  Set& change(int place) {
+    before_.emplace_back(place, at(sets_, place));
+    return at(sets_, place);
+  }
+
+  void join(int a, int b) {
+    a = root_of(a);
+    b = root_of(b);
+    if (a == b) return;
+    if (at(sets_, a).size < at(sets_, b).size) std::swap(a, b);
+    const Set& lesser = at(sets_, b);
+    Set& greater = change(a);
+    greater.size += lesser.size;
+    greater.mass += lesser.mass;
+    greater.anchored = greater.anchored || lesser.anchored;
+    change(b).parent = a;
+  }
+
+  std::vector<Set> sets_;                    // one a body
+  std::vector<std::pair<int, Set>> before_;  // places, and what was there before each change
+};
 
 /// kg, what the cable has to hold: the lighter of what hangs at its ends; or all, where both are
-/// held up by something else.
-double hung_mass(const Scene& scene, std::size_t c) {
-  Held held = held_without(scene, c);
-  const Cable& cable = scene.cables[c];
+/// held up by something else. `held` is without it.
+double hung_mass(const Cable& cable, const Held& held) {
   double least = infinity, all = 0.0;
   int before = -1;
   for (const Attachment* end : {&cable.start, &cable.end}) {
     if (end->body < 0) continue;
-    const int root = find_root(held.root, end->body);
+    const int root = held.root_of(end->body);
     if (root == before) continue;
     before = root;
-    all += at(held.mass, root);
-    if (!held.anchored[index(root)]) least = std::min(least, at(held.mass, root));
+    all += held.mass(root);
+    if (!held.anchored(root)) least = std::min(least, held.mass(root));
   }
   return std::min(least, all);
+}
+
+/// The same of every cable of `asked`, at its place there; `held` is without any of them. Either
+/// half is asked with the other added, and so on: n log n cables are added for n that are asked.
+void find_hung_masses(const Scene& scene, std::span<const std::size_t> asked, Held& held,
+                      std::span<double> masses) {
+  if (asked.empty()) return;
+  if (asked.size() == 1) {
+    masses[0] = hung_mass(scene.cables[asked[0]], held);
+    return;
+  }
+  const std::size_t half = asked.size() / 2, mark = held.mark();
+  for (const std::size_t c : asked.subspan(half)) held.add(scene, scene.cables[c]);
+  find_hung_masses(scene, asked.first(half), held, masses.first(half));
+  held.take_back(mark);
+  for (const std::size_t c : asked.first(half)) held.add(scene, scene.cables[c]);
+  find_hung_masses(scene, asked.subspan(half), held, masses.subspan(half));
+  held.take_back(mark);
 }
 
 bool end_moves(const Scene& scene, const Attachment& end) {
@@ -139,10 +187,8 @@ double hanging_tension(const Scene& scene, const Cable& cable) {
   return chain.tension + 0.5 * weight.norm() / pieces;  // half of a piece hangs at either end
 }
 
-}  // namespace
-
-double expected_tension(const Scene& scene, std::size_t c) {
-  const Cable& cable = scene.cables[c];
+/// `hung` (kg) is what the cable has to hold.
+double expected_tension(const Scene& scene, const Cable& cable, double hung) {
   const double g = scene.gravity.norm(), length = length_of(scene, cable);
   if (!(length > 0.0)) return 0.0;  // which spread_nodes refuses
   const bool start_moves = end_moves(scene, cable.start), moves = end_moves(scene, cable.end);
@@ -153,8 +199,25 @@ double expected_tension(const Scene& scene, std::size_t c) {
   if (moves) fall = std::max(fall, g * length - along);
   if (start_moves) fall = std::max(fall, g * length + along);
   const double speed = (velocity_of(scene, cable.end) - velocity_of(scene, cable.start)).norm();
-  const double mass = hung_mass(scene, c) + cable.mass_per_metre * length;
+  const double mass = hung + cable.mass_per_metre * length;
   return mass * (g + (2.0 * fall + speed * speed) / length);
+}
+
+}  // namespace
+
+std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables) {
+  Held held(scene);
+  std::vector<bool> asked(scene.cables.size());
+  for (const std::size_t c : cables) asked[c] = true;
+  for (std::size_t c = 0; c < asked.size(); ++c) {
+    if (!asked[c]) held.add(scene, scene.cables[c]);
+  }
+  std::vector<double> tensions(cables.size());
+  find_hung_masses(scene, cables, held, tensions);
+  for (std::size_t i = 0; i < cables.size(); ++i) {
+    tensions[i] = expected_tension(scene, scene.cables[cables[i]], tensions[i]);
+  }
+  return tensions;
 }
 
 int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,

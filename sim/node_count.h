@@ -16,7 +16,9 @@
 //
 // What catches a cable that is slack, a motor, or a body that falls on it may pull harder.
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "sim/scene.h"
 
@@ -25,9 +27,9 @@ namespace pinchlab {
 /// Of a cable that leaves it open.
 constexpr int most_nodes_chosen = 199;
 
-/// N, of a cable that spread_nodes is to make a chain of. The scene's other cables count as they
-/// are before that.
-double expected_tension(const Scene& scene, std::size_t cable);
+/// N, of each of these cables, of which spread_nodes is to make chains; none comes twice. The
+/// scene's other cables count as they are before that.
+std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables);
 
 /// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
 /// can follow under the tension (N), at least two. Throws SceneError where they do not fit, or bend

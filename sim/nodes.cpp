@@ -228,14 +228,16 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
 
 std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
-  std::vector<double> tensions;  // N, before nodes are among the bodies
-  tensions.reserve(scene.cables.size());
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    const bool chosen = becomes_nodes(scene.cables[c]) && scene.cables[c].nodes == 0;
-    tensions.push_back(chosen ? expected_tension(scene, c) : 0.0);
+  const std::size_t count = scene.cables.size();
+  std::vector<std::size_t> open;  // cables that leave the number of their nodes open
+  for (std::size_t c = 0; c < count; ++c) {
+    if (becomes_nodes(scene.cables[c]) && scene.cables[c].nodes == 0) open.push_back(c);
   }
-  for (std::size_t c = 0; c < tensions.size(); ++c) {
-    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c, tensions[c]));
+  const std::vector<double> tensions = expected_tensions(scene, open);  // before there are nodes
+  auto tension = tensions.begin();
+  for (std::size_t c = 0; c < count; ++c) {
+    if (!becomes_nodes(scene.cables[c])) continue;
+    made.push_back(spread(scene, c, scene.cables[c].nodes == 0 ? *tension++ : 0.0));
   }
   return made;
 }

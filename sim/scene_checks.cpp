@@ -10,7 +10,6 @@
 #include "sim/cable/cable.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/lines.h"
-#include "sim/nodes.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
@@ -66,143 +65,6 @@ double gap_to_wall(const World& world, int body, const Wall& wall) {
   const double distance = distance_to(corners, wall.a, wall.b);
   return (distance > 0.0 ? distance : -depth_in(corners, wall.a, wall.b)) -
          at(world.bodies, body).corner_radius;
-}
-
-void refuse_impossible_outline(const BodyProperties& body, const std::string& place) {
-  const auto refuse = [&place](bool wrong, const std::string& message) {
-    if (wrong) throw SceneError(place, message);
-  };
-  refuse(!std::all_of(body.corners.begin(), body.corners.end(),
-                      [](const Vec2& corner) { return corner.allFinite(); }) ||
-             !(body.corner_radius >= 0.0 && body.corner_radius < infinity),
-         "corners and their radius must be finite");
-  refuse(body.corners.size() < 3 || body.corners.size() > most_corners,
-         fmt::format("a polygon has 3 to {} corners", most_corners));
-  refuse(
-      !is_convex(body.corners),
-      "the corners must go round a convex polygon counter-clockwise, with none on a straight side");
-  const Vec2 centre = plate_of(body.corners, body.corner_radius).centre;
-  refuse(centre.norm() > 1e-6 * body.radius,
-         fmt::format(
-             "corners are given from the centre of mass, which lies at [{}, {}] of these; take "
-             "that away from each",
-             centre.x(), centre.y()));
-  refuse(!body.inertia && body.carrier < 0, "a polygon needs its inertia (make_polygon)");
-}
-
-/// Sleeves (cable/sleeve.h) are of discs, about their centres.
-void refuse_impossible_mass(const Scene& scene, const Cable& cable, const std::string& place) {
-  if (cable.mass_per_metre == 0.0) return;
-  const auto refuse = [&place](bool wrong, const char* message) {
-    if (wrong) throw SceneError(place, message);
-  };
-  refuse(!(cable.mass_per_metre > 0.0 && cable.mass_per_metre < infinity),
-         "the mass of a metre must be a number of at least 0");
-  refuse(becomes_nodes(cable), "a cable with mass needs its nodes (spread_nodes)");
-  refuse(cable.start.layers || cable.end.layers, "a cable with mass cannot lie in layers");
-  refuse(cable.creep, "a cable with mass cannot creep");
-  for (const Body& body : scene.bodies) {
-    if (body.cable_friction == infinity) continue;
-    if (body.corners.empty() && body.carrier < 0) continue;
-    throw SceneError(place,
-                     fmt::format("a cable with mass slips on discs only, and could on body '{}', "
-                                 "which is {}; leave out the body's cable_friction, or the "
-                                 "cable's mass",
-                                 body.name, body.carrier < 0 ? "a polygon" : "a shape of another"));
-  }
-}
-
-void refuse(bool wrong, const std::string& place, const char* message) {
-  if (wrong) throw SceneError(place, message);
-}
-
-bool positive(double x) {
-  return x > 0.0 && x < infinity;
-}
-
-bool at_least_0(double x) {
-  return x >= 0.0 && x < infinity;
-}
-
-/// What bodies and walls have in common.
-void refuse_impossible_surface(double friction, double restitution, const std::string& place) {
-  refuse(!at_least_0(friction), place, "the contact friction must be a number of at least 0");
-  refuse(!(restitution >= 0.0 && restitution <= 1.0), place, "the restitution must be 0 to 1");
-}
-
-void refuse_impossible_body(const Scene& scene, int b) {
-  const Body& body = at(scene.bodies, b);
-  const std::string place = pointer("bodies", index(b));
-  refuse(!positive(body.radius), place, "the radius must be a number above 0");
-  if (is_polygon(body)) refuse_impossible_outline(body, place);
-  const bool carried = body.carrier != -1;
-  refuse(!positive(body.mass) && body.kind != BodyKind::fixed && !carried, place,
-         "the mass must be a number above 0");
-  refuse(carried && (body.carrier < 0 || body.carrier >= b || body.mass != 0.0 ||
-                     at(scene.bodies, body.carrier).outlined ||
-                     at(scene.bodies, body.carrier).carrier != -1),
-         place, "a shape without mass needs a body before it that is no shape (add_shapes)");
-  refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
-  refuse(!body.position.allFinite() || !body.velocity.allFinite(), place,
-         "position and velocity must be finite");
-  refuse(!std::isfinite(body.angle) || !std::isfinite(body.angular_velocity) ||
-             !std::isfinite(body.driven_angular_velocity.value_or(0.0)) ||
-             !std::isfinite(body.torque),
-         place, "angle, angular velocity and torque must be finite");
-  refuse(!at_least_0(body.linear_drag) || !at_least_0(body.angular_drag), place,
-         "drag must be a number of at least 0");
-  refuse(!(body.cable_friction >= 0.0), place, "the cable friction must be at least 0");
-  refuse_impossible_surface(body.contact_friction, body.restitution, place);
-  refuse(!(body.torque_limit > 0.0), place, "a motor's torque limit must be above 0");
-  for (std::size_t i = 0; i < body.motor.size(); ++i) {
-    const MotorPoint& point = body.motor[i];
-    const double before = i == 0 ? 0.0 : body.motor[i - 1].time;
-    refuse(!std::isfinite(point.value) || !(point.time < infinity) ||
-               !(i == 0 ? point.time >= 0.0 : point.time > before),
-           place, "a motor's table must have finite values at ascending times from 0 on");
-  }
-  constexpr double rounding = 1e-9;
-  refuse(body.kind == BodyKind::rail && !(std::abs(body.rail_axis.norm() - 1.0) <= rounding), place,
-         "the rail's axis must be a unit vector");
-}
-
-void refuse_impossible_cable(const Scene& scene, std::size_t c) {
-  const Cable& cable = scene.cables[c];
-  const std::string place = pointer("cables", c);
-  refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
-  refuse(!(cable.axial_stiffness > 0.0), place, "the axial stiffness must be above 0");
-  refuse(!std::isfinite(cable.slack) || (cable.slack < 0.0 && cable.axial_stiffness == infinity),
-         place, "the slack must be at least 0, or below that of an elastic cable");
-  refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
-         "only an elastic cable creeps");
-  const int bodies = static_cast<int>(scene.bodies.size());
-  const int cables = static_cast<int>(scene.cables.size());
-  refuse(cable.bending_stiffness != 0.0, place,
-         "a cable that bends needs its nodes (spread_nodes)");
-  refuse(cable.bends_with >= cables || (cable.bends_with >= 0 && !(cable.bend >= 0.0)), place,
-         "it bends against a cable that is not in the scene");
-  refuse(!(cable.damping >= 0.0 && cable.damping < infinity), place,
-         "the damping must be at least 0");
-  refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
-  refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");
-  refuse_impossible_mass(scene, cable, place);
-  refuse(cable.closed && cable.wraps.size() < 2, place, "a closed cable needs two bodies");
-  for (const Attachment* end : {&cable.start, &cable.end}) {
-    const bool there = end->body >= -1 && end->body < bodies && end->point.allFinite();
-    refuse(!cable.closed && !there, place, "an end is on a body that is not in the scene");
-  }
-  for (const Wrap& wrap : cable.wraps) {
-    refuse(wrap.body < 0 || wrap.body >= bodies, place,
-           "it runs round a body that is not in the scene");
-    const Body& body = at(scene.bodies, wrap.body);
-    if (!body.outlined) {
-      throw SceneError(place, fmt::format("body '{0}' has shapes; say which the cable runs round, "
-                                          "'{0}:1' for the first",
-                                          body.name));
-    }
-    refuse(std::abs(wrap.orientation) != 1 || wrap.extra_turns < 0, place,
-           "a wrap's orientation must be 1 or -1, and its extra turns at least 0");
-  }
 }
 
 /// The cable of the scene's author that a node is part of, or -1: the first of the pieces that lead
@@ -317,23 +179,6 @@ void refuse_slip_of_mass(const Scene& scene, const Configuration& configuration)
                                  "pinch only, and could on body '{}'; choose that, or leave out "
                                  "the body's cable_friction or the cable's mass",
                                  slips->name));
-  }
-}
-
-void refuse_impossible_figures(const Scene& scene) {
-  refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
-         "frames per second and steps per frame must be at least 1");
-  refuse(!scene.gravity.allFinite(), "/gravity_m_s2", "gravity must be finite");
-  refuse(!(scene.error >= 0.0), "/error_m", "the error must be a number of at least 0");
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    refuse_impossible_body(scene, static_cast<int>(b));
-  }
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) refuse_impossible_cable(scene, c);
-  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-    const double length = (scene.walls[w].b - scene.walls[w].a).norm();
-    refuse(!positive(length), pointer("walls", w), "the wall must have a length");
-    refuse_impossible_surface(scene.walls[w].contact_friction, scene.walls[w].restitution,
-                              pointer("walls", w));
   }
 }
 

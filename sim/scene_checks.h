@@ -9,7 +9,13 @@ namespace pinchlab {
 
 struct BroadPhase;
 
-/// Figures that the geometry takes for granted.
+/// kg, of a body that moves or turns, and is no node.
+constexpr double lightest_body = 1e-9, heaviest_body = 1e12;
+
+/// Of a wrap.
+constexpr int most_extra_turns = 100;
+
+/// Figures, choices and indices that everything else takes for granted (scene_figures.cpp).
 void refuse_impossible_figures(const Scene& scene);
 
 /// Cables with mass that may slip, where that is not solved: by sweeps, and with three rows a

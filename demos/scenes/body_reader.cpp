@@ -9,6 +9,7 @@
 
 #include "demos/scenes/json_values.h"
 #include "sim/outline.h"
+#include "sim/scene_checks.h"
 
 namespace pinchlab {
 namespace {
@@ -217,13 +218,12 @@ void read_surface(const json& from, BodyProperties& to) {
 
 void check_mass_of_density(const json& from, const std::string& place, double mass,
                            std::vector<SceneProblem>& problems) {
-  constexpr double least = 1e-9, most = 1e12;  // kg, of mass_kg
-  if (!from.contains("density_kg_m2") || (mass >= least && mass <= most)) return;
+  if (!from.contains("density_kg_m2") || (mass >= lightest_body && mass <= heaviest_body)) return;
   problems.push_back(
       {place + "/density_kg_m2",
        fmt::format("makes a body of {:.3g} kg of it, whose mass must be {:g} to {:g} "
                    "kg",
-                   mass, least, most)});
+                   mass, lightest_body, heaviest_body)});
 }
 
 Body read_body(const json& from, const std::string& place, std::vector<SceneProblem>& problems) {

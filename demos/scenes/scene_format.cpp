@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "demos/scenes/scene_format.h"
 
+#include "sim/outline.h"
+#include "sim/scene_checks.h"
+
 namespace pinchlab {
 namespace {
 
@@ -25,7 +28,7 @@ const ObjectFormat motor_point_format = {"motor_point",
 
 const ObjectFormat shape_format = {"shape",
                                    {{"radius_m", number, optional, 1e-6, 1e4},
-                                    {"corners_m", points, optional, 3, 64},
+                                    {"corners_m", points, optional, 3, most_corners},
                                     {"corner_radius_m", number, optional, 0, 1e4},
                                     {"at_m", vector, optional, -1e4, 1e4},
                                     {"angle_rad", number, optional, -1e6, 1e6},
@@ -38,10 +41,10 @@ const ObjectFormat body_format = {
     {{"name", name, required, 1, 64},
      {"kind", choice, required, 0, 0, {"free", "rail", "fixed_axle", "fixed"}},
      {"radius_m", number, optional, 1e-6, 1e4},
-     {"corners_m", points, optional, 3, 64},
+     {"corners_m", points, optional, 3, most_corners},
      {"corner_radius_m", number, optional, 0, 1e4},
      {"shapes", list, optional, 1, 32, {}, &shape_format},
-     {"mass_kg", number, optional, 1e-9, 1e12},
+     {"mass_kg", number, optional, lightest_body, heaviest_body},
      {"density_kg_m2", number, optional, 1e-12, 1e12},
      {"inertia_kg_m2", number, optional, 1e-18, 1e20},
      {"position_m", vector, required, -1e6, 1e6},
@@ -72,7 +75,7 @@ const ObjectFormat wrap_format = {
     "wrap",
     {{"body", name, required, 1, 64},
      {"turn", choice, required, 0, 0, {"counter_clockwise", "clockwise"}},
-     {"extra_turns", integer, optional, 0, 100}}};
+     {"extra_turns", integer, optional, 0, most_extra_turns}}};
 
 const ObjectFormat cable_format = {"cable",
                                    {{"name", name, required, 1, 64},

@@ -205,6 +205,29 @@ void spread_tautness(PartSystem& s, const SolveScratch& set, int reach) {
   }
 }
 
+/// Lets contacts bear force to which a blow runs on from one that is to do so; whether there are
+/// any. Bodies in touch that are struck at one end of them come to bear force by one contact a
+/// solve; blows that rebound run through them from contact to contact, there and back, as through
+/// Newton's cradle. Contacts that are too many let go again.
+bool spread_blow(PartSystem& s, const SolveScratch& set) {
+  constexpr double rebound = 2.0;  // of the impulse that stops an approach: without loss
+  const double least = tolerances(s, set).speed;
+  bool any = false;
+  const auto strike = [&](int r) {
+    Row& row = at(s.rows, r);
+    if (row.kind != RowKind::normal || row.idle || row.diagonal == 0.0) return;
+    const double speed = row_speed(s, index(r));
+    if (speed >= -least) return;
+    push(s, index(r), -rebound * speed / row.diagonal);
+    any = any || !row.on;
+    row.on = true;
+  };
+  const int rows = static_cast<int>(s.rows.size());
+  for (int r = s.first_contact_row; r < rows; ++r) strike(r);
+  for (int r = rows - 1; r >= s.first_contact_row; --r) strike(r);
+  return any;
+}
+
 /// Friction of bare surfaces that has changed in this step is left out of it: sticking may
 /// contradict what cables and contacts ask of the same bodies, but frictionless they can always be
 /// met.
@@ -274,6 +297,10 @@ bool settle(PartSystem& s, SolveScratch& set) {
     growing = only_grows(set) ? growing + 1 : 0;
     if (growing > patience && !spread) {
       spread_tautness(s, set, 1 << std::min(growing - patience, 20));
+      if (spread_blow(s, set)) {
+        fewest = all;
+        left = patience;
+      }
     } else if (growing == 0 && reached > patience) {
       spread = true;
     }

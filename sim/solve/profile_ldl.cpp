@@ -7,13 +7,8 @@ namespace pinchlab {
 
 namespace {
 
-/// 1 / pivot, or 0 of one that is nothing but round-off.
-inline double reciprocal_of(double pivot, double scale, int& dependent) {
-  if (pivot < ProfileLdl::dependence * scale && pivot > -ProfileLdl::dependence * scale) {
-    ++dependent;
-    return 0.0;
-  }
-  return 1.0 / pivot;
+inline bool is_round_off(double pivot, double scale) {
+  return pivot < ProfileLdl::dependence * scale && pivot > -ProfileLdl::dependence * scale;
 }
 
 }  // namespace
@@ -22,24 +17,39 @@ inline double reciprocal_of(double pivot, double scale, int& dependent) {
 //
 // For each u, with sums over the k that both profiles hold and y(v) = L(u,v) d(v):
 //     y(v) = A(u,v) - sum y(k) L(v,k),   d(u) = A(u,u) - sum L(u,v) y(v).
+// Of a dependent row all L are zero from there on, and those of its own row meet its zero only: it
+// is left out, and u, v and k count the others.
 int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   if (narrow_) return factor_narrow(scale, ridge);
   const std::size_t count = first_.size();
   reciprocal_.resize(count);
   factors_.resize(entries_.size());
-  std::copy_n(entries_.begin(), used_, factors_.begin());
-  int dependent = 0;
+  factor_first_.resize(count);
+  factor_offset_.resize(count);
+  independent_.resize(count);
+  independent_before_.resize(count);
+  int n = 0;            // rows so far that repeat none
+  int used = 0;         // of factors_
   double before = 0.0;  // reciprocal of the pivot before
   for (std::size_t u = 0; u < count; ++u) {
-    const int first = first_[u], n = static_cast<int>(u);
-    double* row = factors_.data() + offset_[u];
+    independent_before_[u] = n;
+    const int first = at(independent_before_, first_[u]);
+    const int offset = used - first;
+    double* row = factors_.data() + offset;
+    const double* entries = entries_.data() + offset_[u];
+    if (index(n) == u) {
+      std::copy(entries + first, entries + n, row + first);
+    } else {
+      for (int v = first; v < n; ++v) row[v] = entries[at(independent_, v)];
+    }
     for (int v = first + 1; v < n; ++v) {
-      const double* row_v = factors_.data() + at(offset_, v);
+      const int first_v = at(factor_first_, v);
+      const double* row_v = factors_.data() + at(factor_offset_, v);
       double y = row[v];
-      for (int k = std::max(first, at(first_, v)); k < v; ++k) y -= row[k] * row_v[k];
+      for (int k = std::max(first, first_v); k < v; ++k) y -= row[k] * row_v[k];
       row[v] = y;
     }
-    double pivot = row[n] + scale[u] * (1.0 + ridge);
+    double pivot = entries[u] + scale[u] * (1.0 + ridge);
     const auto eliminate = [row, &pivot](int v, double reciprocal) {
       const double y = row[v];
       row[v] = y * reciprocal;
@@ -47,9 +57,15 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
     };
     for (int v = first; v < n - 1; ++v) eliminate(v, at(reciprocal_, v));
     if (first < n) eliminate(n - 1, before);
-    reciprocal_[u] = before = reciprocal_of(pivot, scale[u], dependent);
+    if (is_round_off(pivot, scale[u])) continue;
+    at(reciprocal_, n) = before = 1.0 / pivot;
+    at(factor_first_, n) = first;
+    at(factor_offset_, n) = offset;
+    used = offset + n;
+    at(independent_, n++) = static_cast<int>(u);
   }
-  return dependent;
+  independent_.resize(index(n));
+  return static_cast<int>(count) - n;
 }
 
 int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge) {
@@ -64,19 +80,40 @@ int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge) {
     const double y = first_[u] < n ? row[n - 1] : 0.0, factor = y * before;
     factors_[u] = factor;
     const double pivot = row[n] + scale[u] * (1.0 + ridge) - factor * y;
-    reciprocal_[u] = before = reciprocal_of(pivot, scale[u], dependent);
+    const bool repeats = is_round_off(pivot, scale[u]);
+    if (repeats) ++dependent;
+    reciprocal_[u] = before = repeats ? 0.0 : 1.0 / pivot;
   }
   return dependent;
 }
 
 void ProfileLdl::solve(std::vector<double>& x) const {
   if (narrow_) return solve_narrow(x);
-  const std::size_t count = first_.size();
+  const std::size_t count = independent_.size();
+  const bool all = count == first_.size();
+  if (!all) {
+    for (std::size_t u = 0; u < count; ++u) x[u] = at(x, independent_[u]);
+  }
+  solve_independent(x);
+  if (all) return;
+  std::size_t end = first_.size();
+  for (std::size_t u = count; u-- > 0;) {
+    const std::size_t place = index(independent_[u]);
+    const double value = x[u];
+    std::fill(x.begin() + place + 1, x.begin() + end, 0.0);
+    x[place] = value;
+    end = place;
+  }
+  std::fill(x.begin(), x.begin() + end, 0.0);
+}
+
+void ProfileLdl::solve_independent(std::vector<double>& x) const {
+  const std::size_t count = independent_.size();
   if (count == 0) return;
   double last = 0.0;  // x[u - 1]
   for (std::size_t u = 0; u < count; ++u) {
-    const int first = first_[u], n = static_cast<int>(u);
-    const double* row = factors_.data() + offset_[u];
+    const int first = factor_first_[u], n = static_cast<int>(u);
+    const double* row = factors_.data() + factor_offset_[u];
     double sum = x[u];
     for (int k = first; k < n - 1; ++k) sum -= row[k] * at(x, k);
     if (first < n) sum -= row[n - 1] * last;
@@ -85,8 +122,8 @@ void ProfileLdl::solve(std::vector<double>& x) const {
   for (std::size_t u = 0; u < count; ++u) x[u] *= reciprocal_[u];
   last = x[count - 1];  // x[u]
   for (std::size_t u = count - 1; u > 0; --u) {
-    const int first = first_[u], n = static_cast<int>(u);
-    const double* row = factors_.data() + offset_[u];
+    const int first = factor_first_[u], n = static_cast<int>(u);
+    const double* row = factors_.data() + factor_offset_[u];
     for (int k = first; k < n - 1; ++k) at(x, k) -= row[k] * last;
     double next = x[u - 1];
     if (first < n) next -= row[n - 1] * last;

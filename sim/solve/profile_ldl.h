@@ -14,7 +14,8 @@ namespace pinchlab {
 /// a cable, whose matrix is tridiagonal; then it goes by a shorter way to the same bits.
 ///
 /// A pivot below `dependence` times the diagonal's scale means that the row repeats earlier ones;
-/// its unknown is left at zero (a basic solution) and counted.
+/// its unknown is left at zero (a basic solution) and counted. Only rows that repeat none count to
+/// the widths: n of which r do so take n r^2.
 class ProfileLdl {
  public:
   static constexpr double dependence = 1e-13;
@@ -58,15 +59,21 @@ class ProfileLdl {
  private:
   int factor_narrow(const std::vector<double>& scale, double ridge);
   void solve_narrow(std::vector<double>& x) const;
+  void solve_independent(std::vector<double>& x) const;
 
   std::vector<int> first_;
-  std::vector<int> offset_;         // A(u,v) is entries_[offset_[u] + v]; likewise L in factors_
-  std::size_t used_ = 0;            // of entries_
-  bool narrow_ = true;              // no row reaches back beyond the one before: tridiagonal
-  std::vector<double> entries_;     // rows of the matrix
-  std::vector<double> factors_;     // rows of L, unit diagonal not stored, then the pivot's place;
-                                    // of a narrow matrix L(u, u - 1) of each u, or 0
-  std::vector<double> reciprocal_;  // of the pivots (0: dependent)
+  std::vector<int> offset_;      // A(u,v) is entries_[offset_[u] + v]
+  std::size_t used_ = 0;         // of entries_
+  bool narrow_ = true;           // no row reaches back beyond the one before: tridiagonal
+  std::vector<double> entries_;  // rows of the matrix
+
+  // By factor. Of a narrow matrix all rows are factored, of any other those that repeat none.
+  std::vector<int> independent_;                   // these rows; u and v below count them
+  std::vector<int> independent_before_;            // of each row, how many of them come before it
+  std::vector<int> factor_first_, factor_offset_;  // L(u,v) is factors_[factor_offset_[u] + v]
+  std::vector<double> factors_;     // rows of L, unit diagonal not stored; of a narrow matrix
+                                    // L(u, u - 1) of each u, or 0
+  std::vector<double> reciprocal_;  // of the pivots (0: dependent, of a narrow matrix)
 };
 
 }  // namespace pinchlab

@@ -3,12 +3,14 @@
 
 #include "sim/nodes.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "base/at.h"
 #include "demos/scenes/shape_scenes.h"
 #include "sim/scene_error.h"
+#include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -276,6 +278,36 @@ TEST(Nodes, AreChosenByWhatHangsAtTheCable) {
   scene.bodies.push_back(body("above", BodyKind::free, 0.0, 0.0, 0.1, 1.0));
   scene.cables[0].start = on(2);  // nothing holds it up
   EXPECT_EQ(pieces(scene), expected(1.0));
+}
+
+// Asked for all at once, each cable holds what it holds when it alone is asked for: in nets with
+// and without rings, hung up and not.
+TEST(Nodes, AreChosenForAllCablesAtOnceAsForEach) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Random random(seed);
+    Scene scene;
+    const int count = 2 + random.below(10);
+    for (int b = 0; b < count; ++b) {
+      const BodyKind kind = random.below(4) > 0 ? BodyKind::free : BodyKind::fixed_axle;
+      scene.bodies.push_back(body("", kind, random.uniform(0.0, 9.0), random.uniform(0.0, 9.0), 0.1,
+                                  random.uniform(0.1, 100.0)));
+    }
+    std::vector<std::size_t> all;
+    for (int c = random.below(2 * count); c >= 0; --c) {
+      const int from = random.below(count), to = random.below(count + 1) - 1;
+      if (from == to) continue;
+      const Attachment end = to < 0 ? at(0.0, 10.0) : on(to);
+      scene.cables.push_back(cable(on(from), {}, end, 0.01));
+      if (random.below(3) == 0) continue;
+      scene.cables.back().mass_per_metre = random.uniform(0.1, 10.0);
+      all.push_back(scene.cables.size() - 1);
+    }
+    const std::vector<double> tensions = expected_tensions(scene, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double alone = expected_tensions(scene, std::array{all[i]}).front();
+      EXPECT_NEAR(tensions[i], alone, 1e-12 * alone) << seed;
+    }
+  }
 }
 
 // The end's default: nodes within the disc are never clear of it.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "sim/solve/profile_ldl.h"
 #include "sim/solve/profile_lu.h"
@@ -77,6 +78,53 @@ TEST(ProfileLdl, ATridiagonalMatrixHasTheBitsOfAWiderOne) {
   narrow.solve(x);
   wide.solve(y);
   EXPECT_EQ(x, y);
+}
+
+// Rows of many cables to one body: all but three repeat others, wherever they come.
+TEST(ProfileLdl, LeavesOutRowsThatRepeatOthers) {
+  constexpr int count = 60;
+  Random random(1);
+  Eigen::MatrixXd rows(count, 3);
+  for (int u = 0; u < count; ++u) {
+    for (int k = 0; k < 3; ++k) rows(u, k) = random.uniform(-1.0, 1.0);
+    if (u == 1 || u == 2 || u == 4) rows.row(u) = 2.0 * rows.row(0);
+  }
+  const Eigen::MatrixXd dense = rows * rows.transpose();
+  const Eigen::VectorXd right_side = dense * Eigen::VectorXd::Ones(count);
+  ProfileLdl ldl;
+  std::vector<double> scale;
+  for (int u = 0; u < count; ++u) {
+    double* entries = ldl.append(0);
+    for (int v = 0; v < u; ++v) entries[v] = dense(u, v);
+    scale.push_back(dense(u, u));
+  }
+  EXPECT_EQ(ldl.factor(scale, 0.0), count - 3);
+  std::vector<double> x(right_side.begin(), right_side.end());
+  ldl.solve(x);
+  EXPECT_EQ(std::count(x.begin(), x.end(), 0.0), count - 3);
+  for (const std::size_t u : {0, 3, 5}) EXPECT_NE(x[u], 0.0) << u;
+  const Eigen::Map<const Eigen::VectorXd> solution(x.data(), count);
+  EXPECT_LT((dense * solution - right_side).cwiseAbs().maxCoeff(), 1e-11);
+}
+
+// A row of bodies in touch is struck at its end: without friction all move on as one, however many.
+TEST(Solver, ABlowRunsThroughALongRow) {
+  for (const int count : {3, 30, 1000}) {
+    Scene scene;
+    for (int i = 0; i < count; ++i) {
+      scene.bodies.push_back(body("", BodyKind::free, 0.2 * i, 0.1, 0.1, 1.0));
+      scene.bodies.back().contact_friction = 0.0;
+    }
+    scene.bodies.front().velocity = {1.0, 0.0};
+    scene.walls.push_back({Vec2(-5.0, 0.0), Vec2(0.2 * count + 5.0, 0.0), 0.0, 0.0});
+    World world = make_world(scene, Method::pinch);
+    run(scene, world, 1);
+    EXPECT_EQ(world.diagnostics.fallbacks, 0) << count;
+    double worst = 0.0;
+    for (const Vec2& v : world.velocity) worst = std::max(worst, std::abs(v.x() - 1.0 / count));
+    const double round_off = 1e-15 * 0.2 * count / world.step_length;  // of places, in a step
+    EXPECT_LT(worst, round_off + 1e-14) << count;
+  }
 }
 
 TEST(Solver, AnUnusedFeatureIsNotOnTheStepsPath) {
