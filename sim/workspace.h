@@ -59,6 +59,7 @@ struct Trial {
   bool violated = false;     // what it began with, by more than it makes up for
   double missed = 0.0;       // by lengths and gaps, over the part's extent, where not met
   double local_error = 0.0;  // m
+  double wave = 0.0;         // 1/s^2, on cables of nodes under the tensions that it found: waves.h
 };
 
 /// A step's start, but for what Start has, to take it back to.

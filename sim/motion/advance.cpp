@@ -253,7 +253,9 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   const Movers movers{parts_of(near, n), course.lag};
   near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
+  // What may be divided into neighbourhoods is tried as a whole.
   double length = course.left;
+  if (!round.may_divide) length = length_to_try(world, work, movers.parts, length);
   bool met = true;
   course.located = course.events < most_events;
   if (!course.located) {
@@ -300,7 +302,8 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   }
   for (int n = 0; n < count; ++n) {
     Neighbourhood& course = at(near.list, n);
-    course.happened = course.happened || !is_sound(world, trial_of(work, parts_of(near, n)));
+    course.happened =
+        course.happened || !is_sound(world, trial_of(work, parts_of(near, n)), course.left);
     if (course.happened) go_back(world, work, parts_of(near, n));
   }
   work.events.clear();

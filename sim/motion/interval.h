@@ -47,8 +47,14 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
 /// The last trial of these parts.
 Trial trial_of(const Workspace& work, std::span<const int> parts);
 
-/// Whether a trial errs by no more than the scene allows, and needs no repair.
-bool is_sound(const World& world, const Trial& trial);
+/// Whether a trial of that length (s) errs by no more than the scene allows, has followed all waves
+/// on cables of nodes, and needs no repair.
+bool is_sound(const World& world, const Trial& trial, double length);
+
+/// Of the time that is left of a step (s) the interval to try: all of it, or what follows the waves
+/// on these parts' cables under the tensions that they have.
+double length_to_try(const World& world, const Workspace& work, std::span<const int> parts,
+                     double left);
 
 /// Puts these back to where their interval began.
 void go_back(World& world, Workspace& work, std::span<const int> parts);

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/waves.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/forces.h"
@@ -26,6 +27,10 @@ Vec2 velocity_at(const World& world, const Link& link) {
   if (is_central(link)) return velocity;
   const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
   return velocity + at(world.angular_velocity, link.body) * left(from_centre);
+}
+
+bool is_node(const World& world, const Link& link) {
+  return link.body >= 0 && at(world.bodies, link.body).node;
 }
 
 /// Whether the segment counts for the body at its end `link`; `other` is its other end.
@@ -115,8 +120,14 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
       if (segment.length <= 2.0 * cable.half_width) continue;
       const Link& head = cable.links[s];
       const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(s)));
-      any = note_end(world, parts, segment, head, tail, kick, system) || any;
-      any = note_end(world, parts, segment, tail, head, kick, system) || any;
+      // Nodes that intervals follow keep their mass.
+      const bool followed = cable.piece && is_divided_for(world, wave_of(world, cable));
+      if (!followed || !is_node(world, head)) {
+        any = note_end(world, parts, segment, head, tail, kick, system) || any;
+      }
+      if (!followed || !is_node(world, tail)) {
+        any = note_end(world, parts, segment, tail, head, kick, system) || any;
+      }
     }
   }
   if (!any) return;
