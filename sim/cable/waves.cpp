@@ -13,7 +13,7 @@ namespace {
 constexpr double in_steps = 1.0;                // (omega h)^2 of a whole step at most
 constexpr double in_intervals = 0.25;           // of the intervals of others, as tried
 constexpr double at_most = 2.0 * in_intervals;  // with the tensions that have come of them
-constexpr double most_intervals = 1000.0;       // in a step
+constexpr double shortest = 1e-3;               // of a step: an interval for waves
 
 }  // namespace
 
@@ -30,17 +30,21 @@ double wave_of(const World& world, const CableState& cable) {
 }
 
 bool is_divided_for(const World& world, double wave) {
-  if (!locates_events(world.configuration)) return false;
-  const double turned = wave * world.step_length * world.step_length;
-  return turned > in_steps && turned <= in_intervals * most_intervals * most_intervals;
+  return locates_events(world.configuration) &&
+         wave * world.step_length * world.step_length > in_steps;
 }
 
-double interval_for(double wave) {
-  return std::sqrt(in_intervals / wave);
+bool is_lost(const World& world, double wave) {
+  const double least = shortest * world.step_length;
+  return wave * least * least > in_intervals;
 }
 
-bool follows(double wave, double length) {
-  return wave * length * length <= at_most;
+double interval_for(const World& world, double wave) {
+  return std::max(std::sqrt(in_intervals / wave), shortest * world.step_length);
+}
+
+bool follows(const World& world, double wave, double length) {
+  return wave * length * length <= at_most || length <= shortest * world.step_length;
 }
 
 }  // namespace pinchlab

@@ -26,9 +26,12 @@ double wave_of(const World& world, const CableState& cable);
 /// Whether a step is divided for waves of that omega^2 (1/s^2).
 bool is_divided_for(const World& world, double wave);
 
-/// The longest interval (s) to try for them then, and whether one of `length` (s), whose own
-/// tensions they are due to, was short enough.
-double interval_for(double wave);
-bool follows(double wave, double length);
+/// Whether no interval that is tried follows them.
+bool is_lost(const World& world, double wave);
+
+/// The interval (s) to try for them, and whether one of `length` (s), whose own tensions they are
+/// due to, was short enough.
+double interval_for(const World& world, double wave);
+bool follows(const World& world, double wave, double length);
 
 }  // namespace pinchlab

@@ -240,7 +240,7 @@ void try_again(const Scene& scene, World& world, Workspace& work, const Movers& 
 
 /// Whether nodes swing faster than a trial of that length (s) has followed.
 bool is_outrun(const World& world, const Trial& trial, double length) {
-  return is_divided_for(world, trial.wave) && !follows(trial.wave, length);
+  return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
 }
 
 bool errs(const World& world, const Trial& trial) {
@@ -264,7 +264,7 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   double whole = length;  // before the first halving
   for (int halvings = 0;;) {
     if (is_outrun(world, trial, length)) {
-      length *= std::clamp(interval_for(trial.wave) / length, 0.1, 0.7);
+      length *= std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
@@ -408,7 +408,7 @@ double length_to_try(const World& world, const Workspace& work, std::span<const 
     wave = std::max(wave, wave_on(world, work.parts, at(work.parts.list, p)));
   }
   if (!is_divided_for(world, wave)) return left;
-  return left / std::ceil(left / interval_for(wave));
+  return left / std::ceil(left / interval_for(world, wave));
 }
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
