@@ -9,8 +9,8 @@
 
 namespace pinchlab::testing {
 
-/// A load of the mass (kg) a metre over the middle of a cable of 2.3 m that hangs between two
-/// points 2 m apart and half a metre below it.
+/// A body over the middle of a cable of 2.3 m and 0.5 kg/m that hangs between two points 2 m apart,
+/// half a metre below its centre.
 struct Load {
   double mass = 3.0;       // kg
   double velocity = 0.0;   // m/s, upwards
@@ -46,9 +46,11 @@ inline Scene random_load(int seed) {
   const double restitution = random.below(3) == 0 ? uniform(0.1, 0.8) : 0.0;
   const int bodies = 1 + random.below(2);
   for (int i = 0; i < bodies; ++i) {
-    const double radius = uniform(0.08, 0.2), x = (i == 0 ? -0.35 : 0.35) + uniform(-0.3, 0.3);
-    Body body = build::body(i == 0 ? "load" : "other", BodyKind::free, bodies == 1 ? x + 0.35 : x,
-                            0.4 + uniform(0.0, 0.8), radius, spread(0.3, 50.0));
+    const double radius = uniform(0.08, 0.2);
+    double x = uniform(-0.6, 0.6);
+    if (bodies == 2) x = 0.2 * x + (i == 0 ? -0.35 : 0.35);
+    Body body = build::body(i == 0 ? "load" : "other", BodyKind::free, x, uniform(0.4, 1.2), radius,
+                            spread(0.3, 50.0));
     body.velocity = {uniform(-1.0, 1.0), uniform(-5.0, 1.0)};
     body.contact_friction = friction;
     body.restitution = restitution;
