@@ -4,8 +4,8 @@
 //
 // Nodes a distance l apart on a cable of rho kg a metre and tension T swing fastest where each goes
 // against the next: omega = 2 sqrt(T / rho) / l. The step takes tensions at its start, so that
-// omega h must be below 2; and above 1, where half of that is left for ends that move against the
-// node, solve/light_bodies.h damps it. So pieces are no shorter than
+// omega h must be below 2; and above 1 steps are divided (cable/waves.h). So pieces are no shorter
+// than
 //
 //     l = 2 h sqrt(T / rho),      with T the greatest tension that is to be expected.
 //
@@ -14,7 +14,8 @@
 // lowest point T = M (g + v^2 / L). v^2 is that of the height it may fall through and the speed
 // that it has; at least 2 g L, as of what is let go level, so that T is 3 M g or more.
 //
-// What catches a cable that is slack, a motor, or a body that falls on it may pull harder.
+// What catches a cable that is slack, a motor, or a body that falls on it may pull harder: then
+// steps are divided.
 
 #include <span>
 #include <string>

@@ -60,6 +60,7 @@ struct Trial {
   double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
   double local_error = 0.0;   // m
   double longest = infinity;  // s, that it may last: vanishing.h
+  double wave = 0.0;          // 1/s^2, on cables of nodes under the tensions that it found: waves.h
 };
 
 /// A step's start, but for what Start has, to take it back to.

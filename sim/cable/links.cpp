@@ -175,16 +175,20 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   const double free_length = first.length + second.length;
   const double share = free_length > 0.0 ? first.length / free_length : 0.5;
   double arrives = start + share * (end - start - stored);
+  // A side keeps the strain that it comes on with. So the tension does not jump, and no stretch is
+  // left behind to the span.
+  const double slope = free_length > 0.0 ? (end - start - stored) / free_length : 1.0;
+  const double a_metre = cable.elastic ? std::clamp(slope, 0.0, 1.0) : 1.0;  // m of material
   const auto make_side = [](Segment& side) {  // without a row, which alone would change them
     side.tension = 0.0;
     side.slack = false;
   };
   if (is_side(cable.links[from], added)) {
-    arrives = start + first.length;
+    arrives = start + a_metre * first.length;
     make_side(first);
   }
   if (is_side(added, cable.links[to])) {
-    arrives = end - second.length - stored;
+    arrives = end - a_metre * second.length - stored;
     make_side(second);
   }
   added.material += arrives - tail_material(cable, position, body_angle(world, added));

@@ -257,21 +257,19 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   const Movers movers{parts_of(near, n), course.lag};
   near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
+  // What may be divided into neighbourhoods is tried as a whole.
   double length = course.left;
-  bool met = true;
   course.located = course.events < most_events;
+  if (!round.may_divide) {
+    length = length_to_try(world, work, movers.parts, length, course.located);
+  }
+  bool met = true;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
     if (near.divided) find_pairs_of_interval(scene, world, work);
-  } else {
-    // Where the step may yet be divided all of it is tried: most of the scene may be done with it.
-    if (!round.may_divide) length = std::min(length, longest_interval(world, work, movers));
-    if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
-      if (round.may_divide && divide(scene, world, work)) {
-        return move_each(scene, world, work, watch);
-      }
-      length = shorten_interval(scene, world, work, movers, length, met, watch);
-    }
+  } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
+    if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
+    length = shorten_interval(scene, world, work, movers, length, met, watch);
   }
   if (!are_finite(world, work.parts, movers.parts)) return check_finite(scene, world);
   if (round.first && world.configuration.diagnostics) {

@@ -14,6 +14,9 @@
 //   event      velocities at its time, from half a kick with the old constraints; then the cable's
 //              course changes, and an impact (impact.h) makes the velocities fit it.
 //
+// Where nodes of hanging cables swing faster than a step can follow, it is divided as well
+// (cable/waves.h).
+//
 // Parts that cannot meet within the step are divided each by its own events (neighbourhoods.h).
 //
 // After so many events in a step nothing rebounds any more, so that a body that chatters comes to

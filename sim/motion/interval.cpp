@@ -7,6 +7,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
+#include "sim/cable/waves.h"
 #include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
@@ -44,6 +45,16 @@ struct Attempt {
   bool begins = false;             // it is the first since begin_interval
   bool locates = true;  // what happens in it; else constraints bear force as early as it takes
 };
+
+/// omega^2 (1/s^2) of the fastest wave on a part's cables of nodes.
+double wave_on(const World& world, const Parts& parts, const Part& part) {
+  if (!part.has_nodes) return 0.0;
+  double fastest = 0.0;
+  for (const int c : cables_of(parts, part)) {
+    fastest = std::max(fastest, wave_of(world, at(world.cables, c)));
+  }
+  return fastest;
+}
 
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
@@ -202,6 +213,7 @@ void add(const Trial& one, Trial& all) {
   all.missed = std::max(all.missed, one.missed);
   all.local_error = std::max(all.local_error, one.local_error);
   all.longest = std::min(all.longest, one.longest);
+  all.wave = std::max(all.wave, one.wave);
 }
 
 /// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
@@ -229,6 +241,7 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
         attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;
     trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
     trial.longest = longest;
+    trial.wave = wave_on(world, work.parts, part);
     add(trial, work.trial);
     if (!attempt.locates) continue;
     find_catches(world, work, p);
@@ -247,13 +260,19 @@ void try_again(const Scene& scene, World& world, Workspace& work, const Movers& 
   try_interval(scene, world, work, movers, attempt, watch);
 }
 
+/// Whether nodes swing faster than a trial of that length (s) has followed.
+bool is_outrun(const World& world, const Trial& trial, double length) {
+  return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
+}
+
 bool errs(const World& world, const Trial& trial) {
   const double allowed = share_of_error * world.configuration.error;
   return allowed > 0.0 && trial.met && trial.local_error > allowed;
 }
 
 /// Moves by the longest interval of at most `length`, which was just tried, that is exact at its
-/// end and errs by no more than the scene allows, whatever happens in it. Returns its length.
+/// end, follows all waves and errs by no more than the scene allows, whatever happens in it.
+/// Returns its length.
 double find_sound_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                            double length, Stopwatch& watch) {
   const Trial& trial = work.trial;
@@ -271,6 +290,12 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   }
   double whole = length;  // before the first halving
   for (int halvings = 0;;) {
+    if (is_outrun(world, trial, length)) {
+      length *= std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
+      again(shake_rounds);
+      if (halvings == 0) whole = length;
+      continue;
+    }
     if (errs(world, trial) && length > shortest * world.step_length) {
       length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
       again(shake_rounds);
@@ -400,11 +425,19 @@ Trial trial_of(const Workspace& work, std::span<const int> parts) {
 }
 
 bool is_sound(const World& world, const Trial& trial, double length) {
-  return trial.met && !errs(world, trial) && length <= trial.longest;
+  return trial.met && !errs(world, trial) && !is_outrun(world, trial, length) &&
+         length <= trial.longest;
 }
 
-double longest_interval(const World& world, const Workspace& work, const Movers& movers) {
-  return longest_interval(world, work.parts, movers.parts);
+double length_to_try(const World& world, const Workspace& work, std::span<const int> parts,
+                     double left, bool locates) {
+  if (locates) left = std::min(left, longest_interval(world, work.parts, parts));
+  double wave = 0.0;
+  for (const int p : parts) {
+    wave = std::max(wave, wave_on(world, work.parts, at(work.parts.list, p)));
+  }
+  if (!is_divided_for(world, wave)) return left;
+  return left / std::ceil(left / interval_for(world, wave));
 }
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,

@@ -27,9 +27,6 @@ struct Movers {
 /// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
-/// How long an interval of these may be from here on (s).
-double longest_interval(const World& world, const Workspace& work, const Movers& movers);
-
 /// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact, the error
 /// is what the scene allows and the interval no longer than it may be, so that this is it.
 /// `begins`: it is the first try since begin_interval.
@@ -50,9 +47,15 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
 /// The last trial of these parts.
 Trial trial_of(const Workspace& work, std::span<const int> parts);
 
-/// Whether a trial of that length (s) errs by no more than the scene allows, is no longer than it
-/// may be, and needs no repair.
+/// Whether a trial of that length (s) errs by no more than the scene allows, has followed all waves
+/// on cables of nodes, is no longer than vanishing spans allow, and needs no repair.
 bool is_sound(const World& world, const Trial& trial, double length);
+
+/// Of the time that is left of a step (s) the interval to try: all of it, or what follows the waves
+/// on these parts' cables under the tensions that they have and, with `locates`, their vanishing
+/// spans.
+double length_to_try(const World& world, const Workspace& work, std::span<const int> parts,
+                     double left, bool locates);
 
 /// Puts these back to where their interval began.
 void go_back(World& world, Workspace& work, std::span<const int> parts);

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/waves.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/forces.h"
@@ -19,9 +20,14 @@ namespace {
 /// Below this part of a body's mass a span's share is not worth adding up.
 constexpr double negligible = 0.05;
 
-/// Whether the segment counts for the body at its end `link`; `other` is its other end.
+bool is_node(const World& world, const Link& link) {
+  return link.body >= 0 && at(world.bodies, link.body).node;
+}
+
+/// Whether the segment counts for the body at its end `link`; `other` is its other end, or null: as
+/// if that stood.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, const Link& link,
-              const Link& other, double h, PartSystem& system) {
+              const Link* other, double h, PartSystem& system) {
   const int body = link.body >= 0 ? mover_of(world, link.body) : -1;
   if (body < 0 || !can_move(at(world.bodies, body))) return false;
   const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
@@ -33,8 +39,8 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, co
   const Vec2 n = left(segment.direction);
   const Eigen::Matrix2d across = mass * n * n.transpose();
   span.mass += across;
-  if (other.body < 0) return true;
-  const Vec2 velocity = velocity_of(world, other);
+  if (!other || other->body < 0) return true;
+  const Vec2 velocity = velocity_of(world, *other);
   span.momentum_x += velocity.x() * across;
   span.momentum_y += velocity.y() * across;
   return true;
@@ -106,8 +112,16 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
       if (segment.length <= 2.0 * cable.half_width) continue;
       const Link& head = cable.links[s];
       const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(s)));
-      any = note_end(world, parts, segment, head, tail, kick, system) || any;
-      any = note_end(world, parts, segment, tail, head, kick, system) || any;
+      const double wave = wave_of(world, cable);
+      const bool divided = is_divided_for(world, wave), lost = is_lost(world, wave);
+      const auto note = [&](const Link& end, const Link& other) {
+        const bool followed = divided && is_node(world, end);
+        if (followed && !lost) return;
+        any =
+            note_end(world, parts, segment, end, followed ? nullptr : &other, kick, system) || any;
+      };
+      note(head, tail);
+      note(tail, head);
     }
   }
   if (!any) return;

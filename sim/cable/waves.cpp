@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/waves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+
+namespace pinchlab {
+
+namespace {
+
+constexpr double in_steps = 1.0;                // (omega h)^2 of a whole step at most
+constexpr double in_intervals = 0.25;           // of the intervals of others, as tried
+constexpr double at_most = 2.0 * in_intervals;  // with the tensions that have come of them
+constexpr double shortest = 1e-3;               // of a step: an interval for waves
+
+}  // namespace
+
+double wave_of(const World& world, const CableState& cable) {
+  if (!cable.piece || cable.pieces == 0) return 0.0;
+  const Segment& s = cable.segments[1];
+  double lightest = infinity;
+  for (const Link& end : cable.links) {
+    if (end.body >= 0 && at(world.bodies, end.body).node) {
+      lightest = std::min(lightest, at(world.bodies, end.body).mass);
+    }
+  }
+  return std::max(4.0 * s.tension / (s.length * lightest), 0.0);
+}
+
+bool is_divided_for(const World& world, double wave) {
+  return locates_events(world.configuration) &&
+         wave * world.step_length * world.step_length > in_steps;
+}
+
+bool is_lost(const World& world, double wave) {
+  const double least = shortest * world.step_length;
+  return wave * least * least > in_intervals;
+}
+
+double interval_for(const World& world, double wave) {
+  return std::max(std::sqrt(in_intervals / wave), shortest * world.step_length);
+}
+
+bool follows(const World& world, double wave, double length) {
+  return wave * length * length <= at_most || length <= shortest * world.step_length;
+}
+
+}  // namespace pinchlab

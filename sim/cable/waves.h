@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Waves on hanging cables of nodes, which intervals must follow.
+//
+// Under the tension T nodes of mass m a distance l apart swing fastest where each goes against the
+// next: omega^2 = 4 T / m l. By a leapfrog the energy of such a wave swings by (omega h)^2 / 4 of
+// itself: v^2 + (1 - (omega h)^2 / 4) omega^2 x^2 is what it keeps (v the mean of the speeds before
+// and after a kick; Hairer, Lubich & Wanner 2003, *Geometric numerical integration illustrated by
+// the Stormer-Verlet method*, Acta Numerica 12), and from omega h = 2 on it grows without bound.
+//     Nodes are chosen so that omega h is 1 at most under the tension that is to be expected
+// (node_count.h). A body that lands on a cable pulls it taut in a few milliseconds, in which
+// omega^2 becomes a thousand times that, and falls again. So a step in which omega h would be more
+// than 1 is divided into intervals in which it is a half.
+//     Were a node drawn to the line between its neighbours instead, as a body that is too light is
+// (solve/light_bodies.h), it would have the mass m' = m (omega h)^2 while it is stopped, and m when
+// it was set in motion: energy from nothing.
+//     The tension of a chain that is pulled taut by the energy E rises until its waves have all of
+// that: with a of theirs at first and d to spare to T = E^2 / (2 a d), any number. What would ask
+// for intervals of less than a thousandth of a step is drawn to a line at rest. With m' and the
+// speed m v / m' the node has less energy than it had with m and v, and more than it has with m
+// afterwards, so that none is made; but momentum is lost.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension; 0 of other cables.
+double wave_of(const World& world, const CableState& cable);
+
+/// Whether a step is divided for waves of that omega^2 (1/s^2).
+bool is_divided_for(const World& world, double wave);
+
+/// Whether no interval that is tried follows them.
+bool is_lost(const World& world, double wave);
+
+/// The interval (s) to try for them, and whether one of `length` (s), whose own tensions they are
+/// due to, was short enough.
+double interval_for(const World& world, double wave);
+bool follows(const World& world, double wave, double length);
+
+}  // namespace pinchlab
