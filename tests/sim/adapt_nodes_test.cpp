@@ -189,7 +189,11 @@ TEST(AdaptNodes, ACatenaryHangsAsItHung) {
 }
 
 TEST(AdaptNodes, DrawnTautItIsOnePieceAndReleasedItHangsAgain) {
-  const Scene scene = build::drawn_taut(31, 4, 2e-3);
+  Scene scene = build::drawn_taut(31, 4, 2e-3);
+  // With a sixth of this drag it still swings by 1 cm then, from the jerk that pulls it taut.
+  for (Body& body : scene.bodies) {
+    if (body.node) body.linear_drag = 5.0;
+  }
   World world = make_world(scene, measured());
   Workspace work;
   int fewest = 99;
