@@ -30,7 +30,7 @@ set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 2.796761398476593e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -41,7 +41,7 @@ plot 2.796761398476593e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 3.9065428469149715e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -63,7 +63,7 @@ plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 1.3523700510729905e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -74,7 +74,7 @@ plot 1.3523700510729905e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 1.6411318059340526e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -85,7 +85,7 @@ plot 1.6411318059340526e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 7.737580993445157e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -107,7 +107,7 @@ plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 9.100990634931578e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 9.108391318513585e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -158,7 +158,7 @@ set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 2.796761398476593e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -169,7 +169,7 @@ plot 2.796761398476593e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 3.9065428469149715e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -191,7 +191,7 @@ plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 1.3523700510729905e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -202,7 +202,7 @@ plot 1.3523700510729905e-05 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 1.6411318059340526e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -213,7 +213,7 @@ plot 1.6411318059340526e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 7.737580993445157e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -235,7 +235,7 @@ plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 9.100990634931578e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 9.108391318513585e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
