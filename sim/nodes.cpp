@@ -10,6 +10,7 @@
 #include "sim/compound.h"
 #include "sim/hanging.h"
 #include "sim/outline.h"
+#include "sim/scene_checks.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
 #include "sim/tangent.h"
@@ -228,6 +229,8 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
 
 std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
+  if (std::ranges::none_of(scene.cables, becomes_nodes)) return made;
+  refuse_impossible_courses(scene);
   const std::size_t count = scene.cables.size();
   std::vector<std::size_t> open;  // cables that leave the number of their nodes open
   for (std::size_t c = 0; c < count; ++c) {

@@ -41,8 +41,9 @@ inline bool becomes_nodes(const Cable& cable) {
 /// With a bending stiffness pieces bear force both ways, and bend against one another
 /// (cable/bending.h).
 ///
-/// Throws SceneError where a cable has no length, cannot hang as it is straight between two points
-/// that stand, has more nodes than fit, or cannot adapt their number.
+/// Throws SceneError where a cable runs over bodies that are not in the scene, has no length,
+/// cannot hang as it is straight between two points that stand, has more nodes than fit, or cannot
+/// adapt their number.
 std::vector<NodedCable> spread_nodes(Scene& scene);
 
 }  // namespace pinchlab

@@ -18,6 +18,9 @@ constexpr int most_extra_turns = 100;
 /// Figures, choices and indices that everything else takes for granted (scene_figures.cpp).
 void refuse_impossible_figures(const Scene& scene);
 
+/// Of these only where cables run: what spread_nodes has to know before there is all of a scene.
+void refuse_impossible_courses(const Scene& scene);
+
 /// Cables with mass that may slip, where that is not solved: by sweeps, and with three rows a
 /// pinch.
 void refuse_slip_of_mass(const Scene& scene, const Configuration& configuration);

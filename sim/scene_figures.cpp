@@ -307,6 +307,12 @@ void refuse_impossible_view(const View& view) {
 
 }  // namespace
 
+void refuse_impossible_courses(const Scene& scene) {
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    refuse_impossible_course(scene, scene.cables[c], pointer("cables", c));
+  }
+}
+
 void refuse_impossible_figures(const Scene& scene) {
   refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
          "frames per second and steps per frame must be at least 1");

@@ -297,6 +297,26 @@ TEST(Figures, OfCourses) {
   });
 }
 
+// What spreads nodes reads where cables run before make_world does.
+TEST(Figures, OfCoursesBeforeThereAreNodes) {
+  Scene hanging;
+  hanging.bodies = {body("load", BodyKind::free, 0.0, -1.0, 0.1, 1.0)};
+  hanging.cables = {cable(at(0.0, 0.0), {}, on(0), 0.01), cable(at(1.0, 0.0), {}, on(0), 0.01)};
+  hanging.cables[0].mass_per_metre = 1.0;
+  for (const int body : {-2, 1, 1000}) {
+    Scene scene = hanging;
+    scene.cables[0].end.body = body;
+    EXPECT_THROW(spread_nodes(scene), SceneError) << body;
+    scene = hanging;
+    scene.cables[1].start.body = body;
+    EXPECT_THROW(spread_nodes(scene), SceneError) << body;
+    scene = hanging;
+    scene.cables[1].wraps = {{body, 1, 0}};
+    EXPECT_THROW(spread_nodes(scene), SceneError) << body;
+  }
+  EXPECT_NO_THROW(spread_nodes(hanging));
+}
+
 TEST(Figures, OfWalls) {
   const auto refused = [](const char* field, const char* words, auto figure,
                           const std::vector<double>& values) {
