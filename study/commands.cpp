@@ -405,9 +405,7 @@ void simulate_participants(SimulateOptions& options, const Stimuli& stimuli) {
   Desk desk(std::move(desk_options));
   std::optional<pinchlab::Progress> progress;
   std::mutex mutex;
-  options.simulation.begin = [&](int to_come) {
-    progress.emplace("simulating", "participants", to_come);
-  };
+  options.simulation.begin = [&](int n) { progress.emplace("simulating", "participants", n); };
   options.simulation.progress = [&](int) {
     const std::scoped_lock lock(mutex);
     progress->add(1);

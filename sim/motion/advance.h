@@ -15,7 +15,7 @@
 //              course changes, and an impact (impact.h) makes the velocities fit it.
 //
 // Where nodes of hanging cables swing faster than a step can follow, it is divided as well
-// (cable/waves.h).
+// (cable/waves.h), and where a span vanishes (vanishing.h).
 //
 // Parts that cannot meet within the step are divided each by its own events (neighbourhoods.h).
 //
