@@ -16,6 +16,17 @@ using Derivative = std::function<State(const State&)>;  ///< dy/dt of y
 /// gives up.
 std::vector<State> integrate(const Derivative& f, State y, double interval, int count);
 
+/// A stretch of a motion between two events.
+struct Phase {
+  Derivative derivative;
+  std::function<double(const State&)> until;   ///< ends where this falls below 0; none: never
+  std::function<State(const State&)> becomes;  ///< y after the event, of y before; none: the same
+};
+
+/// The same through phases, each from where the one before it ended: the moment is bisected until
+/// doubles end. An event whose `until` is below 0 between two of the times only is missed.
+std::vector<State> integrate(const std::vector<Phase>& phases, State y, double interval, int count);
+
 /// Loads m1 and m2 (kg) on one massless cable over pulleys with fixed axles, `pulleys` the sum of
 /// their I/R^2 (kg), without slip: acceleration of m2 downwards (m/s^2),
 ///   a = (m2 - m1) g / (m1 + m2 + sum I/R^2).
@@ -63,6 +74,62 @@ struct RollerOnDrum {
   State derivative(const State& y) const;
   /// Energy over the roller's mass (J/kg) up to a constant.
   double energy(const State& y) const;
+};
+
+/// Galileo's peg: a bob on a cable of length L from the origin, which meets a peg straight below, at
+/// depth p and of radius R (to the cable's centre line), and winds round it.
+///
+/// theta is the span's angle from straight down, e = (sin, -cos) theta its direction. The cable lies
+/// on the peg while theta > theta_0 = -asin(R/p). The tangent point there is sqrt(p^2 - R^2) from
+/// the origin, so that the free length is l = L - sqrt(p^2 - R^2) - R (theta - theta_0). The bob's
+/// velocity is l theta' n on either side of theta_0, n = (cos, sin) theta (l = L before): it is the
+/// same when the cable meets the peg, and theta' jumps as 1 / l. In between
+///   l theta'' = R theta'^2 - g sin theta     (R = 0 off the peg).
+struct PegPendulum {
+  double length = 1.0;   // m, L
+  double depth = 0.5;    // m, p
+  double radius = 0.03;  // m, R
+  double g = 9.81;       // m/s^2
+
+  double meets() const;                    ///< theta_0, rad
+  double free_length(double theta) const;  ///< m
+  /// Swing to the peg, round it and back, and away, of y = (theta, theta').
+  std::vector<Phase> phases() const;
+  void place(const State& y, double& x, double& y_m) const;  ///< bob, m
+  /// Energy over the bob's mass (J/kg) up to a constant.
+  double energy(const State& y) const;
+};
+
+/// The looping pendulum (Dannheim, Ijspeert et al. call it so): a bob of mass m and a load of mass M
+/// on one cable over a fixed rod of radius R (to the cable's centre line) at the origin, on which it
+/// slips by the capstan law. The load hangs straight down on the right; from there the cable runs
+/// counter-clockwise over the rod, by the angle phi, and on to the bob.
+///
+/// With n = (cos, sin) phi and e = n', the bob is at R n + l e, and l = l_0 - R (phi - phi_0) - s
+/// with s what has slipped towards the load. Its velocity is -s' e - l phi' n, so along n
+///   l phi'' = R phi'^2 + 2 s' phi' + g sin phi,
+/// and along e its tension is T = m (s'' + l phi'^2 - g cos phi). The load's is M (g - s''). While
+/// the cable slips towards the load that is k T, k = e^(mu phi):
+///   (M + k m) s'' = M g - k m (l phi'^2 - g cos phi).
+/// It sticks where s' comes to 0, and holds while M g <= k T (and T <= k M g).
+struct LoopingPendulum {
+  double radius = 0.05;       // m, R
+  double friction = 0.3;      // mu
+  double bob = 1.0;           // kg, m
+  double load = 3.0;          // kg, M
+  double length = 1.0;        // m, l_0
+  double start_angle = 1.57;  // rad, phi_0
+  double g = 9.81;            // m/s^2
+
+  double free_length(const State& y) const;                            ///< m, l
+  double bob_tension(const State& y, double slip_acceleration) const;  ///< N, T
+  /// How fast slipping begins to be faster (m/s^2): s'' as if it slips.
+  double slip_acceleration(const State& y) const;
+  /// M g over k T where it sticks: slips towards the load above 1.
+  double load_over_hold(const State& y) const;
+  /// Slips, sticks, slips, sticks, of y = (phi, phi', s, s').
+  std::vector<Phase> phases() const;
+  void place(const State& y, double& x, double& y_m) const;  ///< bob, m
 };
 
 }  // namespace pinchlab::experiments

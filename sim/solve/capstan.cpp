@@ -167,7 +167,8 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
     const int c = cables[place];
     const CableState& cable = at(world.cables, c);
     if (is_massed(cable) || !slides_somewhere(world, cable)) continue;
-    const int* row_of_segment = system.row_of_segment.data() + system.segment_begin[place];
+    const int begin = system.segment_begin[place];
+    const int* row_of_segment = system.row_of_segment.data() + begin;
     const auto row_of = [row_of_segment](int segment) { return row_of_segment[segment]; };
     const int count = static_cast<int>(cable.links.size());
     // Start a closed cable outside of any pinch, an open one at the first segment that bears
@@ -189,7 +190,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
       Run run = make_run(world, c, first, last);
       run.passages_begin = static_cast<int>(s.passages.size());
       if (at(world.bodies, at(cable.links, first).body).cable_friction < infinity) {
-        append_passages(world, system, scratch, c, first, last, row_of_segment,
+        append_passages(world, system, scratch, c, first, last, begin,
                         static_cast<int>(s.runs.size()), s.passages);
       }
       run.passages_end = static_cast<int>(s.passages.size());

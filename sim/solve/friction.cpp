@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/parts.h"
 #include "sim/solve/solve_scratch.h"
 
 namespace pinchlab {
@@ -132,9 +133,19 @@ void share_among_repeated(PartSystem& s) {
   }
 }
 
+void note_wraps(const World& world, const Parts& parts, const Part& part, PartSystem& system) {
+  system.wraps.clear();
+  for (const int c : cables_of(parts, part)) {
+    for (const Link& link : at(world.cables, c).links) {
+      system.wraps.push_back(std::max(link.wrap, 0.0));
+    }
+  }
+}
+
 void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch,
-                     int cable_number, int first, int last, const int* row_of_segment, int run,
+                     int cable_number, int first, int last, int begin, int run,
                      std::vector<Passage>& passages) {
+  const int* row_of_segment = system.row_of_segment.data() + begin;
   const CableState& cable = at(world.cables, cable_number);
   const double mu = at(world.bodies, at(cable.links, first).body).cable_friction;
   const double pinched_mu = friction_in_pinch(world, cable, at(cable.links, first).body);
@@ -159,7 +170,7 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
         }
       }
     } else {
-      passage.factor = capstan_factor(mu, std::max(part.wrap, 0.0));
+      passage.factor = capstan_factor(mu, at(system.wraps, begin + i));
     }
     passages.push_back(passage);
     if (i == last) break;

@@ -19,6 +19,8 @@
 namespace pinchlab {
 
 struct CableState;
+struct Part;
+struct Parts;
 struct SolveScratch;
 struct World;
 
@@ -102,12 +104,15 @@ void find_repeated_middles(const World& world, PartSystem& system, SolveScratch&
 /// Impulses of repeated rows: their shares of the first one's.
 void share_among_repeated(PartSystem& system);
 
+/// Notes by what angles the part's cables lie on bodies (PartSystem::wraps). Forces are those at the
+/// interval's start: where its rows are solved again, at its end, these angles have changed.
+void note_wraps(const World& world, const Parts& parts, const Part& part, PartSystem& system);
+
 /// Appends the passages of a cable's links first..last, which lie on one body, and of the
-/// transitional pinches at either end. `row_of_segment` is the cable's own. With `three` rows a
-/// pinch, contacts have no share in friction (thesis), and the middle body holds the cable like an
-/// arc of 1 rad on it.
+/// transitional pinches at either end. `begin` is where the cable's own begin in row_of_segment and
+/// wraps. With `three` rows a pinch, contacts have no share in friction (thesis), and the middle
+/// body holds the cable like an arc of 1 rad on it.
 void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch, int cable,
-                     int first, int last, const int* row_of_segment, int run,
-                     std::vector<Passage>& passages);
+                     int first, int last, int begin, int run, std::vector<Passage>& passages);
 
 }  // namespace pinchlab

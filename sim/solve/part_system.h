@@ -266,6 +266,8 @@ struct PartSystem {
                                                // slide
   std::vector<int> row_of_segment;             // cable after cable; -1: none
   std::vector<int> segment_begin;              // of the part's cables, in row_of_segment
+  std::vector<double> wraps;  // rad, of links when the rows were made, as row_of_segment; of parts
+                              // that may slide
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
 };

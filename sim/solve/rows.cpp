@@ -448,7 +448,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     }
   }
   s.elastic_ends.clear();
-  if (part.may_slide) make_all_elastic(scene, world, parts, part, interval, s);
+  if (!part.may_slide) return;
+  note_wraps(world, parts, part, s);
+  make_all_elastic(scene, world, parts, part, interval, s);
 }
 
 void make_contact_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,

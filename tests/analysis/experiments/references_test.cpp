@@ -91,5 +91,79 @@ TEST(References, RollerOnDrumKeepsItsEnergyAndFallsLikeACosh) {
   EXPECT_NEAR(falling[1][0] / (small * std::cosh(rate * 0.5)), 1.0, 1e-7);
 }
 
+// A ball thrown up at 1 m/s, twice: phases end at their events to round-off.
+TEST(References, PhasesEndAtTheirEvents) {
+  const auto falls = [](const State& y) -> State { return {y[1], -g}; };
+  const auto height = [](const State& y) { return y[0]; };
+  const auto thrown = [](const State&) -> State { return {0.0, 1.0}; };
+  const auto states = integrate({{falls, height, thrown}, {falls, height, thrown}, {falls, {}, {}}},
+                                {0.0, 1.0}, 0.05, 10);
+  const double t = 0.5 - 2.0 * (2.0 / g);
+  EXPECT_NEAR(states[10][0], t - 0.5 * g * t * t, 1e-13);
+  EXPECT_NEAR(states[10][1], 1.0 - g * t, 1e-12);
+}
+
+TEST(References, GalileosPendulumKeepsItsEnergyAndItsPlaceAtThePeg) {
+  const PegPendulum pendulum{1.0, 0.5, 0.03, g};
+  const auto states = integrate(pendulum.phases(), {-std::atan2(0.8, 0.6), 0.0}, 1.0 / 60.0, 90);
+  double highest = -1.0, farthest = -1.0;
+  for (const State& y : states) {
+    EXPECT_NEAR(pendulum.energy(y), pendulum.energy(states[0]), 1e-11);
+    double x = 0.0, height = 0.0;
+    pendulum.place(y, x, height);
+    farthest = std::max(farthest, y[0]);
+    if (y[0] > 0.0) highest = std::max(highest, height);
+  }
+  EXPECT_NEAR(highest, -0.6, 1e-3) << "it rises to its old height";
+  EXPECT_GT(farthest, 1.0) << "round the peg";
+  EXPECT_LT(states.back()[0], pendulum.meets()) << "and comes back";
+  double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
+  pendulum.place({pendulum.meets() - 1e-12, 0.0}, x0, y0);
+  pendulum.place({pendulum.meets() + 1e-12, 0.0}, x1, y1);
+  EXPECT_NEAR(std::hypot(x1 - x0, y1 - y0), 0.0, 1e-11);
+}
+
+// Newton's law for the bob's own place, by differences: what is left of its acceleration without
+// gravity is the cable's pull, along the span; against the load's it obeys the capstan law.
+TEST(References, LoopingPendulumObeysNewtonAndTheCapstanLaw) {
+  const LoopingPendulum pendulum{0.05, 0.3, 1.0, 3.0, 1.0, 1.5707963267948966, g};
+  constexpr double h = 1e-4;
+  const int count = 11600;
+  const auto states = integrate(pendulum.phases(), {pendulum.start_angle, 0.0, 0.0, 0.0}, h, count);
+  int slipping = 0, sticking = 0;
+  const auto slips = [&](int i) { return states[static_cast<std::size_t>(i)][3] > 0.0; };
+  for (int i = 10; i + 10 < count; i += 7) {
+    if (slips(i - 2) != slips(i) || slips(i + 2) != slips(i)) continue;  // an event between
+    double x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+      pendulum.place(states[static_cast<std::size_t>(i + k - 1)], x[k], y[k]);
+    }
+    const State& s = states[static_cast<std::size_t>(i)];
+    const double ax = (x[0] - 2.0 * x[1] + x[2]) / (h * h);
+    const double ay = (y[0] - 2.0 * y[1] + y[2]) / (h * h) + g;
+    const double ex = -std::sin(s[0]), ey = std::cos(s[0]);
+    const double pull = -(ax * ex + ay * ey), across = ax * -ey + ay * ex;
+    const double slip = (states[static_cast<std::size_t>(i - 1)][2] - 2.0 * s[2] +
+                         states[static_cast<std::size_t>(i + 1)][2]) /
+                        (h * h);
+    const double load = 3.0 * (g - slip), k = std::exp(0.3 * s[0]);
+    EXPECT_NEAR(across, 0.0, 1e-4 * pull) << i;
+    EXPECT_NEAR(pull, pendulum.bob_tension(s, slip), 1e-4 * pull) << i;
+    EXPECT_GT(pull, 2.0) << i << ": it never gets slack";
+    if (slips(i)) {
+      EXPECT_NEAR(load, k * pull, 1e-3 * load) << i;
+      ++slipping;
+    } else {
+      EXPECT_LE(load, k * pull * (1.0 + 1e-4)) << i;
+      EXPECT_LE(pull, k * load * (1.0 + 1e-4)) << i;
+      ++sticking;
+    }
+  }
+  EXPECT_GT(slipping, 500);
+  EXPECT_GT(sticking, 500);
+  EXPECT_GT(states.back()[0], pendulum.start_angle + 2.0 * 3.14159) << "more than once round";
+  EXPECT_EQ(states.back()[3], 0.0) << "held in the end";
+}
+
 }  // namespace
 }  // namespace pinchlab::experiments
