@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "analysis/experiments/accuracy_scenes.h"
+#include "analysis/experiments/event_scenes.h"
 #include "demos/command_line.h"
 #include "demos/scenes/find_scenes.h"
 #include "demos/scenes/scene_json.h"
@@ -25,39 +26,48 @@ Extent extent(bool quick) {
   return quick ? Extent{64, 512, 2.0, {0.005, 0.1}, {0.005, 0.03}} : Extent();
 }
 
+ProblemResult result_of(Problem problem, bool demonstration = false) {
+  ProblemResult result;
+  result.problem = std::move(problem);
+  result.demonstration = demonstration;
+  return result;
+}
+
 std::vector<ProblemResult> problems(const Extent& extent) {
-  std::vector<ProblemResult> results;
-  for (Problem& problem : known_problems()) {
-    results.push_back({std::move(problem), false, {}, {}});
-  }
+  std::vector<ProblemResult> results = scenes_of_known_motion();
   for (Problem& problem : finely_solved_problems(extent.reference_steps)) {
-    results.push_back({std::move(problem), false, {}, {}});
+    results.push_back(result_of(std::move(problem)));
   }
   const std::vector<std::filesystem::path> paths = find_scenes({demos_folder()});
   Progress progress("the demonstrations' own solutions", static_cast<double>(paths.size()));
   for (const std::filesystem::path& path : paths) {
     const Scene scene = read_scene_file(path).scene;
     const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
-    results.push_back({own_solution(scene.name, scene, std::min(clip, extent.demonstration_s),
-                                    extent.reference_steps),
-                       true,
-                       {},
-                       {}});
+    const double seconds = std::min(clip, extent.demonstration_s);
+    results.push_back(
+        result_of(own_solution(scene.name, scene, seconds, extent.reference_steps), true));
     progress.done(1.0);
   }
   return results;
 }
 
+std::vector<Rung> climb_ours(const Problem& problem, const std::string& setting,
+                             const Configuration& configuration, const Extent& extent) {
+  const auto run = [&](int steps) { return simulate(problem, configuration, steps); };
+  return climb(problem, setting, run, extent.most_steps, extent.ours);
+}
+
 void run_ours(ProblemResult& result, const Extent& extent, Progress& progress) {
   for (const Contender& contender : contenders()) {
-    const auto run = [&](int steps) {
-      return simulate(result.problem, contender.configuration, steps);
-    };
     const std::vector<Rung> rungs =
-        climb(result.problem, contender.name, run, extent.most_steps, extent.ours);
+        climb_ours(result.problem, contender.name, contender.configuration, extent);
     result.rungs.insert(result.rungs.end(), rungs.begin(), rungs.end());
     progress.done(1.0);
   }
+  if (!result.events) return;
+  Configuration configuration = Method::pinch;
+  configuration.events = Events::at_steps;
+  result.at_steps = climb_ours(result.problem, events_at_steps, configuration, extent);
 }
 
 void run_peer(ProblemResult& result, const Peer& peer, const Extent& extent, bool quick,
@@ -98,6 +108,7 @@ void write_tables(Output& output, const std::vector<ProblemResult>& results,
   Csv all(columns), fronts(columns);
   for (const ProblemResult& result : results) {
     add_rows(all, result.problem.name, "Pinchlab", result.rungs);
+    add_rows(all, result.problem.name, "Pinchlab", result.at_steps);
     for (std::size_t p = 0; p < all_peers.size(); ++p) {
       add_rows(all, result.problem.name, all_peers[p].name, result.peers[p].rungs);
       add_rows(fronts, result.problem.name, all_peers[p].name, front(result.peers[p].rungs));
@@ -108,6 +119,16 @@ void write_tables(Output& output, const std::vector<ProblemResult>& results,
 }
 
 }  // namespace
+
+std::vector<ProblemResult> scenes_of_known_motion() {
+  std::vector<ProblemResult> results;
+  for (Problem& problem : known_problems()) results.push_back(result_of(std::move(problem)));
+  for (Problem& problem : event_problems()) {
+    results.push_back(result_of(std::move(problem)));
+    results.back().events = true;
+  }
+  return results;
+}
 
 std::vector<Rung> ladder(const std::vector<Rung>& rungs, const std::string& setting) {
   std::vector<Rung> found;
@@ -140,6 +161,7 @@ void run_accuracy(const Options& options) {
   }
   write_tables(output, results, all_peers, options.command);
   write_accuracy_figures(output, results, all_peers);
+  write_events_figure(output, results);
   output.page("accuracy", accuracy_page(results, all_peers, how_far.ours, how_far.peers),
               options.command);
 }

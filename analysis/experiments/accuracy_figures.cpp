@@ -31,67 +31,32 @@ constexpr Series series[] = {
 };
 constexpr int peer_styles[] = {4, 5};
 
-std::string points(const std::string& scene, const std::string& column, const std::string& value) {
-  const std::vector<std::pair<std::string, std::string>> where{{"scene", scene}, {column, value}};
-  return fmt::format("using {}:{}", column_where("cpu_us_per_s", where),
-                     fmt::format("(drawn({}))", column_where("error", where)));
-}
-
 std::string lines_of(const ProblemResult& result, const std::vector<Peer>& peers, double size) {
   const std::string& scene = result.problem.name;
   std::vector<std::string> plots;
-  if (result.problem.doubt_m > 0.0) {
-    plots.push_back(fmt::format("{} with lines lc rgb '#999999' dt 3 lw 1.5 notitle",
-                                result.problem.doubt_m / result.problem.length_m));
-  }
+  const std::string doubt = doubt_line(result.problem);
+  if (!doubt.empty()) plots.push_back(doubt);
   for (std::size_t p = 0; p < peers.size(); ++p) {
     if (result.peers[p].rungs.empty()) continue;
     plots.push_back(fmt::format("'accuracy.csv' {} with points ls {} ps 0.25 notitle",
-                                points(scene, "engine", peers[p].name), peer_styles[p]));
+                                accuracy_points(scene, "engine", peers[p].name), peer_styles[p]));
     plots.push_back(fmt::format("'accuracy-fronts.csv' {} with linespoints ls {} title {}",
-                                points(scene, "engine", peers[p].name), peer_styles[p],
+                                accuracy_points(scene, "engine", peers[p].name), peer_styles[p],
                                 analysis::gnuplot_quote(peers[p].name + ", its best (dots: all)")));
   }
   for (const Series& s : series) {
     plots.push_back(fmt::format("'accuracy.csv' {} with linespoints ls {} dt {} ps {} title {}",
-                                points(scene, "setting", s.setting), s.style, s.dash, size,
+                                accuracy_points(scene, "setting", s.setting), s.style, s.dash, size,
                                 analysis::gnuplot_quote(s.setting)));
   }
   return fmt::format("plot {}\n", fmt::join(plots, ", \\\n  "));
-}
-
-/// Axes of all panels alike, with room for whole decades.
-std::string axes() {
-  return fmt::format(
-      "drawn(e) = e < {0} ? {0} : e\n"
-      "set logscale xy\nset format x '1e%T'\nset format y '1e%T'\n"
-      "set mxtics 10\nset mytics 1\n",
-      smallest_drawn);
-}
-
-/// Lowest and highest decade of the errors drawn.
-std::pair<double, double> error_range(const std::vector<const ProblemResult*>& results) {
-  double low = 1e-2, high = 1e-2;
-  const auto widen = [&](const std::vector<Rung>& rungs) {
-    for (const Rung& rung : rungs) {
-      if (!rung.trial.finite) continue;
-      low = std::min(low, std::max(rung.trial.error, smallest_drawn));
-      high = std::max(high, rung.trial.error);
-    }
-  };
-  for (const ProblemResult* result : results) {
-    widen(result->rungs);
-    for (const PeerResult& peer : result->peers) widen(peer.rungs);
-  }
-  return {std::pow(10.0, std::floor(std::log10(low) - 0.1)),
-          std::pow(10.0, std::min(5.0, std::ceil(std::log10(high) + 0.1)))};
 }
 
 void figure_of(Output& output, const ProblemResult& result, const std::vector<Peer>& peers) {
   const auto [low, high] = error_range({&result});
   output.figure(
       "accuracy-" + result.problem.name, 900, 480,
-      axes() +
+      accuracy_axes() +
           fmt::format(
               "set title {} tc rgb '#333333'\n"
               "set xlabel 'processor time a simulated second (µs)'\n"
@@ -105,10 +70,10 @@ void figure_of(Output& output, const ProblemResult& result, const std::vector<Pe
 void figure_of_demonstrations(Output& output, const std::vector<const ProblemResult*>& results,
                               const std::vector<Peer>& peers) {
   const auto [low, high] = error_range(results);
-  std::string text = axes() + fmt::format(
-                                  "set multiplot layout 3,3\nset yrange [{}:{}]\n"
-                                  "set xrange [10:*]\nset key off\n",
-                                  low, high);
+  std::string text = accuracy_axes() + fmt::format(
+                                           "set multiplot layout 3,3\nset yrange [{}:{}]\n"
+                                           "set xrange [10:*]\nset key off\n",
+                                           low, high);
   for (std::size_t i = 0; i < results.size(); ++i) {
     text += fmt::format("set title {} tc rgb '#333333'\nset ylabel {}\nset xlabel {}\n",
                         analysis::gnuplot_quote(results[i]->problem.name),
@@ -131,6 +96,45 @@ void figure_of_demonstrations(Output& output, const std::vector<const ProblemRes
 }
 
 }  // namespace
+
+std::string accuracy_points(const std::string& scene, const std::string& column,
+                            const std::string& value) {
+  const std::vector<std::pair<std::string, std::string>> where{{"scene", scene}, {column, value}};
+  return fmt::format("using {}:{}", column_where("cpu_us_per_s", where),
+                     fmt::format("(drawn({}))", column_where("error", where)));
+}
+
+std::string doubt_line(const Problem& problem) {
+  if (!(problem.doubt_m > 0.0)) return "";
+  return fmt::format("{} with lines lc rgb '#999999' dt 3 lw 1.5 notitle",
+                     problem.doubt_m / problem.length_m);
+}
+
+std::string accuracy_axes() {
+  return fmt::format(
+      "drawn(e) = e < {0} ? {0} : e\n"
+      "set logscale xy\nset format x '1e%T'\nset format y '1e%T'\n"
+      "set mxtics 10\nset mytics 1\n",
+      smallest_drawn);
+}
+
+std::pair<double, double> error_range(const std::vector<const ProblemResult*>& results) {
+  double low = 1e-2, high = 1e-2;
+  const auto widen = [&](const std::vector<Rung>& rungs) {
+    for (const Rung& rung : rungs) {
+      if (!rung.trial.finite) continue;
+      low = std::min(low, std::max(rung.trial.error, smallest_drawn));
+      high = std::max(high, rung.trial.error);
+    }
+  };
+  for (const ProblemResult* result : results) {
+    widen(result->rungs);
+    widen(result->at_steps);
+    for (const PeerResult& peer : result->peers) widen(peer.rungs);
+  }
+  return {std::pow(10.0, std::floor(std::log10(low) - 0.1)),
+          std::pow(10.0, std::min(5.0, std::ceil(std::log10(high) + 0.1)))};
+}
 
 void write_accuracy_figures(Output& output, const std::vector<ProblemResult>& results,
                             const std::vector<Peer>& peers) {

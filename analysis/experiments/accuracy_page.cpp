@@ -11,18 +11,7 @@ namespace pinchlab::experiments {
 
 namespace {
 
-constexpr std::array wanted_errors{1e-2, 1e-3, 1e-4, 1e-6};
 const std::string ours = "pinch direct";
-
-std::string number(double value) {
-  return value == 0.0 ? "0" : fmt::format("{:.1e}", value);
-}
-
-/// Microseconds of processor time a simulated second, three digits.
-std::string microseconds(double cpu_s_per_s) {
-  const double us = 1e6 * cpu_s_per_s;
-  return us < 10000.0 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.3g} ms", 1e-3 * us);
-}
 
 std::string steps_text(int steps) {
   return fmt::format("{} step{}", steps, steps == 1 ? "" : "s");
@@ -40,7 +29,7 @@ double best_error(const std::vector<Rung>& rungs) {
 std::string not_reached(const Problem& problem, const std::vector<Rung>& rungs, double error) {
   const double doubt = problem.doubt_m / problem.length_m;
   if (doubt > error) return "not vouched for";
-  return fmt::format("not reached (best {})", number(best_error(rungs) + doubt));
+  return fmt::format("not reached (best {})", error_text(best_error(rungs) + doubt));
 }
 
 std::string wanted_header(double error) {
@@ -189,14 +178,6 @@ std::string where_beaten(const std::vector<ProblemResult>& results,
   return beaten.text();
 }
 
-std::string order_text(const ProblemResult& result, const std::vector<Rung>& rungs) {
-  const double doubt = result.problem.doubt_m / result.problem.length_m;
-  const double order = observed_order(rungs, std::max(1e-12, doubt));
-  if (best_error(rungs) < 1e-9 && rungs.front().trial.error < 1e-9) return "exact";
-  if (std::isnan(order)) return "-";
-  return std::abs(order) < 0.05 ? "0.0" : fmt::format("{:.1f}", order);
-}
-
 /// In how many cases (scene and wanted error) a contender meets the error, of those that any meets,
 /// and in how many it is the cheapest or nearly.
 std::string contender_sentence(const std::vector<ProblemResult>& results,
@@ -252,7 +233,7 @@ std::string peer_sentence(const std::vector<ProblemResult>& results, const Peer&
 std::string in_short(const std::vector<ProblemResult>& results, const std::vector<Peer>& peers) {
   std::vector<std::string> exact, second;
   for (const ProblemResult& result : results) {
-    const std::string order = order_text(result, ladder(result.rungs, ours));
+    const std::string order = order_text(result.problem, ladder(result.rungs, ours));
     if (order == "exact") exact.push_back(result.problem.name);
     if (order == "1.9" || order == "2.0" || order == "2.1") second.push_back(result.problem.name);
   }
@@ -264,6 +245,7 @@ std::string in_short(const std::vector<ProblemResult>& results, const std::vecto
   for (const std::string& setting : {ours, std::string("pinch iterative"), std::string("thesis")}) {
     text += contender_sentence(results, setting);
   }
+  text += events_sentence(results);
   for (std::size_t p = 0; p < peers.size(); ++p) {
     if (peers[p].present()) text += peer_sentence(results, peers[p], p);
   }
@@ -291,9 +273,9 @@ std::string settings_table(const ProblemResult& result) {
                                    [&](const Rung& r) { return r.steps_per_frame == steps; });
       row.push_back(at == rungs.end()   ? "too slow"
                     : !at->trial.finite ? "not finite"
-                                        : number(at->trial.error));
+                                        : error_text(at->trial.error));
     }
-    row.push_back(order_text(result, rungs));
+    row.push_back(order_text(result.problem, rungs));
     row.push_back(microseconds(rungs.front().trial.cpu_s_per_s));
     rows.push_back(row);
   }
@@ -322,7 +304,7 @@ std::string rest_text(const ProblemResult& result) {
       largest = std::max(largest, rung.trial.speed_m_s);
     }
     speeds.push_back(
-        fmt::format("`{}` {}", contender.name, finite ? number(largest) : "not finite"));
+        fmt::format("`{}` {}", contender.name, finite ? error_text(largest) : "not finite"));
   }
   return fmt::format("\nLargest speed in the last frame, over all numbers of steps, in m/s: {}.\n",
                      fmt::join(speeds, "; "));
@@ -345,18 +327,18 @@ std::string demonstrations_table(const std::vector<ProblemResult>& results) {
     const std::vector<Rung> mine = ladder(result.rungs, ours);
     const auto at = [&](int steps) {
       for (const Rung& rung : mine) {
-        if (rung.steps_per_frame == steps) return number(rung.trial.error);
+        if (rung.steps_per_frame == steps) return error_text(rung.trial.error);
       }
       return std::string("-");
     };
     const auto least = [&](const std::string& setting) {
       const double best = best_error(ladder(result.rungs, setting));
-      return std::isinf(best) ? "not finite" : number(best);
+      return std::isinf(best) ? "not finite" : error_text(best);
     };
     rows.push_back({p.name, fmt::format("{:g} s", p.seconds()), fmt::format("{:.3g} m", p.length_m),
-                    number(p.doubt_m / p.length_m), order_text(result, mine), at(1), at(4), at(64),
-                    least("pinch iterative"), least("thesis"), least("pinch_no_contact direct"),
-                    least("cable direct")});
+                    error_text(p.doubt_m / p.length_m), order_text(result.problem, mine), at(1),
+                    at(4), at(64), least("pinch iterative"), least("thesis"),
+                    least("pinch_no_contact direct"), least("cable direct")});
   }
   return markdown_table({"demonstration", "horizon", "length", "doubt", "order", "1 step",
                          "4 steps", "64 steps", "best of pinch iterative", "best of thesis",
@@ -396,6 +378,23 @@ std::string peers_text(const std::vector<Peer>& peers) {
 
 }  // namespace
 
+std::string error_text(double value) {
+  return value == 0.0 ? "0" : fmt::format("{:.1e}", value);
+}
+
+std::string microseconds(double cpu_s_per_s) {
+  const double us = 1e6 * cpu_s_per_s;
+  return us < 10000.0 ? fmt::format("{:.0f} µs", us) : fmt::format("{:.3g} ms", 1e-3 * us);
+}
+
+std::string order_text(const Problem& problem, const std::vector<Rung>& rungs) {
+  const double doubt = problem.doubt_m / problem.length_m;
+  const double order = observed_order(rungs, std::max(1e-12, doubt));
+  if (best_error(rungs) < 1e-9 && rungs.front().trial.error < 1e-9) return "exact";
+  if (std::isnan(order)) return "-";
+  return std::abs(order) < 0.05 ? "0.0" : fmt::format("{:.1f}", order);
+}
+
 std::string accuracy_page(const std::vector<ProblemResult>& results, const std::vector<Peer>& peers,
                           const Limits& ours_limits, const Limits& peer_limits) {
   std::string text = fmt::format(
@@ -420,6 +419,7 @@ std::string accuracy_page(const std::vector<ProblemResult>& results, const std::
         "\nEach with the best of its settings; a lucky one counts. \"Cannot\": see the scene.\n\n" +
         peers_table(results, peers);
   }
+  text += events_section(results);
   text += fmt::format("\n## Where `{}` is not the cheapest\n\n{}\n## Scene by scene\n\n", ours,
                       where_beaten(results, peers));
   for (const ProblemResult& result : results) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Scenes of impacts, catches, hits and slip whose motion is known: in closed form, or from equations
-// of motion between events. Errors are relative to the farthest that a body gets from its start.
+// Scenes of impacts, catches, hits and slip whose motion is known: in closed form, or from
+// equations of motion between events. Errors are relative to the farthest that a body gets from its
+// start.
 
 #include <vector>
 

@@ -76,14 +76,14 @@ struct RollerOnDrum {
   double energy(const State& y) const;
 };
 
-/// Galileo's peg: a bob on a cable of length L from the origin, which meets a peg straight below, at
-/// depth p and of radius R (to the cable's centre line), and winds round it.
+/// Galileo's peg: a bob on a cable of length L from the origin, which meets a peg straight below,
+/// at depth p and of radius R (to the cable's centre line), and winds round it.
 ///
-/// theta is the span's angle from straight down, e = (sin, -cos) theta its direction. The cable lies
-/// on the peg while theta > theta_0 = -asin(R/p). The tangent point there is sqrt(p^2 - R^2) from
-/// the origin, so that the free length is l = L - sqrt(p^2 - R^2) - R (theta - theta_0). The bob's
-/// velocity is l theta' n on either side of theta_0, n = (cos, sin) theta (l = L before): it is the
-/// same when the cable meets the peg, and theta' jumps as 1 / l. In between
+/// theta is the span's angle from straight down, e = (sin, -cos) theta its direction. The cable
+/// lies on the peg while theta > theta_0 = -asin(R/p). The tangent point there is sqrt(p^2 - R^2)
+/// from the origin, so that the free length is l = L - sqrt(p^2 - R^2) - R (theta - theta_0). The
+/// bob's velocity is l theta' n on either side of theta_0, n = (cos, sin) theta (l = L before): it
+/// is the same when the cable meets the peg, and theta' jumps as 1 / l. In between
 ///   l theta'' = R theta'^2 - g sin theta     (R = 0 off the peg).
 struct PegPendulum {
   double length = 1.0;   // m, L
@@ -100,10 +100,10 @@ struct PegPendulum {
   double energy(const State& y) const;
 };
 
-/// The looping pendulum (Dannheim, Ijspeert et al. call it so): a bob of mass m and a load of mass M
-/// on one cable over a fixed rod of radius R (to the cable's centre line) at the origin, on which it
-/// slips by the capstan law. The load hangs straight down on the right; from there the cable runs
-/// counter-clockwise over the rod, by the angle phi, and on to the bob.
+/// The looping pendulum: a bob of mass m and a load of mass M on one cable over a fixed rod of
+/// radius R (to the cable's centre line) at the origin, on which it slips by the capstan law. The
+/// load hangs straight down on the right; from there the cable runs counter-clockwise over the rod,
+/// by the angle phi, and on to the bob.
 ///
 /// With n = (cos, sin) phi and e = n', the bob is at R n + l e, and l = l_0 - R (phi - phi_0) - s
 /// with s what has slipped towards the load. Its velocity is -s' e - l phi' n, so along n

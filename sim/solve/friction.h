@@ -104,8 +104,8 @@ void find_repeated_middles(const World& world, PartSystem& system, SolveScratch&
 /// Impulses of repeated rows: their shares of the first one's.
 void share_among_repeated(PartSystem& system);
 
-/// Notes by what angles the part's cables lie on bodies (PartSystem::wraps). Forces are those at the
-/// interval's start: where its rows are solved again, at its end, these angles have changed.
+/// Notes by what angles the part's cables lie on bodies (PartSystem::wraps). Forces are those at
+/// the interval's start: where its rows are solved again, at its end, these angles have changed.
 void note_wraps(const World& world, const Parts& parts, const Part& part, PartSystem& system);
 
 /// Appends the passages of a cable's links first..last, which lie on one body, and of the

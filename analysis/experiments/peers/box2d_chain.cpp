@@ -58,9 +58,10 @@ class ChainWorld {
   ChainWorld(const Problem& problem, const Box2dSettings& settings)
       : problem_(problem), settings_(settings), world_(vec(problem.scene.gravity, settings.scale)) {
     world_.SetAllowSleeping(false);
-    world_.SetContinuousPhysics(false);
+    world_.SetContinuousPhysics(settings.continuous);
     ground_ = world_.CreateBody(&ground_def_);
     for (const Body& body : problem.scene.bodies) add_body(body);
+    for (const Wall& wall : problem.scene.walls) add_wall(wall);
     const World start = make_world(problem.scene, Method::pinch);
     for (std::size_t c = 0; c < problem.scene.cables.size(); ++c) {
       if (problem.scene.cables[c].rod) {
@@ -136,6 +137,21 @@ class ChainWorld {
     if (def.type == b2_dynamicBody) add_mass(body, *made);
     hold(body, *made);
     bodies_.push_back(made);
+  }
+
+  /// Bodies rebound from it however slow they are, and with its restitution: Box2D takes the larger
+  /// of both.
+  void add_wall(const Wall& wall) {
+    b2EdgeShape edge;
+    edge.SetTwoSided(vec(wall.a, settings_.scale), vec(wall.b, settings_.scale));
+    b2FixtureDef fixture;
+    fixture.shape = &edge;
+    fixture.friction = static_cast<float>(wall.contact_friction);
+    fixture.restitution = static_cast<float>(wall.restitution);
+    fixture.restitutionThreshold = 0.0f;
+    fixture.filter.categoryBits = of_bodies;
+    fixture.filter.maskBits = of_bodies | of_loads;
+    ground_->CreateFixture(&fixture);
   }
 
   void add_mass(const Body& body, b2Body& made) {
@@ -262,7 +278,7 @@ std::string box2d_cannot(const Problem& problem) {
       return "drives, torques and drag are not built";
     }
   }
-  return problem.scene.walls.empty() ? "" : "walls are not built";
+  return "";
 }
 
 Recording run_box2d(const Problem& problem, const Box2dSettings& settings) {

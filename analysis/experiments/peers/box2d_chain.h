@@ -14,7 +14,8 @@ struct Box2dSettings {
                             ///< cable that has mass
   int steps_per_frame = 1;
   int velocity_iterations = 8, position_iterations = 3;
-  double scale = 1.0;  ///< Box2D's metres a metre: its tolerance is 5 mm of them
+  bool continuous = false;  ///< Box2D's times of impact
+  double scale = 1.0;       ///< Box2D's metres a metre: its tolerance is 5 mm of them
 };
 
 /// Why the chain cannot take part; empty where it can.

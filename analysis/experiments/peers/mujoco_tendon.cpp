@@ -20,6 +20,11 @@ bool is_load(const Cable& cable, std::size_t body) {
   return cable.start.body == index || cable.end.body == index;
 }
 
+bool is_wrapped(const Cable& cable, std::size_t body) {
+  return std::any_of(cable.wraps.begin(), cable.wraps.end(),
+                     [=](const Wrap& wrap) { return wrap.body == static_cast<int>(body); });
+}
+
 /// The load whose span hangs straight down and so moves straight along the cable, or -1.
 int straight_load(const CableState& cable) {
   const auto hangs = [](const Segment& s) { return std::abs(s.direction.x()) < 1e-9; };
@@ -132,6 +137,7 @@ std::vector<Place> places(const Problem& problem, const mjData& data,
 
 std::string mujoco_cannot(const Problem& problem) {
   const Scene& scene = problem.scene;
+  if (!scene.walls.empty()) return "walls are not built";
   if (scene.cables.size() != 1 || scene.cables[0].closed) return "one open cable is built";
   bool any_turns = false;
   std::string why;
@@ -141,6 +147,8 @@ std::string mujoco_cannot(const Problem& problem) {
       if (body.kind != BodyKind::free || body.linear_drag > 0.0) why = "loads are built free";
     } else if (body.kind == BodyKind::free || body.kind == BodyKind::rail) {
       return "a tendon is not pinched: it has no width, and bodies do not feel it";
+    } else if (!is_wrapped(scene.cables[0], b)) {
+      why = "a tendon runs over what it runs over at the start";
     } else if (!turns(body) && body.cable_friction > 0.0) {
       why = "a tendon has no capstan friction";
     } else if (body.driven_angular_velocity || body.torque != 0.0 || body.angular_drag > 0.0) {

@@ -28,6 +28,7 @@ namespace {
   const Scene& scene = problem.scene;
   for (const Cable& cable : scene.cables) {
     if (cable.start.layers || cable.end.layers) return "layers are not built";
+    if (cable.slack != 0.0 && cable.mass_per_metre == 0.0) return "slack cables are not built";
     if (cable.axial_stiffness < infinity) return "elastic cables are not built";
     if (cable.bends_with >= 0) return "bending is not built";
     if (cable.rod && !is_chain(problem)) return "chains that hold bodies are not built";
@@ -39,6 +40,14 @@ bool has_mass(const Problem& problem) {
   const std::vector<Cable>& cables = problem.scene.cables;
   return std::any_of(cables.begin(), cables.end(),
                      [](const Cable& cable) { return cable.mass_per_metre > 0.0; });
+}
+
+/// Whether links of 0.1 m are too long for something that cables run round.
+[[maybe_unused]] bool has_thin_peg(const Problem& problem) {
+  const std::vector<Body>& bodies = problem.scene.bodies;
+  return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) {
+    return !can_move(body) && body.corners.empty() && body.radius < 0.05;
+  });
 }
 
 #ifdef PINCHLAB_BOX2D
@@ -65,7 +74,15 @@ std::vector<PeerSetting> box2d_settings(const Problem& problem, bool quick) {
       continue;
     }
     if (velocity > 50) continue;
-    const std::vector<double> links = quick ? std::vector{0.2} : std::vector{0.2, 0.1};
+    if (problem.scene.cables.empty()) {
+      for (const bool continuous : {false, true}) {
+        s.continuous = continuous;
+        settings.push_back(box2d_setting(iterations + (continuous ? "; times of impact" : ""), s));
+      }
+      continue;
+    }
+    std::vector<double> links = quick ? std::vector{0.2} : std::vector{0.2, 0.1};
+    if (has_thin_peg(problem)) links = {0.05};
     for (const double link : links) {
       s.link_m = link;
       if (has_mass(problem)) {
@@ -95,7 +112,9 @@ Peer box2d() {
       "is kinder. Link length, the chain's mass as a share of the lightest load, iterations and "
       "steps are varied. A cable with mass has that of its links over bodies, and is nodes joined "
       "by distance "
-      "joints where it hangs. All at ten of Box2D's metres a metre, so that its tolerance of "
+      "joints where it hangs. Walls are edges, met with and without Box2D's times of impact. All "
+      "at "
+      "ten of Box2D's metres a metre, so that its tolerance of "
       "5 mm is 0.5 mm. Single precision. Its pulley joint has neither radius nor inertia nor "
       "friction and is no cable.";
 #ifdef PINCHLAB_BOX2D

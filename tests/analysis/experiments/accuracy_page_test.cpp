@@ -73,5 +73,59 @@ TEST(AccuracyPage, SaysWhereAnotherEngineIsBetter) {
   EXPECT_TRUE(says(page, "`pinch direct` does not reach it")) << page;
 }
 
+TEST(AccuracyPage, TellsWhatEventsAtTheStepsCost) {
+  std::vector<ProblemResult> results = made_up(1e-2, 1e-1);
+  EXPECT_FALSE(
+      says(accuracy_page(results, made_up_peers(), Limits(), Limits()), "accuracy-events"));
+  results[0].events = true;
+  results[0].at_steps = ladder(results[0].rungs, "pinch direct");
+  for (Rung& rung : results[0].at_steps) {  // of first order, at half the time
+    rung.setting = events_at_steps;
+    rung.trial.error = 1e-2 / rung.steps_per_frame;
+    rung.trial.cpu_s_per_s *= 0.5;
+  }
+  const std::string page = accuracy_page(results, made_up_peers(), Limits(), Limits());
+  EXPECT_TRUE(says(page, "(accuracy-events.svg)")) << page;
+  EXPECT_TRUE(says(page,
+                   "with events at their time, exact on 0 of 1, of order made-up 2.0; with events "
+                   "at the steps, exact on 0 of 1, of order made-up 1.0. It meets 3 of 4 errors "
+                   "(scene and error) with events at their time, 2 with events at the steps; where "
+                   "both do, the former takes 0.5 to 2 times the latter's time"))
+      << page;
+  EXPECT_TRUE(says(page,
+                   "| made-up | at the steps | 1.0e-02 | 2.5e-03 | 6.3e-04 | too slow | 1.0 "
+                   "| 50 µs | 800 µs | not reached | not reached |"))
+      << page;
+}
+
+TEST(AccuracyEvents, EverySceneIsExactOrOfSecondOrder) {
+  int scenes = 0;
+  for (const ProblemResult& result : scenes_of_known_motion()) {
+    if (!result.events) continue;
+    ++scenes;
+    const auto run = [&](int steps) { return simulate(result.problem, Method::pinch, steps); };
+    const std::vector<Rung> rungs =
+        climb(result.problem, "pinch direct", run, 64, Limits{0.0, infinity});
+    const std::string order = order_text(result.problem, rungs);
+    EXPECT_TRUE(order == "exact" || order == "1.9" || order == "2.0" || order == "2.1")
+        << result.problem.name << ": " << order;
+    EXPECT_LE(rungs.front().trial.error, 3e-3) << result.problem.name << " at one step a frame";
+  }
+  EXPECT_EQ(scenes, 7);
+}
+
+// Elastic impacts that take effect a step late are wrong for good.
+TEST(AccuracyEvents, EventsAtTheStepsAreOfFirstOrderOnBounces) {
+  for (const ProblemResult& result : scenes_of_known_motion()) {
+    if (result.problem.name != "bouncing-ball") continue;
+    Configuration configuration = Method::pinch;
+    configuration.events = Events::at_steps;
+    const auto run = [&](int steps) { return simulate(result.problem, configuration, steps); };
+    const std::vector<Rung> rungs =
+        climb(result.problem, events_at_steps, run, 256, Limits{0.0, infinity});
+    EXPECT_NEAR(observed_order(rungs, 1e-12), 1.0, 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::experiments

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "analysis/experiments/accuracy_scenes.h"
+#include "analysis/experiments/event_scenes.h"
 
 namespace pinchlab::experiments {
 namespace {
@@ -96,6 +97,27 @@ TEST(Peers, MujocoLinksAgreeThatAFoldedChainFallsLikeThis) {
   if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
   EXPECT_LT(best_error(peer, finely_solved("folded-chain"), 64), 2e-6);
   EXPECT_LT(best_error(peer, known("hanging-cable"), 4), 1e-7);
+}
+
+TEST(Peers, EventScenesTakeWhoCan) {
+  const Peer box2d = peer_called("Box2D"), mujoco = peer_called("MuJoCo");
+  for (const Problem& problem : event_problems()) {
+    const std::vector<Cable>& cables = problem.scene.cables;
+    const bool slack = !cables.empty() && cables[0].slack > 0.0;
+    if (box2d.present()) {
+      EXPECT_EQ(box2d.cannot(problem), slack ? "slack cables are not built" : "");
+    }
+    if (mujoco.present()) {
+      EXPECT_NE(mujoco.cannot(problem), "") << problem.name;
+    }
+  }
+}
+
+TEST(Peers, Box2dBallsRebound) {
+  const Peer peer = peer_called("Box2D");
+  if (!peer.present()) GTEST_SKIP() << peer.package << " was not installed";
+  EXPECT_LT(best_error(peer, bouncing_ball(), 256), 0.02);
+  EXPECT_LT(best_error(peer, ball_between_walls(), 256), 0.05);
 }
 
 TEST(Peers, MujocoTendonIsSecondOrderWhenStartedHalfAStepBack) {
