@@ -57,7 +57,9 @@ struct Trial {
   bool met = true;            // lengths and gaps are exact at its end
   bool settled = true;        // every solve
   bool violated = false;      // what it began with, by more than it makes up for
+  bool contradicts = false;   // a correction of the first solution asks for what cannot be
   double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
+  double excess = 0.0;        // the same, over what would do
   double local_error = 0.0;   // m
   double longest = infinity;  // s, that it may last: vanishing.h
   double wave = 0.0;          // 1/s^2, on cables of nodes under the tensions that it found: waves.h

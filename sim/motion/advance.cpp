@@ -254,7 +254,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
           Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
   Neighbourhood& course = at(near.list, n);
-  const Movers movers{parts_of(near, n), course.lag};
+  const Movers movers{parts_of(near, n), course.lag, course.crept};
   near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
   // What may be divided into neighbourhoods is tried as a whole.
@@ -263,14 +263,18 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   if (!round.may_divide) {
     length = length_to_try(world, work, movers.parts, length, course.located);
   }
-  bool met = true;
+  constexpr double next_to_nothing = 1e-2;
+  bool met = true, crept = false;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
     if (near.divided) find_pairs_of_interval(scene, world, work);
   } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
+    const double tried = length;
     length = shorten_interval(scene, world, work, movers, length, met, watch);
+    crept = work.events.empty() && length < next_to_nothing * tried;
   }
+  course.crept = crept;
   if (!are_finite(world, work.parts, movers.parts)) return check_finite(scene, world);
   if (round.first && world.configuration.diagnostics) {
     world.diagnostics.energy += kinetic_energy(world, work, movers, length);

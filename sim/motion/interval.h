@@ -22,6 +22,7 @@ constexpr double share_of_error = 4e-5;
 struct Movers {
   std::span<const int> parts;
   double lag;
+  bool crept = false;  // Neighbourhood::crept
 };
 
 /// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.

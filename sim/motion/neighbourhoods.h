@@ -31,6 +31,7 @@ struct Neighbourhood {
   bool moved = false;     // in this round
   bool located = false;   // what happens in its last interval
   bool happened = false;  // something has, at the end of it
+  bool crept = false;     // its last interval was next to nothing, though nothing happened in it
   bool violated = false;  // lengths or gaps there, or before, by more than is made up for
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/at.h"
+#include "sim/solve/dual_active_set.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/ordering.h"
 #include "sim/solve/rubbing.h"
@@ -266,11 +267,49 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
   freeze_rubbing(s);
 }
 
+/// Whether all that bears a force, for these states, holds both ways or pulls or pushes, by an
+/// impulse of its own, and is no more than a fallback should take on.
+bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
+  constexpr std::size_t most_rows = 300;
+  if (!s.sleeves.empty() || s.rows.size() > most_rows) return false;
+  // A motor that winds in what hardly can give is to stall (motors.h): held exactly it throws that.
+  if (!s.motors.empty()) return false;
+  // A steadied body's mass is no mass, and what it gains no energy.
+  const auto steadied = [](const SpanMass& span) { return span.steadied; };
+  if (std::any_of(s.span_masses.begin(), s.span_masses.end(), steadied)) return false;
+  const auto slides = [](const Run& run) { return run.frictionless || run.slip != Slip::stick; };
+  const auto rubs = [&s](const Friction& friction) {
+    const Row& row = at(s.rows, friction.row);
+    return friction.repeats >= 0 || (row.on && row.slip != Slip::stick);
+  };
+  return std::none_of(capstan.runs.begin(), capstan.runs.end(), slides) &&
+         std::none_of(s.frictions.begin(), s.frictions.end(), rubs);
+}
+
+/// Solves for which unilateral rows bear a force too; whether it has. What then contradicts others
+/// is no state to flip, but no solution either.
+bool solve_for_rows(PartSystem& s, SolveScratch& set) {
+  if (!suits_dual(s, set.capstan)) return false;
+  double missed = 0.0;
+  const DualTerms terms{set.step_length, tolerances(s, set).speed, set.repairs};
+  if (!solve_dual(s, set.dual, terms, missed)) return false;
+  set.direct = false;
+  set.by_dual = true;
+  set.suspicious = true;
+  if (missed * set.step_length > s.reach) set.froze = true;
+  check(s, set);
+  std::erase_if(set.flips, [&set](const Flip& flip) {
+    const DualScratch& dual = set.dual;
+    return !flip.is_run && (at(dual.skipped, flip.row) || at(dual.unbiased, flip.row));
+  });
+  return true;
+}
+
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time.
-  constexpr int patience = 3, before_sticking = 20, before_freezing = 50, before_dropping = 80,
-                most_solves = 150;
+  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
+                before_dropping = 80, most_solves = 150;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
   std::size_t fewest = all;
   int left = patience;
@@ -290,9 +329,12 @@ bool settle(PartSystem& s, SolveScratch& set) {
     bound_friction(s, set.capstan);
     clamp_pinches(s);
     if (!s.sleeves.empty()) drop_rubbing(s);
-    solve_for_states(s, set);
     set.solves = solves;
-    check(s, set);
+    if (solves <= before_dual || !solve_for_rows(s, set)) {
+      set.by_dual = false;
+      solve_for_states(s, set);
+      check(s, set);
+    }
     if (set.flips.empty() || clear_rounding(s, set)) return true;
     growing = only_grows(set) ? growing + 1 : 0;
     if (growing > patience && !spread) {
@@ -364,7 +406,7 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {
   set.solves = 0;
-  set.froze = set.direct = false;
+  set.froze = set.direct = set.by_dual = false;
   set.capstan.runs.clear();
   if (s.rows.empty()) {
     s.velocity = s.free_velocity;
@@ -374,7 +416,7 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
   find_runs(world, parts, part, s, set);
   if (!settle(s, set)) {
     sweep_rows(s, set.capstan);
-    set.direct = false;
+    set.direct = set.by_dual = false;
   }
   if (set.suspicious) clear_negative(s);
   return !set.froze;

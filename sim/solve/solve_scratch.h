@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/solve/capstan.h"
+#include "sim/solve/dual_active_set.h"
 #include "sim/solve/profile_lu.h"
 #include "sim/solve/terms.h"
 
@@ -42,7 +43,9 @@ struct OrderScratch {
 
 struct SolveScratch {
   int solves = 0;            // of this part in this step so far
-  bool froze = false;        // the states did not settle by themselves
+  bool froze = false;        // the states did not settle by themselves, or contradict
+  bool by_dual = false;      // the last solution is that of solve_dual
+  bool repairs = true;       // DualTerms::repairs
   bool direct = false;       // the last solution is that of a regular symmetric system
   bool suspicious = false;   // a row may contradict the last solution
   bool smooth = false;       // friction that slides is left out; what sticks for good does
@@ -71,6 +74,7 @@ struct SolveScratch {
   std::vector<Term> rubbing;  // of unknowns: an impulse while it is expressed
   std::vector<Flip> flips;
   OrderScratch ordering;
+  DualScratch dual;
 };
 
 }  // namespace pinchlab
