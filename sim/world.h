@@ -106,6 +106,7 @@ struct alignas(64) CableState {
   std::vector<Segment> segments;  // as many as links; segments[0] is unused when open and runs
                                   // from the last link to the first when closed
   int changes = 0;                // links inserted and removed so far
+  int changed_at = 0;             // World::changes after the last of these
   int bends_with = -1;            // a piece between nodes that goes on from its end: bending.h
   bool closed = false;
   bool rod = false;    // bears force both ways: a piece between nodes, or a joint

@@ -38,6 +38,7 @@ inline double body_angle(const World& world, const Link& link) {
 inline void count_changes(World& world, CableState& cable, int count) {
   cable.changes += count;
   world.changes += count;
+  cable.changed_at = world.changes;
 }
 
 /// First segment that exists: 1 in an open cable, 0 in a closed one.

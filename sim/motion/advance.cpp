@@ -114,10 +114,19 @@ bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const 
   return false;
 }
 
+/// Whether links of a part's cables have come or gone since World::changes was `before`.
+bool has_changed(const World& world, const Parts& parts, const Part& part, int before) {
+  if (world.changes == before) return false;
+  const std::span<const int> cables = cables_of(parts, part);
+  return std::any_of(cables.begin(), cables.end(),
+                     [&](int c) { return at(world.cables, c).changed_at > before; });
+}
+
 /// Puts right in positions what an interval of these parts has left, and then the velocities to fit
-/// them; whether contacts must be found anew for these. `changed`: links have come or gone.
+/// them; whether contacts must be found anew for these. Links had come or gone `changes` times
+/// when the interval before was settled.
 bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<const int> parts,
-                double& lag, bool changed) {
+                double& lag, int changes) {
   const Neighbourhoods& near = work.neighbourhoods;
   work.repaired.resize(work.parts.list.size());
   bool any = false;
@@ -126,7 +135,8 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<con
     Part& part = at(work.parts.list, p);
     const Neighbourhood course = course_of(near, work.parts, part);
     time = course.time;
-    const bool violated = changed || course.violated || is_squeezed(world, work.parts, part);
+    const bool violated = course.violated || has_changed(world, work.parts, part, changes) ||
+                          is_squeezed(world, work.parts, part);
     at(work.repaired, p) = false;
     if (!violated && !course.happened) continue;
     apply_no_forces(scene, world, part, time, work);
@@ -392,14 +402,12 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
   const int now = world.changes;
   bool hastens = false;
   if (!near.divided) {
-    hastens =
-        settle_end(scene, world, work, near.parts.items, near.list.front().lag, now != changes);
+    hastens = settle_end(scene, world, work, near.parts.items, near.list.front().lag, changes);
   }
   for (int n = 0; near.divided && index(n) < near.list.size(); ++n) {
     Neighbourhood& course = at(near.list, n);
     if (!course.moved) continue;
-    hastens =
-        settle_end(scene, world, work, parts_of(near, n), course.lag, now != changes) || hastens;
+    hastens = settle_end(scene, world, work, parts_of(near, n), course.lag, changes) || hastens;
   }
   watch.lap(Stage::solve);
   if (!hastens) return now;
