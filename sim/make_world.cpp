@@ -106,9 +106,10 @@ void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
 /// held yet gives way and lowers them, so that it takes some trials.
 void find_first_tensions(const Scene& scene, World& world) {
   constexpr int most_trials = 10;
+  World trial;
+  Workspace work;
   for (int i = 0; i < most_trials; ++i) {
-    World trial = world;
-    Workspace work;
+    trial = world;
     trial.configuration.diagnostics = false;
     if (step(scene, trial, work) != StepStatus::ok) return;
     if (i > 0 && std::all_of(work.systems.begin(), work.systems.end(),

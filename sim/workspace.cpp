@@ -2,12 +2,17 @@
 #include "sim/workspace.h"
 
 #include <atomic>
+#include <utility>
 
 namespace pinchlab {
 
 void fit(const World& world, Workspace& work) {
   if (world.stamp != 0 && world.stamp == work.stamp) return;
-  work = Workspace{};
+  // The storage of systems stays, and nothing of what they were made for.
+  Workspace fresh;
+  fresh.systems = std::move(work.systems);
+  for (PartSystem& s : fresh.systems) forget(s);
+  work = std::move(fresh);
   find_parts(world, work);
 }
 
