@@ -15,7 +15,8 @@ struct GrowingScene {
   const char* what;
   std::vector<int> sizes;
   Scene (*scene)(int size);
-  int steps = 1;  // timed at once, where what happens differs from step to step; 0: its make_world
+  int steps = 1;  // timed at once from the start, where what happens differs from step to step;
+                  // 0: its make_world
 };
 
 /// Swinging cables, balls that bounce, discs that land on spans, discs on walls, pulleys without
