@@ -268,7 +268,8 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
 }
 
 /// Whether all that bears a force, for these states, holds both ways or pulls or pushes, by an
-/// impulse of its own, and is no more than a fallback should take on.
+/// impulse of its own, no friction has changed its state in this step, which has remedies of its
+/// own, and there is no more than a fallback should take on.
 bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
   constexpr std::size_t most_rows = 300;
   if (!s.sleeves.empty() || s.rows.size() > most_rows) return false;
@@ -277,10 +278,12 @@ bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
   // A steadied body's mass is no mass, and what it gains no energy.
   const auto steadied = [](const SpanMass& span) { return span.steadied; };
   if (std::any_of(s.span_masses.begin(), s.span_masses.end(), steadied)) return false;
-  const auto slides = [](const Run& run) { return run.frictionless || run.slip != Slip::stick; };
+  const auto slides = [](const Run& run) {
+    return run.frictionless || run.flipped > 0 || run.slip != Slip::stick;
+  };
   const auto rubs = [&s](const Friction& friction) {
     const Row& row = at(s.rows, friction.row);
-    return friction.repeats >= 0 || (row.on && row.slip != Slip::stick);
+    return friction.repeats >= 0 || row.flipped > 0 || (row.on && row.slip != Slip::stick);
   };
   return std::none_of(capstan.runs.begin(), capstan.runs.end(), slides) &&
          std::none_of(s.frictions.begin(), s.frictions.end(), rubs);
