@@ -292,7 +292,8 @@ bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
 /// Solves for which unilateral rows bear a force too; whether it has. What then contradicts others
 /// is no state to flip, but no solution either.
 bool solve_for_rows(PartSystem& s, SolveScratch& set) {
-  if (!suits_dual(s, set.capstan)) return false;
+  // Where events are not located, constraints bear force early, whatever they then contradict.
+  if (set.reach == infinity || !suits_dual(s, set.capstan)) return false;
   double missed = 0.0;
   const DualTerms terms{set.step_length, tolerances(s, set).speed, set.repairs};
   if (!solve_dual(s, set.dual, terms, missed)) return false;
