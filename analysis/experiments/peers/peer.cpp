@@ -36,7 +36,7 @@ namespace {
   return "";
 }
 
-bool has_mass(const Problem& problem) {
+[[maybe_unused]] bool has_mass(const Problem& problem) {
   const std::vector<Cable>& cables = problem.scene.cables;
   return std::any_of(cables.begin(), cables.end(),
                      [](const Cable& cable) { return cable.mass_per_metre > 0.0; });
