@@ -102,20 +102,30 @@ void add(std::span<Eigen::Matrix3d> to, const MassedArc& arc) {
   add(at(to, arc.body), arc.mass, arc.first, arc.second);
 }
 
+/// kg/s, of either end's mass, by what rims that turn give and take.
+double growth_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b, double turning) {
+  return 0.5 * span.density * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));
+}
+
+/// dz/dt of a span's end that turns with the body about the circle's centre (m/s).
+Vec2 shift_of(const Vector3d& velocity, const Vec2& centre, double p, double turning,
+              const Vec2& n) {
+  return -velocity.z() * centre + p * turning * n;
+}
+
 void add_flow_forces(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b,
                      Vector3d& f_a, Vector3d& f_b) {
   const Vec2 u_a = at_place(v_a, span.z_a), u_b = at_place(v_b, span.z_b);
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
   const double mass = end_mass(span);
-  const double growth =
-      0.5 * rho * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));      // kg/s
+  const double growth = growth_of(span, v_a, v_b, turning);
   const double e_a = 0.5 * rho * u_a.squaredNorm(), e_b = 0.5 * rho * u_b.squaredNorm();  // J/m
 
   // A point mass whose place on the body moves, and what rims gain by the span's turning.
   const auto end = [&](const Vector3d& velocity, const Vec2& u, const Vec2& z, const Vec2& centre,
                        double p, double gains, Vector3d& force) {
-    const Vec2 shift = -velocity.z() * centre + p * turning * n;  // dz/dt
+    const Vec2 shift = shift_of(velocity, centre, p, turning, n);
     force -= on_body((growth + gains) * u, z) + mass * velocity.z() * on_body(shift, z);
     force.z() -= mass * p * turning * n.dot(u);
   };
@@ -328,6 +338,28 @@ void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> veloc
     const double square = at(velocities, arc.body).z() * at(velocities, arc.body).z();
     at(to, arc.body) += square * Vector3d(arc.mass * arc.centre.x(), arc.mass * arc.centre.y(),
                                           arc.centre.dot(arc.first));
+  }
+}
+
+void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double factor,
+                      std::span<const Vector3d> velocities, std::span<Vector3d> to) {
+  const Vec2 g = factor * gravity;
+  for (const MassedSpan& span : masses.spans) {
+    const Vector3d& v_a = at(velocities, span.a);
+    const Vector3d& v_b = at(velocities, span.b);
+    const double turning = turning_of(span, v_a, v_b), mass = end_mass(span);
+    const double growth = growth_of(span, v_a, v_b, turning);
+    const auto end = [&](const Vector3d& velocity, const Vec2& z, const Vec2& centre, double p,
+                         double gains, Vector3d& rate) {
+      rate += on_body((growth + gains) * g, z);
+      rate.z() += mass * g.dot(shift_of(velocity, centre, p, turning, left(span.direction)));
+    };
+    const double wound = span.density * turning;  // kg/s for each metre of radius
+    end(v_a, span.z_a, span.centre_a, span.p_a, span.p_a * wound, at(to, span.a));
+    end(v_b, span.z_b, span.centre_b, span.p_b, -span.p_b * wound, at(to, span.b));
+  }
+  for (const MassedArc& arc : masses.arcs) {
+    at(to, arc.body).z() -= arc.mass * at(velocities, arc.body).z() * arc.centre.dot(g);
   }
 }
 

@@ -80,6 +80,11 @@ Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen
 void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
                       std::span<Eigen::Vector3d> to);
 
+/// Adds `factor` times the rate at which the weight of what bodies carry changes as material flows,
+/// spans turn and bodies turn at these velocities (N/s, N/s, N m/s), likewise.
+void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double factor,
+                      std::span<const Eigen::Vector3d> velocities, std::span<Eigen::Vector3d> to);
+
 /// What this is to the turning of the sleeves at either end, as a tension of the span (N): at a, at
 /// b. Places are of `velocities`.
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Eigen::Vector3d> velocities);

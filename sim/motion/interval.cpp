@@ -174,7 +174,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     // turning on that way makes of it: of the order of the interval's own error.
     const double missed = add_missed(world, set.capstan, t, s, trial);
     const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
-    if (follows) follow_flow(work.start, work.parts, part, t, s);
+    if (follows) follow_flow(scene, work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
     if (round == 1) trial.local_error = std::max(trial.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.

@@ -284,6 +284,26 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
   s.mobility_changed = true;
 }
 
+/// A kick between the middles of steps h0 and h1 is a mean of the force over them, which counts
+/// times as they are near: F + (h0^2 - h0 h1 + h1^2) / 12 F'' at the positions' time. The weight of
+/// what bodies carry changes as they move, W' = K v, so that W'' = K (change of v) / kick: Numerov's
+/// method (Hairer, Norsett & Wanner 1993, *Solving ordinary differential equations I*, III.10).
+void add_curved_weight(const Vec2& gravity, const Start& start, std::span<const int> bodies,
+                       const TimeSpan& t, PartSystem& s) {
+  s.flow_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Vec2& v = at(start.velocity, bodies[i]);
+    s.flow_velocity[i] =
+        s.velocity[i] - Eigen::Vector3d(v.x(), v.y(), at(start.angular_velocity, bodies[i]));
+  }
+  for (const SleevePlace& one : s.sleeves) {
+    at(s.flow_velocity, one.place) = at(s.velocity, one.place) - one.before;
+  }
+  const double before = 2.0 * t.lag, after = t.length;
+  const double square = before * before - before * after + after * after;
+  add_weight_rates(s.masses, gravity, square / (12.0 * t.kick), s.flow_velocity, s.flow);
+}
+
 }  // namespace
 
 Mobility mobility_of(const BodyProperties& body, double kick) {
@@ -349,8 +369,8 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, Wor
   }
 }
 
-void follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& t,
-                 PartSystem& s) {
+void follow_flow(const Scene& scene, const Start& start, const Parts& parts, const Part& part,
+                 const TimeSpan& t, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
   const double after = t.kick > 0.0 ? t.lag / t.kick : 0.0;
   s.flow_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());
@@ -366,6 +386,7 @@ void follow_flow(const Start& start, const Parts& parts, const Part& part, const
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, s.flow_velocity, s.flow);
   note_flow(s, s.flow_velocity);
+  if (t.kick > 0.0) add_curved_weight(scene.gravity, start, bodies, t, s);
   for (std::size_t i = 0; i < bodies.size() + s.sleeves.size(); ++i) {
     const Eigen::Vector3d change = t.kick * (s.mobility[i] * (s.flow[i] - s.flow_before[i]));
     s.free_velocity[i] += change;

@@ -23,10 +23,11 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& interv
 void apply_forces(const Scene& scene, const World& world, const TimeSpan& interval,
                   const Parts& parts, const Part& part, PartSystem& system);
 
-/// Takes the flow of cables with mass at the middle of the kick, the part's velocities after it
-/// being those just solved for, into the free velocities and those that follow from them: what this
-/// changes in its turn is of the third order of the kick.
-void follow_flow(const Start& start, const Parts& parts, const Part& part, const TimeSpan& interval,
-                 PartSystem& system);
+/// Takes the flow of cables with mass at the middle of the kick, and how their weight moves over
+/// during it, the part's velocities after it being those just solved for, into the free velocities
+/// and those that follow from them: what this changes in its turn is of the third order of the
+/// kick.
+void follow_flow(const Scene& scene, const Start& start, const Parts& parts, const Part& part,
+                 const TimeSpan& interval, PartSystem& system);
 
 }  // namespace pinchlab

@@ -18,6 +18,10 @@ struct Course {
   double gap = 0.0, stretch = 0.0;     // m
 };
 
+/// Of the energy at play, by which that of random heavy ropes may swing at a step a frame, falling
+/// with the square of the step.
+constexpr double swing_of_heavy_ropes = 2.7e-4;
+
 inline Course run_measured(const Scene& scene, double seconds) {
   Course course;
   World world = make_world(scene, measured());

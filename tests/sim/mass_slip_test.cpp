@@ -41,7 +41,7 @@ Scene rope_over_peg(int steps, double mu, double left, double right, double m_le
 }
 
 // x'' = k^2 x, for x = half the difference of the ends: (rho L + m1 + m2) x'' = 2 rho g x. What is
-// left is leapfrog's own error, as of the rope of Mass.ARopeOverAPulleyFallsAsItsWeightMovesOver.
+// left is Numerov's error, as of the rope of Mass.ARopeOverAPulleyFallsAsItsWeightMovesOver.
 TEST(MassSlip, ARopeSlidesOffASmoothPeg) {
   for (const BodyKind kind : {BodyKind::fixed, BodyKind::fixed_axle}) {
     for (const int steps : {1, 2, 4, 8, 16}) {
@@ -51,9 +51,9 @@ TEST(MassSlip, ARopeSlidesOffASmoothPeg) {
       const double k = std::sqrt(2.0 * rope_density * g / (rope_density * l + 2.0 * m));
       run(scene, world, 30 * steps);
       const double t = world.time(), kh = k / (60.0 * steps);
-      const double own = 0.1 * std::sinh(k * t) * k * t * kh * kh / 24.0;
+      const double own = 0.1 * std::sinh(k * t) * k * t * std::pow(kh, 4) / 480.0;
       const double fallen = -1.0 - world.position[1].y();
-      EXPECT_NEAR(fallen, 0.1 * std::cosh(k * t) - own, 0.01 * own + 1e-8) << steps;
+      EXPECT_NEAR(fallen, 0.1 * std::cosh(k * t), 1.1 * own + 1e-12) << steps;
       EXPECT_EQ(world.angle[2], 0.0);
     }
   }
@@ -170,7 +170,7 @@ TEST(MassSlip, SwingsOnSecondOrder) {
         EXPECT_LT(course.gained, 1.5e-4 / (steps * steps)) << steps;
       }
       EXPECT_GT(first / last, 50.0) << mu;  // of 64
-      EXPECT_LT(last, 2e-6);
+      EXPECT_LT(last, 2.5e-6);
     }
   }
 }
@@ -286,7 +286,7 @@ TEST(MassSlip, ASmoothDiscDoesNotStopTheRopeThatItMeets) {
   EXPECT_NEAR(world.cables[0].links[2].slip_speed, before, 0.03);
 }
 
-// What the energy rises by is what leapfrog swings by.
+// What the energy rises by is what it swings by, as of ropes that do not slip (RandomMass).
 TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
   int ran = 0, more = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
@@ -298,7 +298,7 @@ TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
       if (scene.cables[0].axial_stiffness < infinity) continue;
       const double w = scene.cables[0].half_width, share = course.gained / course.at_play;
       EXPECT_LE(share, 1e-2 / (steps * steps)) << "seed " << seed << ", " << steps;
-      if (share > 2e-4 / (steps * steps)) ++more;
+      if (share > swing_of_heavy_ropes / (steps * steps)) ++more;
       EXPECT_LE(course.gap, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
       EXPECT_LE(course.stretch, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
       ++ran;
