@@ -222,10 +222,8 @@ std::vector<double> expected_tensions(const Scene& scene, std::span<const std::s
 
 int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,
                  const std::string& place) {
-  int pieces =
-      cable.nodes > 0
-          ? cable.nodes + 1
-          : std::max(2, static_cast<int>(length / shortest_piece(scene, cable, length, tension)));
+  const double most = length / shortest_piece(scene, cable, length, tension);
+  int pieces = cable.nodes > 0 ? cable.nodes + 1 : 2 * std::max(1, static_cast<int>(most / 2.0));
   if (cable.node_tolerance != 0.0) pieces = count_adaptive_pieces(cable, pieces, place);
   const double piece = length / pieces;
   if (piece <= 2.0 * cable.half_width) {

@@ -46,17 +46,22 @@ TEST(Nodes, StartWhereTheChainHangs) {
 }
 
 TEST(Nodes, AreAsManyAsStepsCanFollow) {
-  Scene scene = catenary(0, 4);
-  const std::vector<NodedCable> made = spread_nodes(scene);
-  ASSERT_EQ(made.size(), 1U);
-  // A piece no shorter than 2 h sqrt(T / rho), of the tension with which the catenary hangs.
-  EXPECT_EQ(made[0].bodies, static_cast<int>(2.0 / (2.0 / 240.0 * std::sqrt(1.0260286 * g))) - 1);
-  // Of a chain of n pieces the sag is 0.74 / n^2 more; to its nodes on either side of the lowest
-  // place, l / 2 away where the curvature is 1 / 0.2296402 m, it is l^2 / 8 0.2296402 m less.
-  const double n = made[0].pieces + 1;
-  ASSERT_EQ(made[0].pieces % 2, 0);
-  EXPECT_NEAR(sag_of(make_world(scene, Method::pinch)),
-              0.7963884 + (0.74 - 0.5 / 0.2296402) / (n * n), 2e-6);
+  for (const int steps : {1, 2, 4, 8, 16}) {
+    Scene scene = catenary(0, steps);
+    const std::vector<NodedCable> made = spread_nodes(scene);
+    ASSERT_EQ(made.size(), 1U);
+    // A piece no shorter than 2 h sqrt(T / rho), of the tension with which the catenary hangs; an
+    // even number of them, so that the lowest place is a node.
+    const int most = static_cast<int>(2.0 / (2.0 / (60.0 * steps) * std::sqrt(1.0260286 * g)));
+    const int n = made[0].bodies + 1;
+    EXPECT_EQ(n, std::min(most, most_nodes_chosen + 1) / 2 * 2) << steps;
+    // Of a chain of n pieces the sag is 0.74 / n^2 more: within 1e-4 from 8 steps a frame on.
+    const double sag = sag_of(make_world(scene, Method::pinch));
+    EXPECT_NEAR(sag, 0.7963884 + 0.74 / (n * n), 8.0 / std::pow(n, 4) + 1e-7) << steps;
+    if (steps >= 8) {
+      EXPECT_NEAR(sag, 0.7963884, 1e-4 * 0.7963884) << steps;
+    }
+  }
 }
 
 // Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g
@@ -269,7 +274,7 @@ TEST(Nodes, AreChosenByWhatHangsAtTheCable) {
   scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.005));
   scene.cables[0].mass_per_metre = 0.5;
   const auto expected = [](double mass) {
-    return static_cast<int>(1.5 / (2.0 / 240.0 * std::sqrt(3.0 * (mass + 0.75) * g / 0.5)));
+    return static_cast<int>(1.5 / (2.0 / 240.0 * std::sqrt(3.0 * (mass + 0.75) * g / 0.5))) / 2 * 2;
   };
   EXPECT_EQ(pieces(scene), expected(2.0));
   scene.bodies.push_back(body("below", BodyKind::free, 1.5, -1.0, 0.1, 5.0));
