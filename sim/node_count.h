@@ -15,8 +15,9 @@
 // that it has; at least 2 g L, as of what is let go level, so that T is 3 M g or more.
 //
 // Their number is even. Of a chain that hangs between two points at one height the node in the
-// middle is the lowest place then, 0.5 / n^2 (taut) to about 1 / n^2 of the sag too low; with an odd
-// number the middle is a level piece, and what nodes show of the sag lacks l^2 / 8 of the curvature.
+// middle is the lowest place then, 0.5 / n^2 (taut) to about 1 / n^2 of the sag too low; with an
+// odd number the middle is a level piece, and what nodes show of the sag lacks l^2 / 8 of the
+// curvature.
 //
 // What catches a cable that is slack, a motor, or a body that falls on it may pull harder: then
 // steps are divided.
@@ -37,8 +38,8 @@ constexpr int most_nodes_chosen = 199;
 std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables);
 
 /// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
-/// can follow under the tension (N), an even number. Throws SceneError where they do not fit, or bend
-/// faster than steps can follow.
+/// can follow under the tension (N), an even number. Throws SceneError where they do not fit, or
+/// bend faster than steps can follow.
 int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,
                  const std::string& place);
 

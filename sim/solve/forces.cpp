@@ -286,8 +286,9 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
 
 /// A kick between the middles of steps h0 and h1 is a mean of the force over them, which counts
 /// times as they are near: F + (h0^2 - h0 h1 + h1^2) / 12 F'' at the positions' time. The weight of
-/// what bodies carry changes as they move, W' = K v, so that W'' = K (change of v) / kick: Numerov's
-/// method (Hairer, Norsett & Wanner 1993, *Solving ordinary differential equations I*, III.10).
+/// what bodies carry changes as they move, W' = K v, so that W'' = K (change of v) / kick:
+/// Numerov's method (Hairer, Norsett & Wanner 1993, *Solving ordinary differential equations I*,
+/// III.10).
 void add_curved_weight(const Vec2& gravity, const Start& start, std::span<const int> bodies,
                        const TimeSpan& t, PartSystem& s) {
   s.flow_velocity.assign(s.mobility.size(), Eigen::Vector3d::Zero());

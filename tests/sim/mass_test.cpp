@@ -24,8 +24,8 @@ namespace {
 
 using std::numbers::pi;
 
-// x'' = (dm g + 2 rho g x) / (m1 + m2 + rho L + I / R^2), a motion A (cosh k t - 1). What is left is
-// Numerov's error of it, A sinh(k t) k t (k h)^4 / 480.
+// x'' = (dm g + 2 rho g x) / (m1 + m2 + rho L + I / R^2), a motion A (cosh k t - 1). What is left
+// is Numerov's error of it, A sinh(k t) k t (k h)^4 / 480.
 TEST(Mass, ARopeOverAPulleyFallsAsItsWeightMovesOver) {
   const double k = std::sqrt(0.8 * g / 4.35);
   for (const int steps : {1, 2, 4, 8, 16}) {
@@ -243,8 +243,8 @@ TEST(Mass, MomentumIsKeptWhoeverJoinsTheCable) {
 
 // What the energy of the mean of two velocities swings by falls with the square of the step. In a
 // motion cosh k t of leapfrog that mean is k (1 + (k h)^2 / 8) of the place, and (k h)^2 / 6 more
-// than k where, by Numerov's method, the motion itself errs by its fourth power only. Elastic cables over rims have an error
-// of their own (sim/README.md, "Limits").
+// than k where, by Numerov's method, the motion itself errs by its fourth power only. Elastic
+// cables over rims have an error of their own (sim/README.md, "Limits").
 TEST(RandomMass, StayFiniteAndMakeNoEnergy) {
   int ran = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
