@@ -6,9 +6,14 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
+#include <vector>
 
+#include "sim/compound.h"
 #include "sim/make_world.h"
+#include "sim/nodes.h"
+#include "sim/outline.h"
 #include "sim/scene_error.h"
 
 namespace pinchlab::experiments {
@@ -119,22 +124,165 @@ Scene draw_scene(Random& random) {
   return scene;
 }
 
-}  // namespace
+/// Three to six corners near a circle, about their centre of mass; a third of them rounded.
+void make_polygon(Random& random, double radius, BodyProperties& body) {
+  const int count = 3 + random.below(4);
+  const double first = random.uniform(0.0, 2.0 * std::numbers::pi);
+  std::vector<Vec2> corners;
+  for (int k = 0; k < count; ++k) {
+    const double angle = first + 2.0 * std::numbers::pi * (k + random.uniform(-0.3, 0.3)) / count;
+    corners.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  const double rounding = random.one_in(3) ? random.uniform(0.01, 0.05) : 0.0;
+  const Vec2 centre = plate_of(corners, rounding).centre;
+  for (Vec2& corner : corners) corner -= centre;
+  pinchlab::make_polygon(body, corners, rounding);
+}
 
-Scene dropped_discs(std::uint64_t seed) {
-  constexpr std::uint64_t tries = 1000;  // a draw whose cables do not fit is drawn again
+/// Two to four discs and boxes about their common centre of mass.
+std::vector<Shape> draw_shapes(Random& random, double size) {
+  std::vector<Shape> shapes;
+  const int count = 2 + random.below(3);
+  for (int k = 0; k < count; ++k) {
+    Shape shape;
+    shape.place = {size * random.uniform(-1.0, 1.0), size * random.uniform(-1.0, 1.0)};
+    shape.angle = random.uniform(0.0, std::numbers::pi);
+    if (random.one_in(2)) {
+      shape.properties.radius = size * random.uniform(0.3, 0.6);
+    } else {
+      const double a = 0.5 * size * random.uniform(0.4, 1.2);
+      const double b = 0.5 * size * random.uniform(0.4, 1.2);
+      pinchlab::make_polygon(shape.properties, {{-a, -b}, {a, -b}, {a, b}, {-a, b}}, 0.0);
+    }
+    shapes.push_back(shape);
+  }
+  const Vec2 centre = plate_of(shapes).centre;
+  for (Shape& shape : shapes) shape.place -= centre;
+  return shapes;
+}
+
+/// Two or three discs and polygons, with axles or fixed. A rope with mass slips on discs only.
+void add_pulleys(Random& random, const Surfaces& surfaces, int count, ShapelyScene& drawn) {
+  for (int i = 0; i < count; ++i) {
+    Body pulley;
+    pulley.name = fmt::format("pulley {}", i);
+    pulley.kind = random.one_in(2) ? BodyKind::fixed_axle : BodyKind::fixed;
+    pulley.radius = random.uniform(0.25, 0.45);
+    pulley.mass = random.decades(-0.5, 0.5);
+    pulley.position = {1.5 * i, random.uniform(-0.2, 0.2)};
+    const bool polygon = random.one_in(2);
+    if (polygon) make_polygon(random, pulley.radius, pulley);
+    surfaces.finish(random, pulley);
+    if (polygon && drawn.has.ropes) pulley.cable_friction = infinity;
+    drawn.has.polygons = drawn.has.polygons || polygon;
+    drawn.scene.bodies.push_back(pulley);
+  }
+}
+
+void add_falling(Random& random, const Surfaces& surfaces, int number, double width,
+                 ShapelyScene& drawn) {
+  Scene& scene = drawn.scene;
+  Body falling;
+  falling.name = fmt::format("falling {}", number);
+  falling.radius = random.uniform(0.15, 0.35);
+  falling.mass = random.decades(-1.0, 1.0);
+  falling.position = {random.uniform(-0.3, width + 0.3), 1.5 + 1.1 * number};
+  falling.velocity = {random.uniform(-1.0, 1.0), random.uniform(-2.0, 1.0)};
+  falling.angular_velocity = random.uniform(-5.0, 5.0);
+  surfaces.finish(random, falling);
+  if (drawn.has.ropes) falling.cable_friction = infinity;
+  const int shape = random.below(3);
+  if (shape == 1) {
+    make_polygon(random, falling.radius, falling);
+    drawn.has.polygons = true;
+  }
+  scene.bodies.push_back(falling);
+  if (shape != 2) return;
+  const std::size_t first = scene.bodies.size();
+  add_shapes(scene, static_cast<int>(first) - 1, draw_shapes(random, 0.7 * falling.radius));
+  for (std::size_t b = first; b < scene.bodies.size(); ++b) {
+    scene.bodies[b].cable_friction = falling.cable_friction;
+    scene.bodies[b].contact_friction = falling.contact_friction;
+    scene.bodies[b].restitution = falling.restitution;
+  }
+  drawn.has.compounds = true;
+}
+
+ShapelyScene draw_shapely(Random& random) {
+  ShapelyScene drawn;
+  Scene& scene = drawn.scene;
+  const Surfaces surfaces(random);
+  const int pulleys = 2 + random.below(2);
+  const double width = 1.5 * (pulleys - 1);
+  drawn.has.ropes = random.one_in(3);
+  drawn.has.chains = random.one_in(2);
+  add_pulleys(random, surfaces, pulleys, drawn);
+  Cable cable;
+  cable.name = "over";
+  cable.half_width = random.uniform(0.01, 0.04);
+  for (int p = 0; p < pulleys; ++p) cable.wraps.push_back({p, -1, 0});
+  cable.start = {-1, {-1.0, -1.5}};
+  cable.end = {-1, {width + 1.0, -1.5}};
+  if (drawn.has.ropes) {
+    cable.mass_per_metre = random.decades(-1.0, 0.5);
+    Body weight;
+    weight.name = "weight";
+    weight.radius = 0.1;
+    weight.mass = random.decades(0.7, 1.3);
+    weight.position = {width + 0.45, -1.0};
+    surfaces.finish(random, weight);
+    weight.cable_friction = infinity;
+    cable.end = {pulleys, Vec2::Zero()};
+    scene.bodies.push_back(weight);
+  } else {
+    cable.slack = random.one_in(2) ? 0.0 : random.uniform(0.0, 0.4);
+  }
+  scene.cables.push_back(cable);
+  const int count = 1 + random.below(4);
+  for (int i = 0; i < count; ++i) add_falling(random, surfaces, i, width, drawn);
+  scene.walls.push_back({Vec2(-20.0, -2.5), Vec2(30.0, -2.5), 0.5, 0.0});
+  drawn.bodies = scene.bodies.size();
+  if (drawn.has.chains) {
+    Cable chain;
+    chain.name = "below";
+    chain.half_width = random.uniform(0.004, 0.01);
+    chain.start = {-1, {-0.8, -1.2}};
+    chain.end = {-1, {width + 0.8, random.uniform(-1.4, -1.0)}};
+    chain.slack = random.uniform(0.05, 0.5);
+    chain.mass_per_metre = random.decades(-1.0, 0.5);
+    chain.nodes = 7 + random.below(24);
+    scene.cables.push_back(chain);
+    spread_nodes(scene);
+  }
+  return drawn;
+}
+
+constexpr std::uint64_t tries = 1000;  // a draw whose cables do not fit is drawn again
+
+/// The first scene that `draw` draws for the seed and that can be made.
+auto first_that_fits(std::uint64_t seed, auto draw, auto scene_of) {
   for (std::uint64_t k = 0; k < tries; ++k) {
     Random random(seed * tries + k + 1);
-    Scene scene = draw_scene(random);
-    scene.name = fmt::format("population-{}", seed);
     try {
-      make_world(scene, Method::pinch);
+      auto drawn = draw(random);
+      scene_of(drawn).name = fmt::format("population-{}", seed);
+      make_world(scene_of(drawn), Method::pinch);
+      return drawn;
     } catch (const SceneError&) {
       continue;
     }
-    return scene;
   }
   throw std::runtime_error(fmt::format("no scene for seed {}", seed));
+}
+
+}  // namespace
+
+Scene dropped_discs(std::uint64_t seed) {
+  return first_that_fits(seed, draw_scene, [](Scene& scene) -> Scene& { return scene; });
+}
+
+ShapelyScene dropped_shapes(std::uint64_t seed) {
+  return first_that_fits(seed, draw_shapely, [](ShapelyScene& s) -> Scene& { return s.scene; });
 }
 
 }  // namespace pinchlab::experiments

@@ -13,4 +13,24 @@ namespace pinchlab::experiments {
 /// or not, restitution from 0 to 1, drag and drive in some. The same for the same seed everywhere.
 Scene dropped_discs(std::uint64_t seed);
 
+/// What such a scene may have that `dropped_discs` has not.
+struct Shapely {
+  bool polygons = false, compounds = false;  // among what falls and what cables run over
+  bool ropes = false;                        // cables with mass over bodies
+  bool chains = false;                       // cables with mass that hang: made of nodes
+};
+
+struct ShapelyScene {
+  Scene scene;
+  Shapely has;
+  std::size_t bodies = 0;  // without nodes, which come after them
+};
+
+/// One to four discs, convex polygons (sharp or rounded) and compounds of two to four shapes, of
+/// masses up to 1e2 apart, that fall on a cable over two to four discs and polygons with axles or
+/// fixed: massless, taut or slack, or a rope with mass that weights pull taut; and on a chain that
+/// hangs below it, or on none. Slipping or not, restitution from 0 to 1; nothing drives. The same
+/// for the same seed everywhere.
+ShapelyScene dropped_shapes(std::uint64_t seed);
+
 }  // namespace pinchlab::experiments
