@@ -19,7 +19,6 @@
 #include "sim/motion/interval.h"
 #include "sim/motion/repair.h"
 #include "sim/solve/forces.h"
-#include "sim/solve/light_bodies.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
@@ -41,16 +40,14 @@ constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part,
                    double lag) {
-  PartSystem& s = at(work.systems, part.system);
+  constexpr int changes_of_motors = 8;
   TimeSpan t;
   t.repair = world.step_length;
   t.kick = t.lag = lag;
-  t.reach = s.reach;
+  t.reach = at(work.systems, part.system).reach;
   t.held_only = t.clamps = true;
-  steady_light_bodies(world, work.parts, part, t.kick, s);
   Stopwatch untimed(nullptr);
-  solve_with_motors(scene, world, work, part, t, untimed,
-                    [&] { return solve_passively(world, work.parts, part, s, work.solve); });
+  solve_steadily(scene, world, work, part, t, changes_of_motors, untimed);
 }
 
 /// Brings the velocities to the positions' time.

@@ -14,7 +14,6 @@
 #include "sim/motion/vanishing.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
-#include "sim/solve/light_bodies.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
@@ -146,10 +145,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
                const Attempt& attempt, int changes_of_motors, Trial& trial, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
-  steady_light_bodies(world, work.parts, part, t.kick, s);
-  bool settled = solve_with_motors(
-      scene, world, work, part, t, watch,
-      [&] { return solve_passively(world, work.parts, part, s, set); }, changes_of_motors);
+  bool settled = solve_steadily(scene, world, work, part, t, changes_of_motors, watch);
   double last = infinity, before_last = infinity, fastest = 0.0;
   const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;

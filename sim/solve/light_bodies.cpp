@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -61,6 +62,8 @@ double steady(const BodyProperties& body, const SpanMass& span, const Vec2& v, V
 void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2& velocity) {
   if (span.mass.trace() <= body.mass) return;
   span.steadied = true;
+  span.own = mobility;
+  span.velocity = velocity;
   if (body.kind == BodyKind::rail) {
     const double share = steady(body, span, body.rail_axis.normalized(), velocity);
     mobility.xx *= share;
@@ -97,11 +100,11 @@ void restore(const World& world, std::span<const int> bodies, double kick, PartS
 
 }  // namespace
 
-void steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
+bool steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
                          PartSystem& system) {
   const std::span<const int> bodies = bodies_of(parts, part);
   restore(world, bodies, kick, system);
-  if (!part.can_move || kick == 0.0) return;
+  if (!part.can_move || kick == 0.0) return false;
   const double least = negligible * part.lightest / (2.0 * kick * kick);
   bool any = false;
   for (const int c : cables_of(parts, part)) {
@@ -124,12 +127,63 @@ void steady_light_bodies(const World& world, const Parts& parts, const Part& par
       note(tail, head);
     }
   }
-  if (!any) return;
+  if (!any) return false;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     Vec2 velocity = system.free_velocity[i].head<2>();
     steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i], velocity);
     system.free_velocity[i].head<2>() = velocity;
     system.mobility_changed = system.mobility_changed || system.span_masses[i].steadied;
+  }
+  return true;
+}
+
+bool gains_by_steadying(const World& world, const Parts& parts, const Part& part,
+                        const PartSystem& s) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  const auto is_steadied = [&s](int place) {
+    return index(place) < s.span_masses.size() && at(s.span_masses, place).steadied;
+  };
+  double gain = 0.0, energy = 0.0;  // J, twice
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyProperties& body = at(world.bodies, bodies[i]);
+    if (!can_move(body)) continue;
+    const bool steadied = is_steadied(static_cast<int>(i));
+    const Vec2 before = steadied ? s.span_masses[i].velocity : Vec2(s.free_velocity[i].head<2>());
+    energy += body.mass * before.squaredNorm();
+    if (steadied)
+      gain += body.mass * (s.velocity[i].head<2>().squaredNorm() - before.squaredNorm());
+  }
+  // Of all others, and of how these turn, what rows give: sum p (J v- + J v+) / 2.
+  double impulse = 0.0, fastest = 0.0;  // N s, m/s
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const Row& row = s.rows[r];
+    if (row.impulse == 0.0) continue;
+    if (row.compliance > 0.0) return false;  // it may give back what it stores
+    const auto speed = [&](int place, const Eigen::Vector3d& j) {
+      const Eigen::Vector3d twice = at(s.free_velocity, place) + at(s.velocity, place);
+      return is_steadied(place) ? j.z() * twice.z() : j.dot(twice);
+    };
+    const double of_a = speed(s.bodies[r].a, s.bodies[r].ja);
+    const double of_b = speed(s.bodies[r].b, s.bodies[r].jb);
+    gain += row.impulse * (of_a + of_b);
+    impulse += std::abs(row.impulse);
+    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b)});
+  }
+  constexpr double rounding = 1e-9, of_impulses = 1e-14;
+  return gain > rounding * energy + of_impulses * impulse * fastest;
+}
+
+void release_light_bodies(PartSystem& system) {
+  for (std::size_t i = 0; i < system.span_masses.size(); ++i) {
+    SpanMass& span = system.span_masses[i];
+    if (span.steadied) {
+      const double angular = system.mobility[i].angular;  // what a motor has made of it since
+      system.mobility[i] = span.own;
+      system.mobility[i].angular = angular;
+      system.free_velocity[i].head<2>() = span.velocity;
+      system.mobility_changed = true;
+    }
+    span = {};
   }
 }
 

@@ -24,8 +24,18 @@ struct World;
 /// intervals follow (cable/waves.h), but for those that none can: for these u is 0.
 ///
 /// Changes mobilities and free velocities of the part's bodies; a comparison an end of a span where
-/// no body is too light.
-void steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
+/// no body is too light. Whether any is.
+bool steady_light_bodies(const World& world, const Parts& parts, const Part& part, double kick,
                          PartSystem& system);
+
+/// Whether what was just solved for has given the part's bodies energy. The greater mass is a
+/// spring's force in another form, which others feel at the step's start only: as momentum it is
+/// from nothing. On a line that swings that is no matter. But the tension of a span that cannot
+/// give knows no bound, nor does the mass of what has come upon it, and it throws what strikes it.
+bool gains_by_steadying(const World& world, const Parts& parts, const Part& part,
+                        const PartSystem& system);
+
+/// Gives all of them their own masses and free velocities again, in the same kick.
+void release_light_bodies(PartSystem& system);
 
 }  // namespace pinchlab

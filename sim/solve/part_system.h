@@ -148,7 +148,9 @@ struct Friction {
 struct SpanMass {
   Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();                                 // kg
   Eigen::Matrix2d momentum_x = Eigen::Matrix2d::Zero(), momentum_y = momentum_x;  // kg m/s
-  bool steadied = false;  // the body's mobility is not its own
+  bool steadied = false;  // the body's mobility is not its own, which is
+  Mobility own;
+  Vec2 velocity = Vec2::Zero();  // m/s, and this its free velocity then
 };
 
 enum class MotorState : std::int8_t {

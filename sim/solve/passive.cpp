@@ -7,7 +7,11 @@
 #include "base/at.h"
 #include "sim/parts.h"
 #include "sim/solve/active_set.h"
+#include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
+#include "sim/solve/rows.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/workspace.h"
 
 namespace pinchlab {
 
@@ -82,6 +86,23 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   for (Row& row : s.rows) row.impulse = 0.0;
   sweep_rows(s, set.capstan);
   return false;
+}
+
+bool solve_steadily(const Scene& scene, const World& world, Workspace& work, const Part& part,
+                    const TimeSpan& t, int changes_of_motors, Stopwatch& watch) {
+  PartSystem& s = at(work.systems, part.system);
+  const bool steadies = steady_light_bodies(world, work.parts, part, t.kick, s);
+  const auto solve = [&] {
+    return solve_with_motors(
+        scene, world, work, part, t, watch,
+        [&] { return solve_passively(world, work.parts, part, s, work.solve); }, changes_of_motors);
+  };
+  const bool settled = solve();
+  if (!steadies || !gains_by_steadying(world, work.parts, part, s)) return settled;
+  if (!s.motors.empty()) s.free_velocity = s.unconstrained;
+  drive(s);
+  release_light_bodies(s);
+  return solve();
 }
 
 }  // namespace pinchlab

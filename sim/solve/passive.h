@@ -2,6 +2,7 @@
 #pragma once
 // A solve that makes no energy.
 
+#include "sim/stages.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -10,6 +11,8 @@ struct Part;
 struct Parts;
 struct PartSystem;
 struct SolveScratch;
+struct TimeSpan;
+struct Workspace;
 
 /// Whether the impulses p that were just solved for have given the bodies more energy than they
 /// had: sum p (J v- + J v+) / 2 > 0 beyond round-off and what is made up for of it. That is exactly
@@ -25,5 +28,10 @@ bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
 /// takes energy.
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                      SolveScratch& scratch);
+
+/// Makes and solves the rows of a part so, its light bodies steadied (light_bodies.h) but where that
+/// makes energy, with at most so many changes of what its motors do (motors.h).
+bool solve_steadily(const Scene& scene, const World& world, Workspace& work, const Part& part,
+                    const TimeSpan& interval, int changes_of_motors, Stopwatch& watch);
 
 }  // namespace pinchlab
