@@ -131,7 +131,12 @@ void add_population(CLI::App& bench) {
       "population", "What no motion may show, counted over random scenes at three step lengths");
   command->add_option("--out", run->options.out, "Folder for table and page [results]")
       ->type_name("DIR");
-  command->add_option("--scenes", run->scenes, "How many [2000]")
+  command->add_option("--scenes", run->scenes, "How many of discs [2000]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  command
+      ->add_option("--shapes", run->shapely_scenes,
+                   "How many of polygons, compounds and cables with mass [1000]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")
@@ -142,8 +147,9 @@ void add_population(CLI::App& bench) {
       "  pinchlab bench population --scenes 100 --out /tmp/population\n"
       "  pinchlab bench population --first 1234 --scenes 1 --out /tmp/one");
   command->callback([run] {
-    run->options.command = fmt::format("pinchlab bench population --scenes {} --first {} --out {}",
-                                       run->scenes, run->first, run->options.out.string());
+    run->options.command =
+        fmt::format("pinchlab bench population --scenes {} --shapes {} --first {} --out {}",
+                    run->scenes, run->shapely_scenes, run->first, run->options.out.string());
     run_population(*run);
   });
 }
@@ -208,9 +214,10 @@ void add_all(CLI::App& bench) {
     }
     PopulationRun population;
     population.options = *options;
-    if (options->quick) population.scenes = 100;
-    population.options.command = fmt::format("pinchlab bench population --scenes {} --out {}",
-                                             population.scenes, options->out.string());
+    if (options->quick) population.scenes = population.shapely_scenes = 100;
+    population.options.command =
+        fmt::format("pinchlab bench population --scenes {} --shapes {} --out {}", population.scenes,
+                    population.shapely_scenes, options->out.string());
     run_population(population);
     count_if_possible(*options);
     RenderRun render;

@@ -35,11 +35,12 @@ double end_distance(const Soundness& a, const Soundness& b, bool image);
 
 struct PopulationRun {
   Options options;
-  int scenes = 2000;
-  int first = 1;  ///< seed of the first
+  int scenes = 2000;          ///< of dropped_discs
+  int shapely_scenes = 1000;  ///< of dropped_shapes
+  int first = 1;              ///< seed of the first of either
 };
 
-/// Writes population.csv, population.md and a figure.
+/// Writes population.csv, population_shapes.csv and population.md.
 void run_population(const PopulationRun& run);
 
 }  // namespace pinchlab::experiments

@@ -29,8 +29,8 @@ bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                      SolveScratch& scratch);
 
-/// Makes and solves the rows of a part so, its light bodies steadied (light_bodies.h) but where that
-/// makes energy, with at most so many changes of what its motors do (motors.h).
+/// Makes and solves the rows of a part so, its light bodies steadied (light_bodies.h) but where
+/// that makes energy, with at most so many changes of what its motors do (motors.h).
 bool solve_steadily(const Scene& scene, const World& world, Workspace& work, const Part& part,
                     const TimeSpan& interval, int changes_of_motors, Stopwatch& watch);
 
