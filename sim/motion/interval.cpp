@@ -24,7 +24,6 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double exact = 0.1;  // of a part's reach: lengths and gaps at an interval's end
 
 // Shares of a step, far below what any error that is asked for needs: that an allowed error divides
 // it into, and that bodies move so little in that only round-off would be corrected.
@@ -174,11 +173,11 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::update_segments);
     if (round == 1) trial.local_error = std::max(trial.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.
-    const bool meets = missed <= exact * s.reach || t.length < shortest_corrected * t.repair;
+    const bool meets = missed <= exact_share * s.reach || t.length < shortest_corrected * t.repair;
     if (meets && !follows) return true;
     // Where states flip it may get worse for a round.
     trial.missed = std::max(trial.missed, missed / s.extent);
-    trial.excess = std::max(trial.excess, missed / (exact * s.reach));
+    trial.excess = std::max(trial.excess, missed / (exact_share * s.reach));
     trial.contradicts = trial.contradicts || (round > 0 && !settled);
     if (round == attempt.most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
       return false;

@@ -16,9 +16,6 @@ namespace {
 /// What is left of a normal across others, as a share of it, that is round-off: they repeat it.
 constexpr double dependent = 1e-12;
 
-/// Of a part's reach: what positions may have missed at a step's end.
-constexpr double exact_share = 0.1;
-
 bool holds_both_ways(const Row& row) {
   return row.clamped || (row.kind != RowKind::segment && row.kind != RowKind::normal);
 }

@@ -209,6 +209,9 @@ struct RowsMade {
 /// right to a tenth of it, and round-off of positions is some 1e-16.
 constexpr double within_reach = 1e-11;
 
+/// Of a part's reach: what lengths and gaps may miss at an interval's end.
+constexpr double exact_share = 0.1;
+
 struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (forces.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
