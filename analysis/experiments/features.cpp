@@ -11,9 +11,13 @@
 #include "base/at.h"
 #include "demos/scenes/library.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
+#include "sim/cable/waves.h"
+#include "sim/compound.h"
 #include "sim/detect/contacts.h"
 #include "sim/detect/pinch.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/adapt_nodes.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/rows.h"
 
@@ -88,6 +92,30 @@ double loop_seconds(const World& world, const Effort& effort) {
   return median(measure_both(ask_all, without, effort).differences);
 }
 
+/// What a step asks of links and bodies to find that all are discs of their own.
+int ask_for_shapes(World& world) {
+  int sum = 0;
+  for (const CableState& cable : world.cables) {
+    for (const Link& link : cable.links) {
+      if (link.body < 0) continue;
+      sum += mover_of(world, link.body) + link.corner;
+    }
+  }
+  carry(world, world.carried);
+  return sum;
+}
+
+/// And of cables to find that none has mass or nodes, or keeps what it is stretched by on rims.
+double ask_for_mass(const Scene& scene, World& world, Workspace& work) {
+  double sum = 0.0;
+  for (const CableState& cable : world.cables) {
+    sum += wave_of(world, cable) + (is_massed(cable) || !cable.rims.empty() ? 1.0 : 0.0);
+  }
+  if (wants_other_nodes(scene, world, work)) sum += 1.0;
+  follow_chains(scene, world, work);
+  return sum;
+}
+
 std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
                                  const Effort& effort) {
   const Configuration ours = configured(Method::pinch, false);
@@ -101,6 +129,7 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
     const std::function<void()> nothing = [] {};
     return median(measure_both(run, nothing, little).differences);
   };
+  volatile double kept = 0.0;  // what is asked for is not left out
   std::vector<FeatureCost> costs;
   const auto add = [&](const char* feature, const char* how, double seconds) {
     costs.push_back({name, feature, how, seconds, step_s});
@@ -125,6 +154,10 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
         configure_pinches(world, work);
       }));
   add("loops", "`previous_link`, `next_link`", loop_seconds(world, little));
+  add("corners, compounds", "`Link::corner` and `mover_of` of every link, `carry`",
+      call([&] { kept = ask_for_shapes(world); }));
+  add("cables with mass", "`is_massed`, `wave_of`, `wants_other_nodes`, `follow_chains`",
+      call([&] { kept = ask_for_mass(scene, world, work); }));
   add("diagnostics", "`diagnose` less `check_finite`",
       step_cost.stage_s[static_cast<std::size_t>(Stage::diagnose)].median -
           call([&] { check_finite(scene, world); }));
