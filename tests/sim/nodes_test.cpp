@@ -64,39 +64,74 @@ TEST(Nodes, AreAsManyAsStepsCanFollow) {
   }
 }
 
-// Small swings of a chain that hangs from one end: of N equal pieces with equal masses omega^2 = g
-// / l times the zeros of the Laguerre polynomial L_N. For L = 1 and N = 10 the lowest is 3.67662
-// rad/s.
-TEST(Nodes, HangingChainSwingsAsItShould) {
-  const double length = 1.0, frequency = 3.67662;
-  constexpr int pieces = 10;
-  for (const int steps_per_frame : {4, 16}) {
-    Scene scene;
-    scene.steps_per_frame = steps_per_frame;
-    // The lowest mode: L_k(x) at the masses, for the square of the frequency.
-    const double x = frequency * frequency * length / pieces / g;
-    std::vector<double> mode = {1.0, 1.0 - x};  // from the free end
+/// A chain of 1 m and 1 kg that hangs from one end, of N equal pieces with equal masses. Small
+/// swings have omega^2 = g / l times the zeros x of the Laguerre polynomial L_N, and along the k-th
+/// mass from the free end the shape L_k(x).
+struct SwingingChain {
+  static constexpr int pieces = 10;
+  static constexpr double amplitude = 1e-6;  // m, whose square shifts frequencies
+  Scene scene;
+  std::vector<double> mode{1.0};  // from the free end
+  double omega = 0.0;             // rad/s
+
+  SwingingChain(double zero, int steps_per_frame) : omega(std::sqrt(g * pieces * zero)) {
+    mode.push_back(1.0 - zero);
     for (int k = 1; k + 1 <= pieces; ++k) {
-      mode.push_back(((2.0 * k + 1.0 - x) * mode[index(k)] - k * mode[index(k - 1)]) / (k + 1.0));
+      mode.push_back(((2.0 * k + 1.0 - zero) * mode[index(k)] - k * mode[index(k - 1)]) /
+                     (k + 1.0));
     }
-    const double amplitude = 1e-4;
-    scene.bodies.push_back(body("tip", BodyKind::free, 0.0, 0.0, 0.002, 0.1));
+    scene.steps_per_frame = steps_per_frame;
+    scene.bodies.push_back(body("tip", BodyKind::free, 0.0, -1.0, 0.002, 0.1));
     scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.002));
     scene.cables[0].mass_per_metre = 1.0;
     scene.cables[0].nodes = pieces - 1;
-    scene.bodies[0].position = {0.0, -length};
     spread_nodes(scene);
-    for (int k = 0; k < pieces; ++k) {  // from the free end; then the nodes from the top down
-      Body& b = k == 0 ? scene.bodies[0] : scene.bodies[index(pieces - k)];
+    for (int k = 0; k < pieces; ++k) {
+      Body& b = scene.bodies[index(body_of(k))];
       b.mass = 0.1;
-      b.position = {amplitude * mode[index(k)], -length * (pieces - k) / pieces};
+      b.position = {amplitude * mode[index(k)], -1.0 * (pieces - k) / pieces};
     }
-    World world = make_world(scene, Method::pinch);
-    const int steps =
-        static_cast<int>(std::lround(2.0 * std::numbers::pi / frequency * 60.0)) * steps_per_frame;
-    run(scene, world, steps);
-    const double expected = amplitude * std::cos(frequency * world.time());
-    EXPECT_NEAR(world.position[0].x(), expected, 2e-2 * amplitude / steps_per_frame);
+  }
+
+  /// Of the k-th mass: the tip, then the nodes from the top down.
+  static int body_of(int k) { return k == 0 ? 0 : pieces - k; }
+
+  /// How much of the shape there is.
+  double swing(const World& world) const {
+    double sum = 0.0, square = 0.0;
+    for (int k = 0; k < pieces; ++k) {
+      sum += mode[index(k)] * world.position[index(body_of(k))].x();
+      square += mode[index(k)] * mode[index(k)];
+    }
+    return sum / (square * amplitude);
+  }
+};
+
+// Leapfrog swings with sin(omega' h / 2) = omega h / 2. Its q(n + m) + q(n - m) = 2 cos(m omega' h)
+// q(n) tells the frequency, as a mean over n and with m of some ten periods.
+TEST(Nodes, HangingChainSwingsAsItShould) {
+  for (const double zero : {0.137793470540, 0.729454549503, 1.808342901740}) {
+    for (const int steps_per_frame : {4, 16}) {
+      const SwingingChain chain(zero, steps_per_frame);
+      World world = make_world(chain.scene, Method::pinch);
+      const double h = world.step_length;
+      const double expected = 2.0 * std::asin(0.5 * chain.omega * h) / h;
+      const int apart =
+          static_cast<int>(std::lround(10.25 * 2.0 * std::numbers::pi / expected / h));
+      std::vector<double> swings{chain.swing(world)};
+      for (int i = 0; i < 3 * apart; ++i) {
+        run(chain.scene, world, 1);
+        swings.push_back(chain.swing(world));
+      }
+      double product = 0.0, square = 0.0;
+      for (int n = apart; n + apart <= 3 * apart; ++n) {
+        product += swings[index(n)] * (swings[index(n + apart)] + swings[index(n - apart)]);
+        square += 2.0 * swings[index(n)] * swings[index(n)];
+      }
+      // The angle is near 10.25 turns, where its cosine is near 0 and falls.
+      const double angle = 10.25 * 2.0 * std::numbers::pi + std::asin(-product / square);
+      EXPECT_NEAR(angle / (apart * h), expected, 1e-8 * expected) << zero << ' ' << steps_per_frame;
+    }
   }
 }
 
