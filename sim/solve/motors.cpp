@@ -65,10 +65,12 @@ bool stall(const World& world, const Parts& parts, const Part& part, PartSystem&
   for (Motor& motor : s.motors) {
     const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
     if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
-    const bool yields =
-        stretching(s, set) > contradicting * rim || speed_given(world, bodies, s) > thrown * rim;
-    if (!yields) continue;
-    motor.state = motor.state == MotorState::stalls ? MotorState::insists : MotorState::stalls;
+    const bool throws = speed_given(world, bodies, s) > thrown * rim;
+    if (!throws && stretching(s, set) <= contradicting * rim) continue;
+    const bool stalls = motor.state == MotorState::stalls;
+    if (stalls && motor.threw) continue;  // insisting would throw again
+    if (!stalls) motor.threw = throws;
+    motor.state = stalls ? MotorState::insists : MotorState::stalls;
     changed = true;
   }
   return changed;

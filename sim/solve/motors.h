@@ -35,7 +35,7 @@ bool change_limited_motors(PartSystem& system);
 /// The same for all motors. Where cables of the part
 /// that cannot give contradict a motor without a limit, or could only give by throwing a body at
 /// ten times its rim's speed, it stalls: it leaves its body to the cables for this kick, unless
-/// that does not help.
+/// that does not help and it threw nothing.
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                    const SolveScratch& scratch);
 

@@ -169,6 +169,7 @@ struct Motor {
   double inertia = 0.0;  // kg m^2
   double most = 0.0;     // N m s: its limit over the kick, or infinity
   bool moves = false;    // the body can do more than turn
+  bool threw = false;    // something in this kick, when it held its speed
   MotorState state = MotorState::holds;
 };
 
