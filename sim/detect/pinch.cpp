@@ -221,12 +221,18 @@ void find_waiting_cables(const Parts& parts, ContactScratch& scratch) {
   }
 }
 
+/// Whether a cable may lie between a contact's bodies: cables do not touch cables, so those pass
+/// through nodes, which come to lie on what a cable runs over as if it were not there.
+bool may_pinch(const World& world, const Contact& contact) {
+  return contact.b >= 0 && !at(world.bodies, contact.a).node && !at(world.bodies, contact.b).node;
+}
+
 /// Only links of bodies that have contacts matter.
 void list_contacts_of_bodies(const World& world, ContactScratch& scratch) {
   Lists<int>& lists = scratch.contacts_of_body;
   lists.begin.assign(world.bodies.size() + 1, 0);
   for (const Contact& c : world.contacts) {
-    if (c.b < 0) continue;
+    if (!may_pinch(world, c)) continue;
     ++at(lists.begin, c.a + 1);
     ++at(lists.begin, c.b + 1);
   }
@@ -235,7 +241,7 @@ void list_contacts_of_bodies(const World& world, ContactScratch& scratch) {
   scratch.fill = lists.begin;
   for (std::size_t i = 0; i < world.contacts.size(); ++i) {
     const Contact& c = world.contacts[i];
-    if (c.b < 0) continue;
+    if (!may_pinch(world, c)) continue;
     for (const int body : {c.a, c.b}) {
       at(lists.items, at(scratch.fill, body)++) = static_cast<int>(i);
     }
