@@ -171,10 +171,10 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     }
     if (!go(world, work, part, share, before)) break;
     any = true;
+    // The next step of Newton's method is from here.
+    for (const int c : contacts_of(work.parts, part)) measure(world, at(world.contacts, c));
   }
-  if (!any) return false;
-  for (const int c : contacts_of(work.parts, part)) measure(world, at(world.contacts, c));
-  return true;
+  return any;
 }
 
 }  // namespace pinchlab
