@@ -2,6 +2,7 @@
 #include "sim/detect/pinch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <tuple>
 
@@ -116,13 +117,36 @@ void note_cable_held(const World& world, const CableState& cable, const Link& li
   contact.pressed_friction = std::max(contact.pressed_friction, mu);
 }
 
+/// Whether what touches a side of the polygon of link i, which ends at the link's corner, does so
+/// where the cable has left the side, or has not come to it: there it is a free span, however near
+/// in direction. What lies between it and the side has no cable between, as the tip of the next
+/// body that the span runs to; nor what touches the side beyond the span.
+bool off_side(const World& world, const CableState& cable, const Contact& contact, std::size_t i) {
+  const Link& link = cable.links[i];
+  const Vec2 x =
+      nearest_place(world, contact, link.body) - place_of_point(world, link.body, link.corner);
+  constexpr double at_corner = 1e-9;  // of the body's radius
+  const double distance = x.norm();
+  if (distance <= at_corner * at(world.bodies, link.body).radius) return false;
+  const int before = previous_link(cable, static_cast<int>(i));
+  const int after = next_link(cable, static_cast<int>(i));
+  const double along = distance * std::cos(2.0 * arc_tolerance);
+  if (-cable.segments[i].direction.dot(x) > along) {
+    return !is_side(at(cable.links, before), link);
+  }
+  return at(cable.segments, after).direction.dot(x) > along &&
+         !is_side(link, at(cable.links, after));
+}
+
 /// Whether a contact of a polygon has the cable on link i between its bodies.
-bool presses_arc(const CableState& cable, const Contact& contact, std::size_t i, const Vec2& u) {
+bool presses_arc(const World& world, const CableState& cable, const Contact& contact, std::size_t i,
+                 const Vec2& u) {
   const Link& link = cable.links[i];
   // What touches with a corner does so there; where something touches its side, `u` tells.
   const int owner = contact.touch == Touch::point_of_a ? contact.a : contact.b;
   if (link.body == owner && link.corner >= 0 && link.corner != contact.point) return false;
   if (link.wrap < std::numbers::pi && off_arc(cable, i, u)) return false;
+  if (link.body != owner && link.corner >= 0 && off_side(world, cable, contact, i)) return false;
   return arc_of_direction(cable, i, u) <= link.wrap + arc_tolerance;
 }
 
@@ -291,7 +315,7 @@ void configure_pinches(World& world, Workspace& work) {
         const Vec2 u = is_a ? contact.normal : Vec2(-contact.normal);
         if (contact.touch == Touch::circles) {
           find_pinches_on(world, cable, contact, i, other, u, found);
-        } else if (presses_arc(cable, contact, i, u)) {
+        } else if (presses_arc(world, cable, contact, i, u)) {
           note_cable_held(world, cable, link, other, contact);
         } else if (over_adjacent_span(world, cable, contact, i, other)) {
           note_cable_between(cable, link, contact);
