@@ -17,7 +17,6 @@
 #include "sim/detect/contacts.h"
 #include "sim/detect/pinch.h"
 #include "sim/diagnostics.h"
-#include "sim/motion/adapt_nodes.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/rows.h"
 
@@ -106,13 +105,11 @@ int ask_for_shapes(World& world) {
 }
 
 /// And of cables to find that none has mass or nodes, or keeps what it is stretched by on rims.
-double ask_for_mass(const Scene& scene, World& world, Workspace& work) {
+double ask_for_mass(const World& world) {
   double sum = 0.0;
   for (const CableState& cable : world.cables) {
     sum += wave_of(world, cable) + (is_massed(cable) || !cable.rims.empty() ? 1.0 : 0.0);
   }
-  if (wants_other_nodes(scene, world, work)) sum += 1.0;
-  follow_chains(scene, world, work);
   return sum;
 }
 
@@ -156,8 +153,8 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
   add("loops", "`previous_link`, `next_link`", loop_seconds(world, little));
   add("corners, compounds", "`Link::corner` and `mover_of` of every link, `carry`",
       call([&] { kept = ask_for_shapes(world); }));
-  add("cables with mass", "`is_massed`, `wave_of`, `wants_other_nodes`, `follow_chains`",
-      call([&] { kept = ask_for_mass(scene, world, work); }));
+  add("cables with mass", "`is_massed`, `wave_of` and `rims` of every cable",
+      call([&] { kept = ask_for_mass(world); }));
   add("diagnostics", "`diagnose` less `check_finite`",
       step_cost.stage_s[static_cast<std::size_t>(Stage::diagnose)].median -
           call([&] { check_finite(scene, world); }));
