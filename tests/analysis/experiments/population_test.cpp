@@ -135,9 +135,10 @@ TEST(Population, AMirrorImageOfASceneIsItsOwnMirrorImage) {
 }
 
 // Polygons, compounds, ropes and chains. On spans that cannot give, bodies that were steadied threw
-// others: the first five seeds gained 0.04 to 0.98 of all the energy that there was.
+// others: the first five seeds gained 0.04 to 0.98 of all the energy that there was. In the next
+// nine gaps were 1e-3 to 3 half widths short.
 TEST(Population, ShapesMakeNoEnergy) {
-  std::vector<int> seeds = {24, 45, 581, 769, 909};
+  std::vector<int> seeds = {24, 45, 581, 769, 909, 19, 69, 500, 513, 621, 647, 669, 867, 887};
   for (int seed = 1; seed <= 12; ++seed) seeds.push_back(seed);
   for (const int seed : seeds) {
     const ShapelyScene drawn = dropped_shapes(static_cast<std::uint64_t>(seed));
