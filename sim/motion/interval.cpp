@@ -24,7 +24,6 @@ namespace pinchlab {
 
 namespace {
 
-
 // Shares of a step, far below what any error that is asked for needs: that an allowed error divides
 // it into, and that bodies move so little in that only round-off would be corrected.
 constexpr double shortest = 1e-4;
