@@ -2,6 +2,7 @@
 #include "sim/motion/impact.h"
 
 #include "base/at.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
@@ -29,26 +30,20 @@ int fastest_approach(const World& world, const PartSystem& s, double least) {
   return fastest;
 }
 
-}  // namespace
-
-void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds) {
-  PartSystem& s = at(work.systems, part.system);
-  SolveScratch& set = work.solve;
-  for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
-  TimeSpan instant;
-  instant.reach = s.reach;
-  instant.clamps = true;
-  instant.repair = world.step_length;
-  Stopwatch untimed(nullptr);
-  make_rows(scene, world, work.parts, part, instant, s, set, untimed);
-
-  // One blow a contact and neighbour is plenty; what is left then is stopped.
-  const int contact_rows = static_cast<int>(s.rows.size()) - s.first_contact_row;
-  const int most_blows = rebounds ? 4 * contact_rows : 0;
+/// What closes slower than that is round-off (m/s).
+double least_approach(const PartSystem& s) {
   constexpr double rounding = 1e-12;
-  s.velocity = s.free_velocity;
-  const double least = rounding * greatest_speed(s.free_velocity);
-  bool rebounded = false;
+  return rounding * greatest_speed(s.free_velocity);
+}
+
+/// Throws the rows' contacts back, the one that closes fastest first, each by its restitution;
+/// whether any was. Velocities after it are the system's free ones.
+bool throw_back(World& world, const Parts& parts, const Part& part, PartSystem& s,
+                SolveScratch& set) {
+  // One blow a contact and neighbour is plenty; what is left then is stopped.
+  const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);
+  const double least = least_approach(s);
+  bool any = false;
   for (int blow = 0; blow < most_blows; ++blow) {
     const int struck = fastest_approach(world, s, least);
     if (struck < 0) break;
@@ -63,17 +58,23 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     const double e = restitution_of(world, at(world.contacts, row.index));
     row.bias = e * row_speed(s, index(struck));
     forget_flips(s);
-    solve_passively(world, work.parts, part, s, set);
+    solve_passively(world, parts, part, s, set);
     // Where others must not come nearer, a rebound may cost more than there is.
     if (makes_energy(s, set)) {
       row.bias = 0.0;
       forget_flips(s);
-      solve_passively(world, work.parts, part, s, set);
+      solve_passively(world, parts, part, s, set);
     }
     at(s.rows, struck).bias = 0.0;
     s.free_velocity = s.velocity;
-    at(world.contacts, at(s.rows, struck).index).rebounds = rebounded = true;
+    at(world.contacts, at(s.rows, struck).index).rebounds = any = true;
   }
+  return any;
+}
+
+/// Lets nothing come nearer that is in touch. Whether the solve has settled.
+bool stop(const World& world, const Parts& parts, const Part& part, bool rebounded, PartSystem& s,
+          SolveScratch& set) {
   for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
     Row& row = at(s.rows, r);
     if (row.kind != RowKind::normal) continue;
@@ -81,7 +82,27 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     row.on = !row.idle && at(world.contacts, row.index).touching && !rebounded;
   }
   forget_flips(s);
-  if (!solve_passively(world, work.parts, part, s, set)) ++world.diagnostics.fallbacks;
+  return solve_passively(world, parts, part, s, set);
+}
+
+}  // namespace
+
+void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds) {
+  PartSystem& s = at(work.systems, part.system);
+  SolveScratch& set = work.solve;
+  TimeSpan instant;
+  instant.reach = s.reach;
+  instant.clamps = true;
+  instant.repair = world.step_length;
+  Stopwatch untimed(nullptr);
+  const double least = least_approach(s);
+  const bool settled = solve_with_motors(scene, world, work, part, instant, untimed, [&] {
+    for (const int c : contacts_of(work.parts, part)) at(world.contacts, c).rebounds = false;
+    s.velocity = s.free_velocity;
+    const bool rebounded = rebounds && throw_back(world, work.parts, part, s, set);
+    return stop(world, work.parts, part, rebounded, s, set);
+  });
+  if (!settled) ++world.diagnostics.fallbacks;
   store_solution(work.parts, part, s, set.capstan, 0.0, world);
   for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
