@@ -16,6 +16,7 @@ enum class Touch : std::int8_t {
   point_of_a,  // a corner of a, or a itself where it is a disc, meets the outline of b, or the wall
   point_of_b,  // likewise
   end_of_wall,  // meets the outline of a
+  piece,  // of a hanging cable, of which a or b is a node, meets the other or the wall: pieces.h
 };
 
 /// Two bodies, or a body and an obstacle, that touch or may touch within the next step. Where one
@@ -25,7 +26,10 @@ struct Contact {
   int b = -1;     // body index > a, or -1: an obstacle
   int wall = -1;  // index into World::obstacles, or -1
   Touch touch = Touch::circles;
-  std::int8_t point = 0;       // corner of the polygon, or end of the wall; 0 of a disc
+  std::int8_t point = 0;  // corner of the polygon, or end of the wall; 0 of a disc
+  std::int8_t away = 0;   // of a hanging cable: what is near is before this piece or node of it
+                          // (-1) or after it (+1), and this bears nothing; 0: it is this
+  int piece = -1;         // Touch::piece: the cable
   Vec2 normal = Vec2::Zero();  // unit, from a towards b
   double gap = 0.0;            // m, between the surfaces
   double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0

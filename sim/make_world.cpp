@@ -15,6 +15,7 @@
 #include "sim/detect/contacts.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/pinch.h"
+#include "sim/pieces.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"
 #include "sim/seams.h"
@@ -28,7 +29,7 @@ namespace {
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
-  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall, 0.0, -1, {}});
+  for (const Wall& wall : scene.walls) world.obstacles.push_back({wall, 0.0, -1, {}, {}});
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);
@@ -148,6 +149,12 @@ World make_world(const Scene& scene, Configuration configuration) {
   lay_cables(scene, world);
   if (configuration.method == Method::pinch && locates_events(configuration)) {
     add_ends(scene, work.broad_phase, world);
+  }
+  if (locates_events(configuration) && std::ranges::any_of(world.cables, &CableState::piece)) {
+    join_walls(world.obstacles);
+    find_tips(world.obstacles);
+    let_pass_at_ends(scene, overlap_allowed(scene), world);
+    work = {};  // nothing is known of what pieces meet
   }
   find_body_pairs(scene, world, work);
   find_span_pairs(world, work);

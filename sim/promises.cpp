@@ -156,7 +156,9 @@ namespace {
 double depth_of(const World& world, std::size_t number) {
   const Contact& contact = world.contacts[number];
   const double depth = contact.target - contact.gap;
-  if (contact.b < 0 || contact.touch == Touch::circles) return depth;
+  if (contact.b < 0 || contact.touch == Touch::circles || contact.touch == Touch::piece) {
+    return depth;
+  }
   const bool is_first = number == 0 || world.contacts[number - 1].a != contact.a ||
                         world.contacts[number - 1].b != contact.b;
   return is_first ? std::max(depth, -separation(world, contact.a, contact.b)) : depth;

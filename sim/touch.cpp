@@ -10,6 +10,7 @@
 #include "sim/compound.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
+#include "sim/pieces.h"
 #include "sim/seams.h"
 #include "sim/tangent.h"
 #include "sim/world.h"
@@ -215,6 +216,7 @@ Vec2 nearest_place(const World& world, const Contact& contact, int body) {
 }
 
 void measure(const World& world, Contact& contact) {
+  if (contact.touch == Touch::piece) return measure_piece(world, contact);
   if (contact.touch != Touch::circles) {
     const Meeting meeting = meeting_of(world, contact);
     contact.gap = meeting.gap;
@@ -227,6 +229,9 @@ void measure(const World& world, Contact& contact) {
 }
 
 double gap_of(const World& world, const Contact& contact) {
+  if (contact.touch == Touch::piece) return gap_of_piece(world, contact);
+  // Nearest to what pieces meet as long as it is away from the rest of the outline.
+  if (contact.away != 0 && is_left_to_pieces(world, contact)) return infinity;
   if (contact.touch != Touch::circles) return meeting_of(world, contact).gap;
   return circles_apart(world, contact).gap;
 }

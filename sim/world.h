@@ -164,13 +164,26 @@ struct Nook {
   bool straight = false;    // the two are one line
 };
 
+/// Whether a wall's end stands out, so that hanging cables may lie over it.
+enum class Tipped : std::int8_t {
+  none,
+  own,
+  of_another,  // wall, that comes before this one and ends there too
+};
+
 /// What stands for good and bodies cannot pass: a wall of the scene; or the end of a cable that is
 /// held in the world, a smooth point with the cable's half width about it.
 struct Obstacle : Wall {
-  double radius = 0.0;  // m, how far from its line its surface is
-  int cable = -1;       // whose end it is, or -1: a wall
+  double radius = 0.0;           // m, how far from its line its surface is
+  int cable = -1;                // whose end it is, or -1: a wall
+  std::array<Tipped, 2> tips{};  // of a and b; by find_tips
   std::array<std::array<Nook, 2>, 2>
       nooks;  // of a and b, on the left of the way out of the wall there and on its right
+};
+
+/// The pieces of a hanging cable that end and begin in a node.
+struct PiecesAtNode {
+  int before = -1, after = -1;  // cables, or -1
 };
 
 /// What came of a step. It fails where a value is not finite, or where cables bend round more
@@ -222,7 +235,12 @@ struct World {
                                          // note_rest
   std::vector<Contact> contacts;         // sorted by (a, b, wall); by find_contacts, forces and
                                          // states by store_solution
-  int changes = 0;                       // links inserted and removed so far, of all cables
+  std::vector<PiecesAtNode> pieces_at;   // one a body; empty where pieces of hanging cables meet
+                                         // nothing. By join_pieces, as `passing`:
+  std::vector<std::array<int, 2>> passing;  // sorted: a piece, and the body (or -1 - wall) that it
+                                            // does not meet;
+  std::vector<std::array<int, 2>> passing_at_ends;  // of these those for good, by make_world
+  int changes = 0;  // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite
 

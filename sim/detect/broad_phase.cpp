@@ -7,6 +7,8 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/lines.h"
+#include "sim/outline.h"
+#include "sim/pieces.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -255,6 +257,66 @@ void update_boxes(const Scene& scene, const World& world, double skin, std::vect
   }
 }
 
+namespace {
+
+void include(const Box& other, Box& box) {
+  box.low = box.low.cwiseMin(other.low);
+  box.high = box.high.cwiseMax(other.high);
+}
+
+/// Where a piece may be within the next step: between its ends, which bodies' boxes hold.
+Box piece_box(const BroadPhase& broad, const CableState& piece) {
+  const Vec2 thick = Vec2::Constant(piece.half_width);
+  const auto box_of = [&](const Link& end) -> Box {
+    if (end.body < 0) return {end.offset - thick, end.offset + thick};
+    const Vec2 reach = thick + Vec2::Constant(end.offset.norm());
+    const Box& body = at(broad.boxes, end.body);
+    return {body.low - reach, body.high + reach};
+  };
+  Box box = box_of(piece.links[0]);
+  include(box_of(piece.links[1]), box);
+  return box;
+}
+
+}  // namespace
+
+void find_piece_pairs(const World& world, BroadPhase& broad) {
+  broad.piece_pairs.clear();
+  if (world.pieces_at.empty()) return;
+  for (int c = 0; index(c) < world.cables.size(); ++c) {
+    const CableState& piece = at(world.cables, c);
+    if (!piece.piece || is_dormant(piece)) continue;
+    const int node = node_of_piece(world, c);
+    if (node < 0) continue;
+    const Box box = piece_box(broad, piece);
+    for (int b = 0; index(b) < world.bodies.size(); ++b) {
+      const Box& other = at(broad.boxes, b);
+      if (!overlap(box, other, 0) || !overlap(box, other, 1) || !meets_piece(world, c, b, -1)) {
+        continue;
+      }
+      broad.piece_pairs.push_back({std::min(node, b), std::max(node, b), c, b, -1});
+    }
+    for (int w = 0; index(w) < world.obstacles.size(); ++w) {
+      const Obstacle& wall = at(world.obstacles, w);
+      const Vec2 thick = Vec2::Constant(wall.radius);
+      const Box reach{wall.a.cwiseMin(wall.b) - thick, wall.a.cwiseMax(wall.b) + thick};
+      if (wall.tips[0] != Tipped::own && wall.tips[1] != Tipped::own) continue;
+      if (!overlap(box, reach, 0) || !overlap(box, reach, 1)) continue;
+      if (meets_piece(world, c, -1, w)) broad.piece_pairs.push_back({node, -1, c, -1, w});
+    }
+  }
+  std::sort(broad.piece_pairs.begin(), broad.piece_pairs.end(),
+            [](const PiecePair& p, const PiecePair& q) {
+              return std::tie(p.a, p.b, p.wall, p.cable) < std::tie(q.a, q.b, q.wall, q.cable);
+            });
+  std::erase_if(broad.body_pairs, [&world](const BodyPair& pair) {
+    const bool first = at(world.bodies, pair.a).node, second = at(world.bodies, pair.b).node;
+    if (!first && !second) return false;
+    const int node = first ? pair.a : pair.b, body = first ? pair.b : pair.a;
+    return !is_polygon(at(world.bodies, body)) && is_met_by_pieces(world, node, body, -1);
+  });
+}
+
 Box span_box(const Segment& segment) {
   return {segment.tail.cwiseMin(segment.head)
               .cwiseMin(segment.previous_tail)
@@ -280,6 +342,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   sort_bodies(broad);
   list_body_pairs(scene, world, broad);
   list_wall_pairs(world, broad);
+  find_piece_pairs(world, broad);
 }
 
 void find_span_pairs(const World& world, Workspace& work) {

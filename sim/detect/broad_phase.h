@@ -19,6 +19,12 @@ struct BodyPair {
 struct WallPair {
   int body, wall;  // of World::obstacles
 };
+/// A piece of a hanging cable, and a body or wall that it may touch: pieces.h.
+struct PiecePair {
+  int a, b;  // its node and the body, a < b; or the node and -1
+  int cable;
+  int body, wall;  // one of them; the other is -1
+};
 struct SpanPair {
   int cable, segment, body;
 };
@@ -47,9 +53,10 @@ struct BroadPhase {
   std::size_t cables = 0;       // that the boxes allow for
   int changes = -1;             // of cables (CableState::changes) that span_pairs are for
   bool bodies_changed = false;  // since span_pairs were found
-  std::vector<BodyPair> body_pairs;  // sorted
-  std::vector<WallPair> wall_pairs;  // sorted
-  std::vector<SpanPair> span_pairs;  // sorted, unless patched
+  std::vector<BodyPair> body_pairs;    // sorted
+  std::vector<WallPair> wall_pairs;    // sorted
+  std::vector<PiecePair> piece_pairs;  // sorted
+  std::vector<SpanPair> span_pairs;    // sorted, unless patched
   std::vector<SpanList> of_cable;
   std::vector<int> last_of_body;  // the last of span_pairs with each body, or -1
   std::vector<int> one_before;    // of each of span_pairs, that with the same body before it, or -1
@@ -98,6 +105,10 @@ void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs);
 /// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
 /// step, with `skin` (m) more round those that can move.
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes);
+
+/// Lists what pieces of hanging cables may touch by the bodies' boxes, and takes away the pairs of
+/// their nodes with discs, which they meet for them.
+void find_piece_pairs(const World& world, BroadPhase& broad);
 
 /// Box round a segment where it was a step ago, and is.
 Box span_box(const Segment& segment);

@@ -8,6 +8,7 @@
 #include "sim/cable/cable.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
+#include "sim/pieces.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -34,7 +35,7 @@ double reach(const Scene& scene, const World& world, double speed, double radius
 bool comes_before(const Contact& p, const Contact& q) {
   if (p.a != q.a) return p.a < q.a;
   if (p.b != q.b) return p.b < q.b;
-  return std::tie(p.wall, p.touch, p.point) < std::tie(q.wall, q.touch, q.point);
+  return std::tie(p.wall, p.piece, p.touch, p.point) < std::tie(q.wall, q.piece, q.touch, q.point);
 }
 
 /// Old contacts of pairs, or of bodies and obstacles, that are asked for in their order.
@@ -43,14 +44,17 @@ class Kept {
   explicit Kept(const std::vector<Contact>& old) : next_(old.begin()), end_(old.end()) {}
 
   /// Between bodies that are where they were, what was a contact is one; how many there are.
-  std::size_t keep(int a, int b, int wall, std::vector<Contact>& to) {
-    const auto comes_before = [a, b, wall](const Contact& c) {
+  std::size_t keep(int a, int b, int wall, std::vector<Contact>& to, int piece = -1) {
+    const auto comes_before = [a, b, wall, piece](const Contact& c) {
       if (c.a != a) return c.a < a;
-      return c.b != b ? c.b < b : c.wall < wall;
+      if (c.b != b) return c.b < b;
+      return c.wall != wall ? c.wall < wall : c.piece < piece;
     };
     while (next_ != end_ && comes_before(*next_)) ++next_;
     const std::size_t before = to.size();
-    for (; next_ != end_ && next_->a == a && next_->b == b && next_->wall == wall; ++next_) {
+    for (; next_ != end_ && next_->a == a && next_->b == b && next_->wall == wall &&
+           next_->piece == piece;
+         ++next_) {
       to.push_back(*next_);
     }
     return to.size() - before;
@@ -94,8 +98,58 @@ void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double ra
   world.contacts.push_back(contact);
 }
 
+/// Greatest speed of a piece's ends (m/s).
+double speed_of_piece(const World& world, const CableState& piece) {
+  return std::max(velocity_of(world, piece.links[0]).norm(),
+                  velocity_of(world, piece.links[1]).norm());
+}
+
+bool is_still(const World& world, const Parts& parts, const PiecePair& pair) {
+  if (pair.body >= 0 && !is_still(parts, pair.body)) return false;
+  const std::vector<Link>& links = at(world.cables, pair.cable).links;
+  return std::all_of(links.begin(), links.end(),
+                     [&](const Link& link) { return link.body < 0 || is_still(parts, link.body); });
+}
+
+/// Appends the contacts of pieces of hanging cables; returns how many were kept.
+std::size_t add_contacts_of_pieces(const Scene& scene, World& world, Workspace& work,
+                                   const std::vector<Contact>& old) {
+  std::size_t kept = 0;
+  Kept old_of_pieces(old);
+  Neighbourhoods& near = work.neighbourhoods;
+  for (const PiecePair& pair : work.broad_phase.piece_pairs) {
+    if (is_still(world, work.parts, pair)) {
+      kept += old_of_pieces.keep(pair.a, pair.b, pair.wall, world.contacts, pair.cable);
+      continue;
+    }
+    const CableState& piece = at(world.cables, pair.cable);
+    const double speed =
+        speed_of_piece(world, piece) + (pair.body >= 0 ? speed_of(world, pair.body) : 0.0);
+    const double most = reach(scene, world, speed, piece.half_width);
+    const int node = node_of_piece(world, pair.cable);
+    if (pair.body >= 0 && near.separate_bodies(node, pair.body)) {
+      double left = way_left(scene, world, near, pair.body);
+      for (const Link& link : piece.links) {
+        if (link.body >= 0 && !is_static(at(world.bodies, link.body))) {
+          left = std::max(left, way_left(scene, world, near, pair.body) +
+                                    way_left(scene, world, near, link.body));
+        }
+      }
+      const double distance =
+          distance_from_line(link_centre(world, piece.links[0]), link_centre(world, piece.links[1]),
+                             at(world.position, pair.body));
+      const double radii = piece.half_width + at(world.bodies, pair.body).radius;
+      near.crossed = near.crossed || distance - radii <= left;
+      continue;
+    }
+    append_at_piece(world, pair.cable, pair.body, pair.wall, most, world.contacts);
+  }
+  return kept;
+}
+
 bool is_same(const Contact& p, const Contact& q) {
-  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point;
+  return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point &&
+         p.piece == q.piece;
 }
 
 /// What the last solve left of the contacts that there were.
@@ -106,7 +160,7 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
       while (previous != old.end() && comes_before(*previous, contact)) ++previous;
     }
     if (previous != old.end() && is_same(*previous, contact)) {
-      contact.touching = previous->touching;
+      contact.touching = previous->touching && contact.away == 0;
       contact.slip = previous->slip;
       contact.normal_force = previous->normal_force;
       contact.tangent_force = previous->tangent_force;
@@ -120,7 +174,8 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   bool& all_kept = work.contacts.contacts_kept;
   std::vector<Contact>& old = work.contacts.old_contacts;
   const BroadPhase& broad = work.broad_phase;
-  if (world.contacts.empty() && broad.body_pairs.empty() && broad.wall_pairs.empty()) {
+  if (world.contacts.empty() && broad.body_pairs.empty() && broad.wall_pairs.empty() &&
+      broad.piece_pairs.empty()) {
     all_kept = true;
     old.clear();
     return;
@@ -129,6 +184,9 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   if (all_kept) return;
   std::swap(old, world.contacts);
   world.contacts.clear();
+  if (!broad.piece_pairs.empty() && follow_along_chains(world, old)) {
+    std::sort(old.begin(), old.end(), comes_before);
+  }
   std::size_t kept = 0;
   const double width = full_width(world);
   Kept old_pairs(old), old_of_walls(old);
@@ -164,7 +222,11 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     const double most = reach(scene, world, speed_of(world, pair.body), radius);
     add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
   }
-  if (!broad.wall_pairs.empty()) {
+  if (!world.pieces_at.empty()) {
+    for (Contact& contact : world.contacts) contact.away = is_left_to_pieces(world, contact);
+    kept += add_contacts_of_pieces(scene, world, work, old);
+  }
+  if (!broad.wall_pairs.empty() || !broad.piece_pairs.empty()) {
     std::sort(world.contacts.begin(), world.contacts.end(), comes_before);
   }
   all_kept = kept == world.contacts.size() && kept == old.size();

@@ -10,6 +10,7 @@
 #include "sim/cable/held.h"
 #include "sim/compound.h"
 #include "sim/lines.h"
+#include "sim/pieces.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 
@@ -288,6 +289,7 @@ void change_nodes(const Scene& scene, World& world, Workspace& work) {
       ++world.diagnostics.node_changes;
     }
   }
+  if (!world.pieces_at.empty()) join_pieces(scene, world);
   work.broad_phase.boxes.clear();  // for bodies with other outlines
 }
 

@@ -89,6 +89,7 @@ void find_normals(const PartSystem& s, DualScratch& d) {
     const RowBodies& row = at(s.bodies, r);
     add(row.a, row.ja);
     add(row.b, row.jb);
+    if (const ThirdBody* third = third_of(s, index(r))) add(third->place, third->j);
     if (at(s.rows, r).compliance > 0.0) normal[own++] = std::sqrt(at(s.rows, r).compliance);
     at(d.norms, r) = std::sqrt(product(d.dimension, normal, normal));
   }
@@ -197,7 +198,8 @@ int most_violated(const PartSystem& s, const DualScratch& d, double tolerance, d
     if (std::find(d.active.begin(), d.active.end(), r) != d.active.end()) continue;
     const double bias = at(d.unbiased, r) ? 0.0 : row.bias;
     const double free = bias + dot(at(s.bodies, r).ja, at(s.free_velocity, at(s.bodies, r).a)) +
-                        dot(at(s.bodies, r).jb, at(s.free_velocity, at(s.bodies, r).b));
+                        dot(at(s.bodies, r).jb, at(s.free_velocity, at(s.bodies, r).b)) +
+                        speed_of_third(s, index(r), s.free_velocity);
     const double now = free + product(d.dimension, &at(d.normals, r * d.dimension), d.way.data());
     const double by = holds_both_ways(row) ? std::abs(now) : -now;
     if (by <= tolerance || by <= most * at(d.norms, r)) continue;
@@ -257,6 +259,9 @@ double moved_by_biases(const PartSystem& s, DualScratch& d) {
   for (const RowBodies& row : s.bodies) {
     at(d.levers, row.a) = std::max(at(d.levers, row.a), std::abs(row.ja.z()));
     at(d.levers, row.b) = std::max(at(d.levers, row.b), std::abs(row.jb.z()));
+  }
+  for (const ThirdBody& third : s.thirds) {
+    at(d.levers, third.place) = std::max(at(d.levers, third.place), std::abs(third.j.z()));
   }
   double most = 0.0;
   for (std::size_t b = 0; b < s.mobility.size(); ++b) {

@@ -165,9 +165,11 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     };
     const double of_a = speed(s.bodies[r].a, s.bodies[r].ja);
     const double of_b = speed(s.bodies[r].b, s.bodies[r].jb);
-    gain += row.impulse * (of_a + of_b);
+    const ThirdBody* third = third_of(s, r);
+    const double of_third = third ? speed(third->place, third->j) : 0.0;
+    gain += row.impulse * (of_a + of_b + of_third);
     impulse += std::abs(row.impulse);
-    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b)});
+    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
   constexpr double rounding = 1e-9, of_impulses = 1e-14;
   return gain > rounding * energy + of_impulses * impulse * fastest;

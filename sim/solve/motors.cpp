@@ -21,6 +21,9 @@ double impulse_of_rows(const PartSystem& s, int place) {
     if (bodies.a == place) sum += s.rows[r].impulse * bodies.ja.z();
     if (bodies.b == place) sum += s.rows[r].impulse * bodies.jb.z();
   }
+  for (const ThirdBody& third : s.thirds) {
+    if (third.place == place) sum += at(s.rows, third.row).impulse * third.j.z();
+  }
   return sum;
 }
 

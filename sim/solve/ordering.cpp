@@ -12,9 +12,11 @@ namespace pinchlab {
 namespace {
 
 /// The bodies of a row that it couples with other rows, or -1.
-std::array<int, 2> coupled(const PartSystem& s, std::size_t r) {
+std::array<int, 3> coupled(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];
-  return {at(s.mobile, row.a) ? row.a : -1, at(s.mobile, row.b) ? row.b : -1};
+  const ThirdBody* third = third_of(s, r);
+  return {at(s.mobile, row.a) ? row.a : -1, at(s.mobile, row.b) ? row.b : -1,
+          third && at(s.mobile, third->place) ? third->place : -1};
 }
 
 void list_rows_of_bodies(const PartSystem& s, OrderScratch& scratch) {
@@ -89,11 +91,16 @@ void find_order(PartSystem& s, OrderScratch& scratch) {
 
 /// Whether these are the bodies that the rows couple.
 bool order_stands(const PartSystem& s) {
-  if (s.structure.size() != 2 * s.rows.size()) return false;
+  const std::size_t rows = s.rows.size(), thirds = s.thirds.size();
+  if (s.structure.size() != 2 * (rows + thirds)) return false;
   if (s.same_rows) return true;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const auto [a, b] = coupled(s, r);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const auto [a, b, third] = coupled(s, r);
     if (s.structure[2 * r] != a || s.structure[2 * r + 1] != b) return false;
+  }
+  for (std::size_t k = 0; k < thirds; ++k) {
+    const std::size_t i = 2 * (rows + k);
+    if (s.structure[i] != s.thirds[k].row || s.structure[i + 1] != s.thirds[k].place) return false;
   }
   return true;
 }
@@ -105,9 +112,13 @@ void order_rows(PartSystem& s, OrderScratch& scratch) {
   s.structure.clear();
   s.assembled.clear();
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const auto [a, b] = coupled(s, r);
+    const auto [a, b, third] = coupled(s, r);
     s.structure.push_back(a);
     s.structure.push_back(b);
+  }
+  for (const ThirdBody& third : s.thirds) {
+    s.structure.push_back(third.row);
+    s.structure.push_back(third.place);
   }
   find_order(s, scratch);
 }

@@ -89,6 +89,12 @@ struct RowResponse {
   Eigen::Vector3d ra = Eigen::Vector3d::Zero(), rb = ra;  // mobility * J^T: m/s, or rad/s, a N s
 };
 
+/// The third body of a row that has one, of a contact with a piece of a hanging cable.
+struct ThirdBody {
+  int row = 0, place = 0;
+  Eigen::Vector3d j = Eigen::Vector3d::Zero(), response = j;
+};
+
 /// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
 /// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
@@ -101,11 +107,12 @@ struct Row {
   bool returned = false;    // normal: has lost its force in this step and got it back
   bool is_new = true;       // segment: its bodies are not yet seen
   bool turns = false;       // segment: its levers turn with a body, moved or not
+  bool has_third = false;   // of PartSystem::thirds, at `item`
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1
   int index = -1;           // contact; or cable
-  int item = -1;            // segment, or middle link
+  int item = -1;            // segment, middle link, or place of its third body
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
   double compliance = 0.0;  // 1/kg
@@ -233,6 +240,7 @@ struct PartSystem {
   std::vector<RowBodies> bodies;
   std::vector<RowResponse> responses;
   std::vector<Row> rows;
+  std::vector<ThirdBody> thirds;  // of the rows that have one, in their order
   std::vector<Friction> frictions;
   std::vector<char> changed;  // of each row: its bodies or diagonal are not those of the step
                               // before
@@ -326,10 +334,25 @@ inline double greatest_speed(const std::vector<Eigen::Vector3d>& velocity) {
   return greatest;
 }
 
+/// The third body of a row, or null.
+inline const ThirdBody* third_of(const PartSystem& s, std::size_t r) {
+  if (s.thirds.empty() || !s.rows[r].has_third) return nullptr;
+  return &at(s.thirds, s.rows[r].item);
+}
+
+/// What a row's third body adds to J v at such velocities (m/s).
+inline double speed_of_third(const PartSystem& s, std::size_t r,
+                             const std::vector<Eigen::Vector3d>& velocity) {
+  const ThirdBody* third = third_of(s, r);
+  return third ? dot(third->j, at(velocity, third->place)) : 0.0;
+}
+
 /// J v + bias at the present velocities (m/s).
 inline double row_speed(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];
-  return s.rows[r].bias + dot(row.ja, at(s.velocity, row.a)) + dot(row.jb, at(s.velocity, row.b));
+  const double speed =
+      s.rows[r].bias + dot(row.ja, at(s.velocity, row.a)) + dot(row.jb, at(s.velocity, row.b));
+  return s.thirds.empty() ? speed : speed + speed_of_third(s, r, s.velocity);
 }
 
 /// Changes the velocities of the row's bodies by an impulse on it (N s).
@@ -338,6 +361,9 @@ inline void push(PartSystem& s, std::size_t r, double impulse) {
   const RowResponse& row = s.responses[r];
   at(s.velocity, row.a) += impulse * row.ra;
   at(s.velocity, row.b) += impulse * row.rb;
+  if (const ThirdBody* third = third_of(s, r)) {
+    at(s.velocity, third->place) += impulse * third->response;
+  }
 }
 
 }  // namespace pinchlab

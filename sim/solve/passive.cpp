@@ -53,10 +53,12 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const auto a = index(bodies.a), b = index(bodies.b);
     const double of_a = bodies.ja.dot(s.free_velocity[a] + s.velocity[a]);
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
-    made += row.impulse * (of_a + of_b);
+    const double of_third =
+        speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
+    made += row.impulse * (of_a + of_b + of_third);
     impulse += std::abs(row.impulse);
     made_up += std::abs(row.impulse) * std::min(std::abs(row.bias), s.reach / set.step_length);
-    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b)});
+    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;
   return !(made <= impulse * rounding + 2.0 * made_up);

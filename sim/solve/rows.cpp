@@ -8,6 +8,7 @@
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
+#include "sim/pieces.h"
 #include "sim/solve/elastic.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/rubbing.h"
@@ -27,6 +28,10 @@ void weigh(PartSystem& s, int r) {
   response.ra = at(s.mobility, bodies.a) * bodies.ja;
   response.rb = at(s.mobility, bodies.b) * bodies.jb;
   at(s.rows, r).diagonal = bodies.ja.dot(response.ra) + bodies.jb.dot(response.rb);
+  if (s.thirds.empty() || !at(s.rows, r).has_third) return;
+  ThirdBody& third = at(s.thirds, at(s.rows, r).item);
+  third.response = at(s.mobility, third.place) * third.j;
+  at(s.rows, r).diagonal += third.j.dot(third.response);
 }
 
 /// A body's place in its part; static bodies and the world (-1) share the one after the last.
@@ -174,6 +179,50 @@ void add_seats(const World& world, const Contact& contact, RowBodies& bodies) {
   if (contact.b >= 0) bodies.jb.z() += cross(seat_of(world, contact.b), bodies.jb.head<2>());
 }
 
+/// What the row of a contact with a piece sees of an end of it, of which it has that share, where
+/// the force along `e` acts `off` (m) to the right of the piece's line.
+Eigen::Vector3d sight_of_end(const World& world, const Link& end, const Vec2& e, double off,
+                             double share) {
+  if (end.body < 0) return Eigen::Vector3d::Zero();
+  const bool is_node = at(world.bodies, end.body).node;
+  const double lever =
+      is_node ? off : cross(link_centre(world, end) - pivot_of(world, end.body), e);
+  return share * Eigen::Vector3d(e.x(), e.y(), lever);
+}
+
+/// The three bodies of the row of a contact with a piece: across it, or with `along` of friction,
+/// whose forces both act at one point, as those of other contacts do.
+void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,
+                         PartSystem& s, int r) {
+  const Foot foot = foot_of(world, contact);
+  const CableState& piece = at(world.cables, foot.cable);
+  const int touching = body_at_piece(world, contact);
+  const Vec2 e = along ? left(foot.way) : foot.way;
+  const double reach = 1.0 + foot.gap / (foot.radius + piece.half_width);
+  RowBodies& bodies = at(s.bodies, r);
+  bodies.a = place_of(parts, s, touching);
+  if (touching >= 0) {
+    const double about = cross(foot.place - pivot_of(world, touching), -e);
+    bodies.ja = {-e.x(), -e.y(), about - (along ? reach * foot.radius : 0.0)};
+  }
+  const double off = along ? -reach * piece.half_width : 0.0;
+  const Link &tail = piece.links[0], &head = piece.links[1];
+  const Eigen::Vector3d of_tail = sight_of_end(world, tail, e, off, 1.0 - foot.share);
+  const Eigen::Vector3d of_head = sight_of_end(world, head, e, off, foot.share);
+  const int at_tail = place_of(parts, s, tail.body), at_head = place_of(parts, s, head.body);
+  const bool is_one = at_tail == at_head || at_head == s.ground();
+  bodies.b = is_one || at_tail != s.ground() ? at_tail : at_head;
+  bodies.jb = at_tail == s.ground() ? of_head : of_tail;
+  if (at_tail == at_head) bodies.jb = of_tail + of_head;
+  if (!is_one && at_tail != s.ground()) {
+    at(s.rows, r).has_third = true;
+    at(s.rows, r).item = static_cast<int>(s.thirds.size());
+    s.thirds.push_back({r, at_head, of_head, Eigen::Vector3d::Zero()});
+  }
+  at(s.responses, r).a = bodies.a;
+  at(s.responses, r).b = bodies.b;
+}
+
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
                     const TimeSpan& interval, RowBodies& bodies, Row& row) {
   const Vec2& n = contact.normal;
@@ -181,7 +230,9 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   row.on = contact.touching;
   bodies.ja = {-n.x(), -n.y(), 0.0};
   bodies.jb = {n.x(), n.y(), 0.0};
-  if (contact.touch != Touch::circles) {
+  if (contact.touch == Touch::piece) {
+    // By set_bodies_at_piece.
+  } else if (contact.touch != Touch::circles) {
     set_levers(world, contact, bodies);
   } else {
     add_seats(world, contact, bodies);
@@ -197,9 +248,11 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   // Where events are not located contacts bar half a plane: of a point, what only passes it too.
   const bool is_passing =
       interval.reach == infinity && is_end_of_cable(world, contact) && clearance > interval.made_up;
-  if (is_passing || (contact.rebounds && interval.reach < infinity)) {
+  if (contact.away != 0) row.clearance = infinity;
+  if (is_passing || contact.away != 0 || (contact.rebounds && interval.reach < infinity)) {
     row.idle = true;
     row.on = false;
+    if (contact.away != 0) row.bias = 0.0;
   }
   // Rebounds are impacts (impact.h), and positions that are repaired do not rebound.
   if (locates_events(world.configuration) || interval.length == 0.0) return;
@@ -278,6 +331,8 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   at(scratch.normal_row_of_contact, number) = normal;
   s.rows.back().index = number;
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
+  const bool on_piece = contact.touch == Touch::piece;
+  if (on_piece) set_bodies_at_piece(world, parts, contact, false, s, normal);
   weigh(s, normal);
 
   const double mu = coefficient_of(world, contact);
@@ -287,7 +342,11 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   row.kind = RowKind::tangent;
   row.index = number;
   row.slip = contact.slip;
-  set_tangent_bodies(world, contact, interval, s.bodies.back());
+  if (on_piece) {
+    set_bodies_at_piece(world, parts, contact, true, s, tangent);
+  } else {
+    set_tangent_bodies(world, contact, interval, s.bodies.back());
+  }
   weigh(s, tangent);
   add_friction(s, contact_friction(tangent, normal, mu));
 }
@@ -378,6 +437,7 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   s.same_segments = again;
   s.segments_stand = again && !s.mobility_changed;
   s.pressed.clear();
+  s.thirds.clear();
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
   s.bodies.resize(index(s.first_contact_row));

@@ -298,6 +298,8 @@ void express_rubbing(PartSystem& s, SolveScratch& set) {
       double along = 0.0;
       if (response.a == one.body) along += law.carried.dot(response.ra.head<2>());
       if (response.b == one.body) along += law.carried.dot(response.rb.head<2>());
+      const ThirdBody* third = third_of(s, index(r));
+      if (third && third->place == one.body) along += law.carried.dot(third->response.head<2>());
       if (r == one.rub) {
         own += along;
       } else {

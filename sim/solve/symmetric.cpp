@@ -2,6 +2,7 @@
 #include "sim/solve/symmetric.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/at.h"
 #include "sim/solve/part_system.h"
@@ -12,10 +13,10 @@ namespace pinchlab {
 namespace {
 
 /// Appends an end of unknown u to the chain of its body.
-void append_end(RowEnd* ends, int* last_end, int end, int body) {
+void append_end(RowEnd* ends, int* last_end, int end, int body, int u) {
   int& last = last_end[body];
   ends[end].previous = last;
-  ends[end].least = last >= 0 ? ends[last].least : end / 2;
+  ends[end].least = last >= 0 ? ends[last].least : u;
   last = end;
 }
 
@@ -53,8 +54,62 @@ void assemble_symmetric(PartSystem& s, SolveScratch& set) {
     add(last_a, response.ra);
     add(last_b, response.rb);
     if (a >= 0 && a == b) entries[u] = 2.0 * dot(response.ra, row.jb);
-    if (a >= 0) append_end(ends, last_end, 2 * u, a);
-    if (b >= 0) append_end(ends, last_end, 2 * u + 1, b);
+    if (a >= 0) append_end(ends, last_end, 2 * u, a, u);
+    if (b >= 0) append_end(ends, last_end, 2 * u + 1, b, u);
+  }
+  s.assembled = set.row_of_unknown;
+}
+
+/// The ends of a row that are on bodies which can move.
+struct Ends {
+  std::array<int, 3> place{-1, -1, -1};
+  std::array<const Eigen::Vector3d*, 3> j{}, response{};
+
+  Ends(const PartSystem& s, int row) {
+    const RowBodies& bodies = at(s.bodies, row);
+    const RowResponse& responses = at(s.responses, row);
+    set(s, 0, bodies.a, bodies.ja, responses.ra);
+    set(s, 1, bodies.b, bodies.jb, responses.rb);
+    const ThirdBody* third = third_of(s, index(row));
+    if (third) set(s, 2, third->place, third->j, third->response);
+  }
+
+  void set(const PartSystem& s, std::size_t end, int body, const Eigen::Vector3d& sees,
+           const Eigen::Vector3d& moves) {
+    place[end] = at(s.mobile, body) ? body : -1;
+    j[end] = &sees;
+    response[end] = &moves;
+  }
+};
+
+/// The same matrix where rows have up to three bodies.
+void assemble_of_three(PartSystem& s, SolveScratch& set) {
+  const int count = static_cast<int>(set.row_of_unknown.size());
+  set.last_end.assign(s.mobility.size(), -1);
+  set.ends.resize(3 * index(count));
+  s.ldl.clear();
+  for (int u = 0; u < count; ++u) {
+    const Ends own(s, at(set.row_of_unknown, u));
+    std::array<int, 3> last{-1, -1, -1};
+    int first = u;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (own.place[i] >= 0) last[i] = at(set.last_end, own.place[i]);
+      if (last[i] >= 0) first = std::min(first, at(set.ends, last[i]).least);
+    }
+    double* entries = s.ldl.append(first);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (int e = last[i]; e >= 0; e = at(set.ends, e).previous) {
+        const Ends other(s, at(set.row_of_unknown, e / 3));
+        entries[e / 3] += dot(*own.response[i], *other.j[index(e % 3)]);
+      }
+    }
+    if (own.place[0] >= 0 && own.place[0] == own.place[1]) {
+      entries[u] = 2.0 * dot(*own.response[0], *own.j[1]);
+    }
+    for (int i = 0; i < 3; ++i) {
+      const int body = own.place[index(i)];
+      if (body >= 0) append_end(set.ends.data(), set.last_end.data(), 3 * u + i, body, u);
+    }
   }
   s.assembled = set.row_of_unknown;
 }
@@ -107,7 +162,9 @@ int factor_symmetric(PartSystem& s, SolveScratch& set) {
   const bool stands = same_rows && !rescaled && s.rows_stand;
   if (stands && s.factored) return 0;
   const auto changed = std::count(s.changed.begin(), s.changed.end(), true);
-  if (!same_rows || 2 * index(static_cast<int>(changed)) > s.changed.size()) {
+  if (!s.thirds.empty()) {
+    assemble_of_three(s, set);
+  } else if (!same_rows || 2 * index(static_cast<int>(changed)) > s.changed.size()) {
     assemble_symmetric(s, set);
   } else if (changed > 0) {
     reassemble_changed(s);

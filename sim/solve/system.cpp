@@ -104,6 +104,9 @@ void gather_body_terms(const PartSystem& s, SolveScratch& set) {
       for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
         if (at(s.mobile, body)) set.columns.push_back({term.index, body, term.coefficient * j});
       }
+      if (const ThirdBody* third = third_of(s, r); third && at(s.mobile, third->place)) {
+        set.columns.push_back({term.index, third->place, term.coefficient * third->j});
+      }
     }
   }
   std::size_t begin = 0;
@@ -116,6 +119,10 @@ void gather_body_terms(const PartSystem& s, SolveScratch& set) {
     }
     for (const auto& [body, j] : {std::pair(row.a, row.ja), std::pair(row.b, row.jb)}) {
       if (at(s.mobile, body)) add_to_equation(set, begin, unknown, body, j, term.coefficient);
+    }
+    if (const ThirdBody* third = third_of(s, index(term.row));
+        third && at(s.mobile, third->place)) {
+      add_to_equation(set, begin, unknown, third->place, third->j, term.coefficient);
     }
   }
 
