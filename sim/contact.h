@@ -27,9 +27,10 @@ struct Contact {
   int wall = -1;  // index into World::obstacles, or -1
   Touch touch = Touch::circles;
   std::int8_t point = 0;  // corner of the polygon, or end of the wall; 0 of a disc
-  std::int8_t away = 0;   // of a hanging cable: what is near is before this piece or node of it
-                          // (-1) or after it (+1), and this bears nothing; 0: it is this
-  int piece = -1;         // Touch::piece: the cable
+  std::int8_t away =
+      0;  // a piece or node of a hanging cable: what is near it is nearer to what is before it
+          // (-1) or after it (+1), and this bears nothing; 0: it is this
+  int piece = -1;              // Touch::piece: the cable
   Vec2 normal = Vec2::Zero();  // unit, from a towards b
   double gap = 0.0;            // m, between the surfaces
   double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0

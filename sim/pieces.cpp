@@ -18,6 +18,8 @@ namespace pinchlab {
 namespace {
 
 constexpr int most_hops = 64;  // along a chain, within an interval
+constexpr double most_curved =
+    1.0;  // length of a piece, of the radius at which cable may lie on it
 
 /// A piece's line, and the foot of a point on it.
 struct Line {
@@ -168,9 +170,10 @@ bool meets_piece(const World& world, int cable, int body, int wall) {
   if (body < 0) return true;
   const BodyProperties& properties = at(world.bodies, body);
   if (properties.node || !properties.outlined) return false;
+  const CableState& piece = at(world.cables, cable);
+  if (rim_radius(properties) + piece.half_width > most_curved * piece.length) return false;
   const int mover = mover_of(world, body);
-  const std::vector<Link>& links = at(world.cables, cable).links;
-  return std::none_of(links.begin(), links.end(), [&](const Link& link) {
+  return std::none_of(piece.links.begin(), piece.links.end(), [&](const Link& link) {
     return link.body >= 0 && mover_of(world, link.body) == mover;
   });
 }

@@ -17,6 +17,12 @@
 // contact; what slides on over such a bend strikes the second piece at its time, like a wall.
 // Other near pieces have contacts that are `away`: they bear nothing, and tell when the point comes
 // to lie over them from a bend towards it.
+//
+// Where a chain runs round a disc over several pieces, all of them tangents of it, their forces are
+// hardly known: half of each goes to either end, so that at the nodes forces that are greater and
+// less in turn cancel, and pieces come off and on again in turn. Discs and rounded corners of a
+// radius (to the cable's centre line) above a piece's length are met by the nodes alone, as a
+// polygon's sides are. Cable sinks into them by no more than l^2 / 8 R.
 
 #include <vector>
 

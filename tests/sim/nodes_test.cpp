@@ -407,23 +407,5 @@ TEST(Nodes, ACableThatCannotSagIsRefused) {
   }
 }
 
-// Bodies meet them by their nodes, whether they stretch or not.
-TEST(Nodes, NothingHitsThePiecesBetweenThem) {
-  for (const double stiffness : {infinity, 1e3}) {
-    Scene scene;
-    scene.bodies.push_back(body("ball", BodyKind::free, 0.25, 0.3, 0.05, 1.0));
-    scene.cables.push_back(cable(at(0.0, 0.0), {}, at(1.0, 0.0), 0.01));
-    scene.cables[0].mass_per_metre = 1.0;
-    scene.cables[0].axial_stiffness = stiffness;
-    scene.cables[0].slack = 0.01;
-    scene.cables[0].nodes = 1;
-    spread_nodes(scene);
-    World world = make_world(scene, measured());
-    run(scene, world, 240);
-    EXPECT_LT(world.position[0].y(), -2.0);
-    EXPECT_EQ(world.changes, 0);
-  }
-}
-
 }  // namespace
 }  // namespace pinchlab::testing

@@ -43,11 +43,11 @@ inline bool same_segment(const Segment& p, const Segment& q) {
 
 inline bool same_contact(const Contact& p, const Contact& q) {
   return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point &&
-         p.normal == q.normal && p.gap == q.gap && p.target == q.target &&
-         p.pinch_points == q.pinch_points && p.pinch_linked == q.pinch_linked &&
-         p.pressed_friction == q.pressed_friction && p.layers_cable == q.layers_cable &&
-         p.touching == q.touching && p.rebounds == q.rebounds && p.slip == q.slip &&
-         p.normal_force == q.normal_force && p.tangent_force == q.tangent_force;
+         p.piece == q.piece && p.away == q.away && p.normal == q.normal && p.gap == q.gap &&
+         p.target == q.target && p.pinch_points == q.pinch_points &&
+         p.pinch_linked == q.pinch_linked && p.pressed_friction == q.pressed_friction &&
+         p.layers_cable == q.layers_cable && p.touching == q.touching && p.rebounds == q.rebounds &&
+         p.slip == q.slip && p.normal_force == q.normal_force && p.tangent_force == q.tangent_force;
 }
 
 /// Whether two worlds of one scene are in the same state to the last bit.
