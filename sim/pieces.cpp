@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/at.h"
-#include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
@@ -21,6 +20,18 @@ constexpr int most_hops = 64;  // along a chain, within an interval
 constexpr double most_curved =
     1.0;  // length of a piece, of the radius at which cable may lie on it
 
+bool sleeps(const CableState& piece) {
+  return piece.pieces == 0;
+}
+
+/// Where an end of a piece is (m).
+Vec2 place_of_end(const World& world, const Link& end) {
+  if (end.body < 0) return end.offset;
+  const Vec2& centre = at(world.position, end.body);
+  if (end.offset == Vec2::Zero()) return centre;
+  return centre + turned(end.offset, at(world.angle, end.body));
+}
+
 /// A piece's line, and the foot of a point on it.
 struct Line {
   Vec2 tail, way;      // m
@@ -28,8 +39,8 @@ struct Line {
 
   Line(const World& world, int cable, const Vec2& point) {
     const CableState& piece = at(world.cables, cable);
-    tail = link_centre(world, piece.links[0]);
-    way = link_centre(world, piece.links[1]) - tail;
+    tail = place_of_end(world, piece.links[0]);
+    way = place_of_end(world, piece.links[1]) - tail;
     const double square = way.squaredNorm();
     share = square > 0.0 ? (point - tail).dot(way) / square : 0.5;
   }
@@ -164,7 +175,8 @@ int node_of_piece(const World& world, int cable) {
 
 bool meets_piece(const World& world, int cable, int body, int wall) {
   const int key = body >= 0 ? body : -1 - wall;
-  if (std::binary_search(world.passing.begin(), world.passing.end(), std::array{cable, key})) {
+  if (!world.passing.empty() &&
+      std::binary_search(world.passing.begin(), world.passing.end(), std::array{cable, key})) {
     return false;
   }
   if (body < 0) return true;
@@ -189,7 +201,7 @@ namespace {
 
 /// The piece, or what it is part of at present.
 int awake_piece(const Scene& scene, const World& world, int cable) {
-  while (is_dormant(at(world.cables, cable))) {
+  while (sleeps(at(world.cables, cable))) {
     const auto chain = std::ranges::find(scene.chains, cable, &NodeChain::first_piece);
     cable = chain != scene.chains.end() ? chain->cable : cable - 1;
   }
@@ -214,7 +226,7 @@ void join_pieces(const Scene& scene, World& world) {
   const auto is_node = [&world](int body) { return body >= 0 && at(world.bodies, body).node; };
   for (int c = 0; index(c) < world.cables.size(); ++c) {
     const CableState& cable = at(world.cables, c);
-    if (!cable.piece || is_dormant(cable)) continue;
+    if (!cable.piece || sleeps(cable)) continue;
     if (is_node(cable.links[0].body)) at(world.pieces_at, cable.links[0].body).after = c;
     if (is_node(cable.links[1].body)) at(world.pieces_at, cable.links[1].body).before = c;
   }
@@ -374,7 +386,7 @@ bool follow_along_chains(const World& world, std::vector<Contact>& contacts) {
   bool any = false;
   for (Contact& contact : contacts) {
     if (contact.touch != Touch::piece || !contact.touching || contact.away != 0) continue;
-    if (is_dormant(at(world.cables, contact.piece))) continue;
+    if (sleeps(at(world.cables, contact.piece))) continue;
     const Toucher toucher = toucher_of(world, contact);
     int cable = foot_of(world, contact).cable;
     // A node is of the piece that ends there.

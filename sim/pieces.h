@@ -33,9 +33,9 @@ namespace pinchlab {
 struct Obstacle;
 struct World;
 
-/// Notes which pieces meet in which nodes, and which bodies pass through which pieces: World::pieces_at
-/// and World::passing. To be called where nodes have come or gone. Those which hold an end of the
-/// piece pass, and those of Scene::apart which pass one of its nodes.
+/// Notes which pieces meet in which nodes, and which bodies pass through which pieces:
+/// World::pieces_at and World::passing. To be called where nodes have come or gone. What passes
+/// through a piece holds an end of it, or passes one of its nodes by Scene::apart.
 void join_pieces(const Scene& scene, World& world);
 
 /// Notes that those bodies and walls pass through a chain's last piece which are where its end in
@@ -70,7 +70,8 @@ struct Foot {
 /// Of a contact that is not away, along the chain from where it was found.
 Foot foot_of(const World& world, const Contact& contact);
 
-/// Of one that is away its gap where it has come over the piece from a bend towards it; or infinity.
+/// Of one that is away its gap where it has come over the piece from a bend towards it; else
+/// infinity.
 double gap_of_piece(const World& world, const Contact& contact);
 
 /// Brings the gap and normal of a contact with a piece up to the present positions.

@@ -112,8 +112,8 @@ struct Cable {
   double half_width = 0.05;  ///< m, > 0
   bool closed = false;
   bool creep = false;  ///< elastic: rims carry it over as stretched as it came on (creep.h)
-  bool rod = false;    ///< bears force both ways, and nothing hits it: between nodes, and joints
-  bool piece = false;  ///< between nodes, by spread_nodes: nothing hits it
+  bool rod = false;    ///< bears force both ways: between nodes, and joints, which nothing hits
+  bool piece = false;  ///< between nodes, by spread_nodes
   Joint joint = Joint::none;
   Attachment start, end;  ///< unused when closed
   std::vector<Wrap> wraps;

@@ -75,7 +75,8 @@ inline bool yields(const CableState& cable) {
   return cable.least_gap < 2.0 * cable.half_width;
 }
 
-/// Whether bodies pass through it: a piece between nodes, or a joint.
+/// Whether it never comes to run over a body: a joint; or a piece between nodes, which bodies touch
+/// (pieces.h).
 inline bool is_passed(const CableState& cable) {
   return cable.rod || cable.piece || cable.joint != Joint::none;
 }

@@ -38,6 +38,7 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
     }
   }
   leave_out_apart(scene, broad.body_pairs);
+  list_pieces(world, broad);
   find_piece_pairs(world, broad);
 }
 

@@ -265,54 +265,105 @@ void include(const Box& other, Box& box) {
 }
 
 /// Where a piece may be within the next step: between its ends, which bodies' boxes hold.
-Box piece_box(const BroadPhase& broad, const CableState& piece) {
-  const Vec2 thick = Vec2::Constant(piece.half_width);
-  const auto box_of = [&](const Link& end) -> Box {
-    if (end.body < 0) return {end.offset - thick, end.offset + thick};
-    const Vec2 reach = thick + Vec2::Constant(end.offset.norm());
-    const Box& body = at(broad.boxes, end.body);
-    return {body.low - reach, body.high + reach};
-  };
-  Box box = box_of(piece.links[0]);
-  include(box_of(piece.links[1]), box);
+Box piece_box(const BroadPhase& broad, const PieceEnds& piece) {
+  Box box{Vec2::Constant(infinity), Vec2::Constant(-infinity)};
+  for (const std::size_t end : {0U, 1U}) {
+    const Vec2 reach = Vec2::Constant(piece.reach[end]);
+    const int body = piece.body[end];
+    const Box& own = body >= 0 ? at(broad.boxes, body) : Box{piece.point[end], piece.point[end]};
+    include({own.low - reach, own.high + reach}, box);
+  }
   return box;
+}
+
+/// Lists what pieces meet that may be in a box.
+void list_near_pieces(const World& world, const Box& box, BroadPhase& broad) {
+  broad.near_pieces.clear();
+  const auto add = [&broad](int b) {
+    if (at(broad.meets_pieces, b)) broad.near_pieces.push_back(b);
+  };
+  if (world.configuration.detection == Detection::sweep) {
+    visit_overlapping(broad, box, add);
+  } else {
+    for (int b = 0; index(b) < world.bodies.size(); ++b) add(b);
+  }
+  for (int w = 0; index(w) < world.obstacles.size(); ++w) {
+    const Obstacle& wall = at(world.obstacles, w);
+    for (const std::size_t end : {0U, 1U}) {
+      const Vec2& tip = end == 0 ? wall.a : wall.b;
+      if (wall.tips[end] != Tipped::own || !overlap(box, {tip, tip}, 0) ||
+          !overlap(box, {tip, tip}, 1)) {
+        continue;
+      }
+      broad.near_pieces.push_back(-1 - w);
+      break;
+    }
+  }
+}
+
+/// Appends what is near and in a piece's way.
+void append_piece_pairs(const World& world, const PieceEnds& piece, const Box& box,
+                        BroadPhase& broad) {
+  for (const int near : broad.near_pieces) {
+    const int body = std::max(near, -1), wall = near < 0 ? -1 - near : -1;
+    if (body >= 0) {
+      const Box& other = at(broad.boxes, body);
+      if (!overlap(box, other, 0) || !overlap(box, other, 1)) continue;
+    }
+    if (!meets_piece(world, piece.cable, body, wall)) continue;
+    const int a = body >= 0 ? std::min(piece.node, body) : piece.node;
+    const int b = body >= 0 ? std::max(piece.node, body) : -1;
+    broad.piece_pairs.push_back({a, b, piece.cable, body, wall});
+  }
 }
 
 }  // namespace
 
-void find_piece_pairs(const World& world, BroadPhase& broad) {
-  broad.piece_pairs.clear();
+void list_pieces(const World& world, BroadPhase& broad) {
+  broad.pieces.clear();
+  broad.meets_pieces.clear();
   if (world.pieces_at.empty()) return;
+  for (const BodyProperties& body : world.bodies) broad.meets_pieces.push_back(meets_spans(body));
   for (int c = 0; index(c) < world.cables.size(); ++c) {
-    const CableState& piece = at(world.cables, c);
-    if (!piece.piece || is_dormant(piece)) continue;
-    const int node = node_of_piece(world, c);
-    if (node < 0) continue;
-    const Box box = piece_box(broad, piece);
-    for (int b = 0; index(b) < world.bodies.size(); ++b) {
-      const Box& other = at(broad.boxes, b);
-      if (!overlap(box, other, 0) || !overlap(box, other, 1) || !meets_piece(world, c, b, -1)) {
-        continue;
-      }
-      broad.piece_pairs.push_back({std::min(node, b), std::max(node, b), c, b, -1});
+    const CableState& cable = at(world.cables, c);
+    if (!cable.piece || is_dormant(cable)) continue;
+    PieceEnds piece{c, node_of_piece(world, c), {-1, -1}, {}, {}};
+    if (piece.node < 0) continue;
+    for (const std::size_t end : {0U, 1U}) {
+      const Link& link = cable.links[end];
+      piece.body[end] = link.body;
+      piece.point[end] = link.offset;
+      piece.reach[end] = cable.half_width + (link.body >= 0 ? link.offset.norm() : 0.0);
     }
-    for (int w = 0; index(w) < world.obstacles.size(); ++w) {
-      const Obstacle& wall = at(world.obstacles, w);
-      const Vec2 thick = Vec2::Constant(wall.radius);
-      const Box reach{wall.a.cwiseMin(wall.b) - thick, wall.a.cwiseMax(wall.b) + thick};
-      if (wall.tips[0] != Tipped::own && wall.tips[1] != Tipped::own) continue;
-      if (!overlap(box, reach, 0) || !overlap(box, reach, 1)) continue;
-      if (meets_piece(world, c, -1, w)) broad.piece_pairs.push_back({node, -1, c, -1, w});
+    broad.pieces.push_back(piece);
+  }
+}
+
+void find_piece_pairs(const World& world, BroadPhase& broad) {
+  constexpr std::size_t at_once = 16;  // pieces that are mostly near nothing
+  broad.piece_pairs.clear();
+  std::array<Box, at_once> boxes;
+  for (std::size_t begin = 0; begin < broad.pieces.size(); begin += at_once) {
+    const std::size_t end = std::min(begin + at_once, broad.pieces.size());
+    Box all{Vec2::Constant(infinity), Vec2::Constant(-infinity)};
+    for (std::size_t i = begin; i < end; ++i) {
+      boxes[i - begin] = piece_box(broad, broad.pieces[i]);
+      include(boxes[i - begin], all);
+    }
+    list_near_pieces(world, all, broad);
+    for (std::size_t i = begin; i < end; ++i) {
+      append_piece_pairs(world, broad.pieces[i], boxes[i - begin], broad);
     }
   }
+  if (broad.pieces.empty()) return;
   std::sort(broad.piece_pairs.begin(), broad.piece_pairs.end(),
             [](const PiecePair& p, const PiecePair& q) {
               return std::tie(p.a, p.b, p.wall, p.cable) < std::tie(q.a, q.b, q.wall, q.cable);
             });
-  std::erase_if(broad.body_pairs, [&world](const BodyPair& pair) {
-    const bool first = at(world.bodies, pair.a).node, second = at(world.bodies, pair.b).node;
-    if (!first && !second) return false;
-    const int node = first ? pair.a : pair.b, body = first ? pair.b : pair.a;
+  std::erase_if(broad.body_pairs, [&](const BodyPair& pair) {
+    const bool first = at(broad.meets_pieces, pair.a), second = at(broad.meets_pieces, pair.b);
+    if (first && second) return false;
+    const int node = first ? pair.b : pair.a, body = first ? pair.a : pair.b;
     return !is_polygon(at(world.bodies, body)) && is_met_by_pieces(world, node, body, -1);
   });
 }
@@ -330,6 +381,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   BroadPhase& broad = work.broad_phase;
   const std::size_t count = world.bodies.size();
   if (boxes_hold(scene, world, work)) return;
+  if (broad.boxes.size() != count) list_pieces(world, broad);
   broad.cables = world.cables.size();
   broad.bodies_changed = true;
   broad.body_pairs.clear();

@@ -3,6 +3,7 @@
 // Which bodies, and which spans and bodies, may touch: boxes swept along the scene's longer axis.
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -24,6 +25,13 @@ struct PiecePair {
   int a, b;  // its node and the body, a < b; or the node and -1
   int cable;
   int body, wall;  // one of them; the other is -1
+};
+/// What boxes of a piece are made of.
+struct PieceEnds {
+  int cable, node;              // as above
+  std::array<int, 2> body;      // that holds an end, or -1
+  std::array<Vec2, 2> point;    // m, there, in the world
+  std::array<double, 2> reach;  // m, of the piece from the body's box, or from that point
 };
 struct SpanPair {
   int cable, segment, body;
@@ -56,6 +64,9 @@ struct BroadPhase {
   std::vector<BodyPair> body_pairs;    // sorted
   std::vector<WallPair> wall_pairs;    // sorted
   std::vector<PiecePair> piece_pairs;  // sorted
+  std::vector<PieceEnds> pieces;       // that are awake: while `boxes` are those of a world
+  std::vector<int> near_pieces;        // bodies and, as -1 - wall, walls: of find_piece_pairs
+  std::vector<char> meets_pieces;      // of each body, likewise
   std::vector<SpanPair> span_pairs;    // sorted, unless patched
   std::vector<SpanList> of_cable;
   std::vector<int> last_of_body;  // the last of span_pairs with each body, or -1
@@ -105,6 +116,9 @@ void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs);
 /// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
 /// step, with `skin` (m) more round those that can move.
 void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes);
+
+/// Lists the pieces of hanging cables that are awake.
+void list_pieces(const World& world, BroadPhase& broad);
 
 /// Lists what pieces of hanging cables may touch by the bodies' boxes, and takes away the pairs of
 /// their nodes with discs, which they meet for them.

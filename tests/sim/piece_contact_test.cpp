@@ -201,8 +201,8 @@ Slide slide(int nodes, int steps) {
   return result;
 }
 
-// Past all nodes as along a straight line, but for what the cable gives: it bends by W / T = 5e-4 at
-// the bead, which falls by up to 0.25 mm as it starts, and strikes the next piece at that angle.
+// Past all nodes as along a straight line, but for what the cable gives: it bends by W / T = 5e-4
+// at the bead, which falls by up to 0.25 mm as it starts, and strikes the next piece at that angle.
 TEST(PieceContact, ABeadSlidesAlongATautCable) {
   const double slope = 0.4 / std::hypot(2.0, 0.4), t = 0.8;
   for (const int steps : {1, 4, 16}) {

@@ -11,9 +11,9 @@
 
 namespace pinchlab::testing {
 
-/// One to three bodies smaller than the pieces of a hanging cable that fall on to it: discs, or with
-/// `polygons` these too, of any friction, bouncing or not. In some of them the cable falls on to the
-/// free end of a wall as well, or adapts its nodes.
+/// One to three bodies, mostly smaller than the pieces of a hanging cable, that fall on to it:
+/// discs, or with `polygons` these too, of any friction, bouncing or not. In some a wall ends below
+/// the cable, or its number of nodes adapts.
 inline Scene random_on_pieces(int seed, bool polygons) {
   Random random(static_cast<unsigned>(seed) + 7000U);
   const auto uniform = [&](double low, double high) { return random.uniform(low, high); };
