@@ -98,6 +98,27 @@ void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double ra
   world.contacts.push_back(contact);
 }
 
+/// Appends the contacts of bodies and walls; returns how many were kept.
+std::size_t add_contacts_of_walls(const Scene& scene, World& world, const Workspace& work,
+                                  const std::vector<Contact>& old) {
+  std::size_t kept = 0;
+  Kept old_of_walls(old);
+  for (const WallPair& pair : work.broad_phase.wall_pairs) {
+    if (!may_change_gaps(at(world.bodies, pair.body))) continue;
+    if (is_still(work.parts, pair.body)) {
+      kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
+      continue;
+    }
+    const Obstacle& obstacle = at(world.obstacles, pair.wall);
+    const Vec2& x = at(world.position, pair.body);
+    const Vec2 d = nearest_on_line(obstacle.a, obstacle.b, x) - x;
+    const double radius = at(world.bodies, pair.body).radius;
+    const double most = reach(scene, world, speed_of(world, pair.body), radius);
+    add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
+  }
+  return kept;
+}
+
 /// Greatest speed of a piece's ends (m/s).
 double speed_of_piece(const World& world, const CableState& piece) {
   return std::max(velocity_of(world, piece.links[0]).norm(),
@@ -189,7 +210,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   }
   std::size_t kept = 0;
   const double width = full_width(world);
-  Kept old_pairs(old), old_of_walls(old);
+  Kept old_pairs(old);
   Neighbourhoods& near = work.neighbourhoods;
   for (const BodyPair& pair : broad.body_pairs) {
     if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
@@ -209,19 +230,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     }
     add_contacts(world, pair.a, pair.b, -1, d, a + b, most);
   }
-  for (const WallPair& pair : broad.wall_pairs) {
-    if (!may_change_gaps(at(world.bodies, pair.body))) continue;
-    if (is_still(work.parts, pair.body)) {
-      kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
-      continue;
-    }
-    const Obstacle& obstacle = at(world.obstacles, pair.wall);
-    const Vec2& x = at(world.position, pair.body);
-    const Vec2 d = nearest_on_line(obstacle.a, obstacle.b, x) - x;
-    const double radius = at(world.bodies, pair.body).radius;
-    const double most = reach(scene, world, speed_of(world, pair.body), radius);
-    add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
-  }
+  kept += add_contacts_of_walls(scene, world, work, old);
   if (!world.pieces_at.empty()) {
     for (Contact& contact : world.contacts) contact.away = is_left_to_pieces(world, contact);
     kept += add_contacts_of_pieces(scene, world, work, old);

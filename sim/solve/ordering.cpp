@@ -11,20 +11,25 @@ namespace pinchlab {
 
 namespace {
 
-/// The bodies of a row that it couples with other rows, or -1.
-std::array<int, 3> coupled(const PartSystem& s, std::size_t r) {
+/// The bodies of a row that it couples with other rows, or -1; where none has a third, two.
+template <std::size_t most>
+std::array<int, most> coupled(const PartSystem& s, std::size_t r) {
   const RowBodies& row = s.bodies[r];
-  const ThirdBody* third = third_of(s, r);
-  return {at(s.mobile, row.a) ? row.a : -1, at(s.mobile, row.b) ? row.b : -1,
-          third && at(s.mobile, third->place) ? third->place : -1};
+  std::array<int, most> bodies{at(s.mobile, row.a) ? row.a : -1, at(s.mobile, row.b) ? row.b : -1};
+  if constexpr (most > 2) {
+    const ThirdBody* third = third_of(s, r);
+    bodies[2] = third && at(s.mobile, third->place) ? third->place : -1;
+  }
+  return bodies;
 }
 
+template <std::size_t most>
 void list_rows_of_bodies(const PartSystem& s, OrderScratch& scratch) {
   auto& lists = scratch.rows_of_body;
   lists.begin.assign(s.mobility.size() + 1, 0);
   const auto each = [&s](auto&& visit) {
     for (std::size_t r = 0; r < s.rows.size(); ++r) {
-      for (const int body : coupled(s, r)) {
+      for (const int body : coupled<most>(s, r)) {
         if (body >= 0) visit(body, static_cast<int>(r));
       }
     }
@@ -37,12 +42,13 @@ void list_rows_of_bodies(const PartSystem& s, OrderScratch& scratch) {
 }
 
 /// Breadth-first order of the rows coupled with `start`, appended to `order`; neighbours by degree.
+template <std::size_t most>
 void breadth_first(const PartSystem& s, OrderScratch& scratch, int start, int stamp,
                    std::vector<int>& order) {
   const Lists<int>& lists = scratch.rows_of_body;
   const auto degree = [&](int row) {
     int sum = 0;
-    for (const int body : coupled(s, index(row))) {
+    for (const int body : coupled<most>(s, index(row))) {
       if (body >= 0) sum += at(lists.begin, body + 1) - at(lists.begin, body);
     }
     return sum;
@@ -52,7 +58,7 @@ void breadth_first(const PartSystem& s, OrderScratch& scratch, int start, int st
   at(scratch.row_stamp, start) = stamp;
   for (; head < order.size(); ++head) {
     const std::size_t pushed = order.size();
-    for (const int body : coupled(s, index(order[head]))) {
+    for (const int body : coupled<most>(s, index(order[head]))) {
       if (body < 0 || at(scratch.body_stamp, body) == stamp) continue;
       at(scratch.body_stamp, body) = stamp;
       for (int k = at(lists.begin, body); k < at(lists.begin, body + 1); ++k) {
@@ -71,9 +77,10 @@ void breadth_first(const PartSystem& s, OrderScratch& scratch, int start, int st
 
 /// Each connected group of rows is walked once from any row, to find a far end, and once from
 /// there.
+template <std::size_t most>
 void find_order(PartSystem& s, OrderScratch& scratch) {
   const std::size_t rows = s.rows.size();
-  list_rows_of_bodies(s, scratch);
+  list_rows_of_bodies<most>(s, scratch);
   scratch.row_stamp.assign(rows, 0);
   scratch.body_stamp.assign(s.mobility.size(), 0);
   s.order.clear();
@@ -81,10 +88,10 @@ void find_order(PartSystem& s, OrderScratch& scratch) {
   for (std::size_t r = 0; r < rows; ++r) {
     if (scratch.row_stamp[r] != 0) continue;
     const std::size_t begin = s.order.size();
-    breadth_first(s, scratch, static_cast<int>(r), stamp++, s.order);
+    breadth_first<most>(s, scratch, static_cast<int>(r), stamp++, s.order);
     const int far_end = s.order.back();
     s.order.resize(begin);
-    breadth_first(s, scratch, far_end, stamp++, s.order);
+    breadth_first<most>(s, scratch, far_end, stamp++, s.order);
   }
   std::reverse(s.order.begin(), s.order.end());
 }
@@ -95,7 +102,7 @@ bool order_stands(const PartSystem& s) {
   if (s.structure.size() != 2 * (rows + thirds)) return false;
   if (s.same_rows) return true;
   for (std::size_t r = 0; r < rows; ++r) {
-    const auto [a, b, third] = coupled(s, r);
+    const auto [a, b] = coupled<2>(s, r);
     if (s.structure[2 * r] != a || s.structure[2 * r + 1] != b) return false;
   }
   for (std::size_t k = 0; k < thirds; ++k) {
@@ -112,7 +119,7 @@ void order_rows(PartSystem& s, OrderScratch& scratch) {
   s.structure.clear();
   s.assembled.clear();
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const auto [a, b, third] = coupled(s, r);
+    const auto [a, b] = coupled<2>(s, r);
     s.structure.push_back(a);
     s.structure.push_back(b);
   }
@@ -120,7 +127,11 @@ void order_rows(PartSystem& s, OrderScratch& scratch) {
     s.structure.push_back(third.row);
     s.structure.push_back(third.place);
   }
-  find_order(s, scratch);
+  if (s.thirds.empty()) {
+    find_order<2>(s, scratch);
+  } else {
+    find_order<3>(s, scratch);
+  }
 }
 
 }  // namespace pinchlab
