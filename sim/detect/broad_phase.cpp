@@ -282,10 +282,14 @@ void list_near_pieces(const World& world, const Box& box, BroadPhase& broad) {
   const auto add = [&broad](int b) {
     if (at(broad.meets_pieces, b)) broad.near_pieces.push_back(b);
   };
-  if (world.configuration.detection == Detection::sweep) {
+  constexpr std::size_t few = 64;  // which are sooner looked at than found among the nodes
+  if (broad.no_nodes.size() > few && world.configuration.detection == Detection::sweep) {
     visit_overlapping(broad, box, add);
   } else {
-    for (int b = 0; index(b) < world.bodies.size(); ++b) add(b);
+    for (const int b : broad.no_nodes) {
+      const Box& other = at(broad.boxes, b);
+      if (overlap(box, other, 0) && overlap(box, other, 1)) broad.near_pieces.push_back(b);
+    }
   }
   for (int w = 0; index(w) < world.obstacles.size(); ++w) {
     const Obstacle& wall = at(world.obstacles, w);
@@ -322,8 +326,12 @@ void append_piece_pairs(const World& world, const PieceEnds& piece, const Box& b
 void list_pieces(const World& world, BroadPhase& broad) {
   broad.pieces.clear();
   broad.meets_pieces.clear();
+  broad.no_nodes.clear();
   if (world.pieces_at.empty()) return;
-  for (const BodyProperties& body : world.bodies) broad.meets_pieces.push_back(meets_spans(body));
+  for (int b = 0; index(b) < world.bodies.size(); ++b) {
+    broad.meets_pieces.push_back(meets_spans(at(world.bodies, b)));
+    if (broad.meets_pieces.back()) broad.no_nodes.push_back(b);
+  }
   for (int c = 0; index(c) < world.cables.size(); ++c) {
     const CableState& cable = at(world.cables, c);
     if (!cable.piece || is_dormant(cable)) continue;

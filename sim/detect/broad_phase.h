@@ -66,6 +66,7 @@ struct BroadPhase {
   std::vector<PiecePair> piece_pairs;  // sorted
   std::vector<PieceEnds> pieces;       // that are awake: while `boxes` are those of a world
   std::vector<int> near_pieces;        // bodies and, as -1 - wall, walls: of find_piece_pairs
+  std::vector<int> no_nodes;           // bodies that pieces may meet, likewise
   std::vector<char> meets_pieces;      // of each body, likewise
   std::vector<SpanPair> span_pairs;    // sorted, unless patched
   std::vector<SpanList> of_cable;
