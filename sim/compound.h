@@ -53,4 +53,9 @@ inline Vec2 seat_of(const World& world, int body) {
 /// Places shapes (of `carried`), and sets their velocities, by the bodies that carry them.
 void carry(World& world, std::span<const int> carried);
 
+/// What the body turns about where nothing holds it (m).
+inline const Vec2& pivot_of(const World& world, int body) {
+  return at(world.position, mover_of(world, body));
+}
+
 }  // namespace pinchlab

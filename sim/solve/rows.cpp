@@ -8,7 +8,7 @@
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
-#include "sim/pieces.h"
+#include "sim/solve/contact_bodies.h"
 #include "sim/solve/elastic.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/rubbing.h"
@@ -34,12 +34,6 @@ void weigh(PartSystem& s, int r) {
   at(s.rows, r).diagonal += third.j.dot(third.response);
 }
 
-/// A body's place in its part; static bodies and the world (-1) share the one after the last.
-int place_of(const Parts& parts, const PartSystem& system, int body) {
-  const int local = body >= 0 ? at(parts.local, body) : -1;
-  return local >= 0 ? local : system.ground();
-}
-
 /// The sleeve's that the link of a cable is part of, or else `body`.
 int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link, int body) {
   const int sleeve = sleeve_at(world, s.listed_sleeves, cable, link);
@@ -48,11 +42,6 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
 
 bool has_fixed_lever(const World& world, const Link& link) {
   return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
-}
-
-/// What the body turns about where nothing holds it (m).
-const Vec2& pivot_of(const World& world, int body) {
-  return at(world.position, mover_of(world, body));
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
@@ -153,76 +142,6 @@ void turn_to_centre_line(const World& world, const Link& from, const Link& to,
   set_clearance(std::max(segment.rest_length, 0.0) - overlap, interval, row);
 }
 
-/// The radius (m) of the layers that a contact presses, `later` s from now.
-double radius_of_layers(const World& world, const Link& drum, double later) {
-  const double turning = at(world.angular_velocity, drum.body);
-  return drum.radius - later * drum.layers.way * drum.orientation * drum.layers.growth * turning;
-}
-
-/// Levers of a row's forces where a contact's surfaces meet, on bodies one of which is a polygon.
-void set_levers(const World& world, const Contact& contact, RowBodies& bodies) {
-  Vec2 point = meeting_of(world, contact).point;
-  if (contact.layers_cable >= 0) {  // on the centre line of the outermost
-    const Link& drum = pressed_layers(world, contact);
-    const double way = drum.body == contact.a ? 1.0 : -1.0;
-    point = at(world.position, drum.body) + way * drum.radius * contact.normal;
-  }
-  bodies.ja.z() = cross(point - pivot_of(world, contact.a), bodies.ja.head<2>());
-  if (contact.b < 0) return;
-  bodies.jb.z() = cross(point - pivot_of(world, contact.b), bodies.jb.head<2>());
-}
-
-/// Levers about what carries a shape, from those about the shape's own centre.
-void add_seats(const World& world, const Contact& contact, RowBodies& bodies) {
-  if (world.carried.empty()) return;
-  bodies.ja.z() += cross(seat_of(world, contact.a), bodies.ja.head<2>());
-  if (contact.b >= 0) bodies.jb.z() += cross(seat_of(world, contact.b), bodies.jb.head<2>());
-}
-
-/// What the row of a contact with a piece sees of an end of it, of which it has that share, where
-/// the force along `e` acts `off` (m) to the right of the piece's line.
-Eigen::Vector3d sight_of_end(const World& world, const Link& end, const Vec2& e, double off,
-                             double share) {
-  if (end.body < 0) return Eigen::Vector3d::Zero();
-  const bool is_node = at(world.bodies, end.body).node;
-  const double lever =
-      is_node ? off : cross(link_centre(world, end) - pivot_of(world, end.body), e);
-  return share * Eigen::Vector3d(e.x(), e.y(), lever);
-}
-
-/// The three bodies of the row of a contact with a piece: across it, or with `along` of friction,
-/// whose forces both act at one point, as those of other contacts do.
-void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,
-                         PartSystem& s, int r) {
-  const Foot foot = foot_of(world, contact);
-  const CableState& piece = at(world.cables, foot.cable);
-  const int touching = body_at_piece(world, contact);
-  const Vec2 e = along ? left(foot.way) : foot.way;
-  const double reach = 1.0 + foot.gap / (foot.radius + piece.half_width);
-  RowBodies& bodies = at(s.bodies, r);
-  bodies.a = place_of(parts, s, touching);
-  if (touching >= 0) {
-    const double about = cross(foot.place - pivot_of(world, touching), -e);
-    bodies.ja = {-e.x(), -e.y(), about - (along ? reach * foot.radius : 0.0)};
-  }
-  const double off = along ? -reach * piece.half_width : 0.0;
-  const Link &tail = piece.links[0], &head = piece.links[1];
-  const Eigen::Vector3d of_tail = sight_of_end(world, tail, e, off, 1.0 - foot.share);
-  const Eigen::Vector3d of_head = sight_of_end(world, head, e, off, foot.share);
-  const int at_tail = place_of(parts, s, tail.body), at_head = place_of(parts, s, head.body);
-  const bool is_one = at_tail == at_head || at_head == s.ground();
-  bodies.b = is_one || at_tail != s.ground() ? at_tail : at_head;
-  bodies.jb = at_tail == s.ground() ? of_head : of_tail;
-  if (at_tail == at_head) bodies.jb = of_tail + of_head;
-  if (!is_one && at_tail != s.ground()) {
-    at(s.rows, r).has_third = true;
-    at(s.rows, r).item = static_cast<int>(s.thirds.size());
-    s.thirds.push_back({r, at_head, of_head, Eigen::Vector3d::Zero()});
-  }
-  at(s.responses, r).a = bodies.a;
-  at(s.responses, r).b = bodies.b;
-}
-
 void set_normal_row(const Scene& scene, const World& world, const Contact& contact,
                     const TimeSpan& interval, RowBodies& bodies, Row& row) {
   const Vec2& n = contact.normal;
@@ -266,35 +185,6 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
     row.bias = restitution * speed;
     row.rebounds = true;
   }
-}
-
-/// Both forces of bare friction act at one point, a share of the gap off the surfaces, so that they
-/// have no moment.
-void set_tangent_bodies(const World& world, const Contact& contact, const TimeSpan& interval,
-                        RowBodies& bodies) {
-  const Vec2 t = left(contact.normal);
-  if (contact.touch != Touch::circles) {
-    bodies.ja = {-t.x(), -t.y(), 0.0};
-    bodies.jb = {t.x(), t.y(), 0.0};
-    set_levers(world, contact, bodies);
-    return;
-  }
-  const double radius_a = at(world.bodies, contact.a).radius;
-  const double radius_b = contact.b >= 0 ? at(world.bodies, contact.b).radius : 0.0;
-  const double radii = radius_a + radius_b;
-  const double reach = (radii + contact.gap) / radii;
-  double lever_a = radius_a * reach, lever_b = radius_b * reach;
-  if (contact.layers_cable >= 0) {  // at the centre line of the outermost, in the interval's middle
-    const Link& drum = pressed_layers(world, contact);
-    const bool is_a = drum.body == contact.a;
-    const double radius = radius_of_layers(world, drum, 0.5 * interval.length);
-    const double other = radii + contact.gap - drum.radius;
-    lever_a = is_a ? radius : other;
-    lever_b = is_a ? other : radius;
-  }
-  bodies.ja = {-t.x(), -t.y(), -lever_a};
-  bodies.jb = {t.x(), t.y(), -lever_b};
-  add_seats(world, contact, bodies);
 }
 
 /// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that
@@ -457,6 +347,11 @@ void place_segment_row(const World& world, const CableState& cable, const Segmen
 }
 
 }  // namespace
+
+int place_of(const Parts& parts, const PartSystem& system, int body) {
+  const int local = body >= 0 ? at(parts.local, body) : -1;
+  return local >= 0 ? local : system.ground();
+}
 
 double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
   if (body < 0) return 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Constraint rows: one scalar condition on the velocities of at most two bodies each.
+// Constraint rows: one scalar condition on the velocities of two bodies each, or three
+// (contact_bodies.h).
 
 #include "sim/solve/part_system.h"
 #include "sim/stages.h"
@@ -11,6 +12,9 @@ struct Parts;
 struct Part;
 struct SolveScratch;
 struct World;
+
+/// A body's place in its part; static bodies and the world (-1) share the one after the last.
+int place_of(const Parts& parts, const PartSystem& system, int body);
 
 /// Restitution of two bodies, or of a body and a wall: the greater of the two, so that who asks for
 /// a rebound gets it.

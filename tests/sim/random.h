@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -14,6 +15,10 @@ class Random {
   /// In [low, high).
   double uniform(double low, double high) {
     return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
+  }
+  /// Likewise, its logarithm uniform.
+  double spread(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
   }
   /// 0 to count - 1, each as often.
   int below(int count) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cmath>
-
 #include "demos/scenes/build.h"
 #include "sim/nodes.h"
 #include "tests/sim/random.h"
@@ -38,9 +36,6 @@ inline Scene load_on_cable(const Load& load) {
 inline Scene random_load(int seed) {
   Random random(static_cast<unsigned>(seed));
   const auto uniform = [&](double low, double high) { return random.uniform(low, high); };
-  const auto spread = [&](double low, double high) {
-    return std::exp(uniform(std::log(low), std::log(high)));
-  };
   Scene scene;
   const double friction = random.below(2) * uniform(0.1, 0.8);
   const double restitution = random.below(3) == 0 ? uniform(0.1, 0.8) : 0.0;
@@ -50,7 +45,7 @@ inline Scene random_load(int seed) {
     double x = uniform(-0.6, 0.6);
     if (bodies == 2) x = 0.2 * x + (i == 0 ? -0.35 : 0.35);
     Body body = build::body(i == 0 ? "load" : "other", BodyKind::free, x, uniform(0.4, 1.2), radius,
-                            spread(0.3, 50.0));
+                            random.spread(0.3, 50.0));
     body.velocity = {uniform(-1.0, 1.0), uniform(-5.0, 1.0)};
     body.contact_friction = friction;
     body.restitution = restitution;
@@ -58,13 +53,13 @@ inline Scene random_load(int seed) {
   }
   const double half = uniform(0.8, 1.2);
   Cable cable = build::cable(build::at(-half, uniform(-0.2, 0.2)), {}, build::at(half, 0.0), 0.015);
-  cable.slack = spread(0.03, 0.8);
-  cable.mass_per_metre = spread(0.1, 3.0);
+  cable.slack = random.spread(0.03, 0.8);
+  cable.mass_per_metre = random.spread(0.1, 3.0);
   cable.contact_friction = friction;
   const int kind = random.below(4);
   if (kind == 1) cable.nodes = 5 + random.below(26);
   if (kind >= 2) cable.nodes = kind == 2 ? 15 : 31;
-  if (kind == 3) cable.node_tolerance = spread(1e-3, 1e-2);
+  if (kind == 3) cable.node_tolerance = random.spread(1e-3, 1e-2);
   scene.cables.push_back(cable);
   spread_nodes(scene);
   return scene;

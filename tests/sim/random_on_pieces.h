@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cmath>
 #include <string>
 
 #include "demos/scenes/build.h"
@@ -17,9 +16,6 @@ namespace pinchlab::testing {
 inline Scene random_on_pieces(int seed, bool polygons) {
   Random random(static_cast<unsigned>(seed) + 7000U);
   const auto uniform = [&](double low, double high) { return random.uniform(low, high); };
-  const auto spread = [&](double low, double high) {
-    return std::exp(uniform(std::log(low), std::log(high)));
-  };
   Scene scene;
   const double friction = random.below(2) * uniform(0.1, 0.8);
   const double restitution = random.below(3) == 0 ? uniform(0.1, 0.8) : 0.0;
@@ -27,7 +23,7 @@ inline Scene random_on_pieces(int seed, bool polygons) {
   for (int i = 0; i < bodies; ++i) {
     const double radius = uniform(0.015, 0.05);
     Body body = build::body("body " + std::to_string(i), BodyKind::free, uniform(-0.4, 0.4),
-                            0.3 + 0.15 * i, radius, spread(0.05, 3.0));
+                            0.3 + 0.15 * i, radius, random.spread(0.05, 3.0));
     if (polygons && random.below(2) == 0) {
       std::vector<Vec2> corners;
       const int count = 3 + random.below(3);
@@ -44,13 +40,13 @@ inline Scene random_on_pieces(int seed, bool polygons) {
     scene.bodies.push_back(body);
   }
   Cable cable = build::cable(build::at(-0.6, uniform(-0.1, 0.1)), {}, build::at(0.6, 0.0), 0.01);
-  cable.slack = spread(0.03, 0.4);
-  cable.mass_per_metre = spread(0.1, 3.0);
+  cable.slack = random.spread(0.03, 0.4);
+  cable.mass_per_metre = random.spread(0.1, 3.0);
   cable.contact_friction = friction;
   cable.nodes = 3 + random.below(8);
   if (random.below(4) == 0) {
     cable.nodes = 7;
-    cable.node_tolerance = spread(1e-3, 1e-2);
+    cable.node_tolerance = random.spread(1e-3, 1e-2);
   }
   scene.cables.push_back(cable);
   if (random.below(3) == 0) {
