@@ -237,7 +237,41 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable) {
   update_rolled_cable<false>(world, cable);
 }
 
+namespace {
+
+/// Where a segment that has moved was when the interval begins.
+void begin_segment(Segment& segment) {
+  if (!segment.moved) return;
+  segment.previous_tail = segment.tail;
+  segment.previous_head = segment.head;
+  segment.moved = false;
+  segment.was_pinched = segment.pinched;
+}
+
+/// Of a rod, which is straight from end to end and has all of its material there.
+bool update_rod(const World& world, CableState& cable, bool begins) {
+  const Link &from = cable.links[0], &to = cable.links[1];
+  Segment& segment = cable.segments[1];
+  if (begins) begin_segment(segment);
+  const Vec2 a = link_centre(world, from), b = link_centre(world, to);
+  if (a != segment.tail_centre || b != segment.head_centre) {
+    const Tangent t = common_tangent(a, 0.0, b, 0.0);
+    segment.moved = true;
+    segment.tail = segment.tail_centre = a;
+    segment.head = segment.head_centre = b;
+    segment.direction = t.direction;
+    segment.length = t.length;
+    segment.alpha = unwrapped(heading(t.direction), segment.alpha);
+  }
+  segment.rest_length = to.material - from.material;
+  cable.finite = 0.0 * (segment.length + segment.rest_length + segment.tension) == 0.0;
+  return segment.moved;
+}
+
+}  // namespace
+
 bool update_cable(const World& world, CableState& cable, bool begins, bool known) {
+  if (cable.rod && cable.rims.empty()) return update_rod(world, cable, begins);
   if (known && cable.stands) {
     update_rolled_cable<true>(world, cable);
     return false;
@@ -250,12 +284,7 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
   for (std::size_t i = first; i < count; ++i) {
     Segment& segment = cable.segments[i];
     const Link* to = &cable.links[i];
-    if (begins && segment.moved) {
-      segment.previous_tail = segment.tail;
-      segment.previous_head = segment.head;
-      segment.moved = false;
-      segment.was_pinched = segment.pinched;
-    }
+    if (begins) begin_segment(segment);
     const bool still = from->still && to->still;
     all_still = all_still && still;
     if (!(still && still_stands) && (fills || link_centre(world, *from) != segment.tail_centre ||

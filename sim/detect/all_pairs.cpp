@@ -20,7 +20,7 @@ void find_all_body_pairs(const Scene& scene, const World& world, Workspace& work
   BroadPhase& broad = work.broad_phase;
   broad.body_pairs.clear();
   broad.wall_pairs.clear();
-  update_boxes(scene, world, 0.0, broad.boxes);
+  update_boxes(scene, world, {}, broad.boxes);
   const int count = static_cast<int>(world.bodies.size());
   const int walls = static_cast<int>(world.obstacles.size());
   for (int a = 0; a < count; ++a) {

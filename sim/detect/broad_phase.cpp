@@ -19,6 +19,10 @@ namespace {
 /// are few more than needed.
 constexpr double skin_share = 0.2;
 
+/// The skin of nodes in steps of their mean speed. Their radii say nothing: nodes are as thin as
+/// their cable, and swing.
+constexpr double steps_of_nodes = 8.0;
+
 /// What all bodies of a scene reach beyond their radii.
 struct Margin {
   double widest = 0.0;  // m, half width of the widest cable
@@ -63,6 +67,23 @@ bool comes_before(const SpanPair& p, const SpanPair& q) {
 bool holds(const Box& box, const Vec2& point, double reach) {
   return point.x() - reach >= box.low.x() && point.x() + reach <= box.high.x() &&
          point.y() - reach >= box.low.y() && point.y() + reach <= box.high.y();
+}
+
+Skin skin_for(const World& world) {
+  double radii = 0.0, speeds = 0.0;
+  int nodes = 0;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    radii += world.bodies[b].radius;
+    if (!world.bodies[b].node) continue;
+    speeds += world.velocity[b].norm();
+    ++nodes;
+  }
+  Skin skin;
+  skin.bodies = skin.nodes = skin_share * radii / static_cast<double>(world.bodies.size());
+  if (nodes > 0) {
+    skin.nodes = std::max(skin.nodes, steps_of_nodes * world.step_length * speeds / nodes);
+  }
+  return skin;
 }
 
 /// Sweeps along the axis in which the scene is longer; the order is nearly that of the last time.
@@ -151,16 +172,17 @@ void list_spans_of(const World& world, std::size_t c, BroadPhase& broad) {
   SpanList& list = broad.of_cable[c];
   list.changes = cable.changes;
   list.first_box = static_cast<int>(broad.span_boxes.size());
-  list.begin = static_cast<int>(broad.span_pairs.size());
+  list.begin = list.end = static_cast<int>(broad.span_pairs.size());
+  if (is_passed(cable)) return;
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
     const Segment& segment = cable.segments[s];
     Box box = span_box(segment);
-    box.low -= Vec2::Constant(broad.skin);
-    box.high += Vec2::Constant(broad.skin);
+    box.low -= Vec2::Constant(broad.skin.bodies);
+    box.high += Vec2::Constant(broad.skin.bodies);
     broad.span_boxes.push_back(box);
     const Link& to = cable.links[s];
     const Link& from = cable.links[index(previous_link(cable, static_cast<int>(s)))];
-    if (is_passed(cable) || is_side(from, to)) continue;
+    if (is_side(from, to)) continue;
     const auto first = static_cast<std::ptrdiff_t>(broad.span_pairs.size());
     visit_overlapping(broad, box, [&](int body) {
       if (!meets_spans(at(world.bodies, body))) return;
@@ -192,6 +214,7 @@ void list_span_pairs(const World& world, BroadPhase& broad) {
 /// checked then.
 bool spans_in_boxes(const World& world, const BroadPhase& broad, std::size_t c) {
   const CableState& cable = world.cables[c];
+  if (is_passed(cable)) return true;
   auto box = index(broad.of_cable[c].first_box);
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s, ++box) {
     const Segment& segment = cable.segments[s];
@@ -247,12 +270,14 @@ void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs) {
   });
 }
 
-void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes) {
+void update_boxes(const Scene& scene, const World& world, const Skin& skin,
+                  std::vector<Box>& boxes) {
   boxes.resize(world.bodies.size());
   const Margin margin = margin_of_all(scene, world);
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const Vec2 reach =
-        Vec2::Constant(reach_of_body(world, margin, b) + (can_move(world.bodies[b]) ? skin : 0.0));
+    const BodyProperties& body = world.bodies[b];
+    const double room = !can_move(body) ? 0.0 : body.node ? skin.nodes : skin.bodies;
+    const Vec2 reach = Vec2::Constant(reach_of_body(world, margin, b) + room);
     boxes[b] = {world.position[b] - reach, world.position[b] + reach};
   }
 }
@@ -395,9 +420,7 @@ void find_body_pairs(const Scene& scene, const World& world, Workspace& work) {
   broad.body_pairs.clear();
   broad.wall_pairs.clear();
   if (count == 0) return;
-  double radii = 0.0;
-  for (const BodyProperties& body : world.bodies) radii += body.radius;
-  broad.skin = skin_share * radii / static_cast<double>(count);
+  broad.skin = skin_for(world);
   update_boxes(scene, world, broad.skin, broad.boxes);
   sort_bodies(broad);
   list_body_pairs(scene, world, broad);

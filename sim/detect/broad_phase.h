@@ -49,8 +49,14 @@ struct SpanList {
   int begin = 0, end = 0;  // of BroadPhase::span_pairs
 };
 
+/// The room that boxes leave (m).
+struct Skin {
+  double bodies = 0.0;  // round bodies and spans: a share of the bodies' mean radius
+  double nodes = 0.0;   // round nodes of cables: as far as they go in some steps
+};
+
 struct BroadPhase {
-  double skin = 0.0;            // m, the room: a share of the bodies' mean radius
+  Skin skin;
   double widest = 0.0;          // m, half width of the widest cable, that the boxes allow for
   std::vector<Box> boxes;       // of bodies: where they were, are, and may be next, and the skin
   std::vector<Box> span_boxes;  // of spans, likewise, where SpanList has them
@@ -115,8 +121,9 @@ inline bool meets_spans(const BodyProperties& body) {
 void leave_out_apart(const Scene& scene, std::vector<BodyPair>& pairs);
 
 /// Boxes of the bodies and their cables where they were a step ago, are, and may be after the next
-/// step, with `skin` (m) more round those that can move.
-void update_boxes(const Scene& scene, const World& world, double skin, std::vector<Box>& boxes);
+/// step, with a skin more round those that can move.
+void update_boxes(const Scene& scene, const World& world, const Skin& skin,
+                  std::vector<Box>& boxes);
 
 /// Lists the pieces of hanging cables that are awake.
 void list_pieces(const World& world, BroadPhase& broad);
