@@ -136,6 +136,7 @@ StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* t
   if (world.changes != changes && !check_corners(scene, world)) return StepStatus::failed;
   ++world.step;
   Stopwatch watch(times);
+  turn_pieces(work.parts, world);
   if (world.configuration.diagnostics) measure_cables(scene, world);
   mark(world, work);
   watch.lap(Stage::diagnose);

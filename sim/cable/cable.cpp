@@ -261,7 +261,7 @@ bool update_rod(const World& world, CableState& cable, bool begins) {
     segment.head = segment.head_centre = b;
     segment.direction = t.direction;
     segment.length = t.length;
-    segment.alpha = unwrapped(heading(t.direction), segment.alpha);
+    if (!cable.piece) segment.alpha = unwrapped(heading(t.direction), segment.alpha);
   }
   segment.rest_length = to.material - from.material;
   cable.finite = 0.0 * (segment.length + segment.rest_length + segment.tension) == 0.0;
@@ -297,6 +297,18 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
   update_wraps_and_rest_lengths(world, cable);
   cable.stands = all_still && !moved;
   return moved;
+}
+
+void turn_pieces(const Parts& parts, World& world) {
+  for (const Part& part : parts.list) {
+    if (!part.has_nodes) continue;
+    for (const int c : cables_of(parts, part)) {
+      CableState& cable = at(world.cables, c);
+      if (!cable.piece || !cable.segments[1].moved) continue;
+      Segment& segment = cable.segments[1];
+      segment.alpha = unwrapped(heading(segment.direction), segment.alpha);
+    }
+  }
 }
 
 void update_segments(World& world, Workspace& work) {

@@ -9,6 +9,7 @@
 
 namespace pinchlab {
 
+struct Parts;
 struct Workspace;
 
 /// Whether a link's circle lies about its body's centre.
@@ -143,6 +144,9 @@ void update_segments(World& world, Workspace& work);
 /// The same for one cable; whether it has moved. `begins`: since now; otherwise since it last
 /// began. `known`: what cannot move has not been moved by hand.
 bool update_cable(const World& world, CableState& cable, bool begins, bool known);
+
+/// Headings of pieces between nodes (Segment::alpha), which nothing asks for within a step.
+void turn_pieces(const Parts& parts, World& world);
 
 /// Tangent, direction and length of segment i alone; its angle is kept continuous.
 void update_tangent(const World& world, CableState& cable, std::size_t segment);
