@@ -108,10 +108,13 @@ struct alignas(64) CableState {
   int changes = 0;                // links inserted and removed so far
   int changed_at = 0;             // World::changes after the last of these
   int bends_with = -1;            // a piece between nodes that goes on from its end: bending.h
+  int pieces = 1;  // of a chain whose number of nodes adapts (held.h), by adapt_nodes: the
+                   // finest that it is made of; 0: dormant, part of another
   bool closed = false;
-  bool rod = false;    // bears force both ways: a piece between nodes, or a joint
-  bool piece = false;  // between nodes
-  bool fills = false;  // lies in layers on a body that holds an end of it
+  bool elastic = false;  // of finite stiffness
+  bool rod = false;      // bears force both ways: a piece between nodes, or a joint
+  bool piece = false;    // between nodes
+  bool fills = false;    // lies in layers on a body that holds an end of it
   Joint joint = Joint::none;
   // By update_wraps_and_rest_lengths, which has all at hand:
   bool unwound = false;   // a link that it rolls on has lost its wrap
@@ -125,18 +128,15 @@ struct alignas(64) CableState {
   double half_width = 0.0;  // m
   double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
   std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
-  int pieces = 1;           // of a chain whose number of nodes adapts (held.h), by adapt_nodes: the
-                            // finest that it is made of; 0: dormant, part of another
-  bool elastic = false;     // of finite stiffness
   // What few steps read.
-  double least_gap = 0.0;  // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
-                           // Method::pinch_no_contact
-  double grip = 1.0;       // factor on the friction of its pinches
-  double bend = 0.0;       // N m a rad, between it and `bends_with`
-  // Of a chain whose number of nodes adapts, by adapt_nodes:
+  double least_gap = 0.0;    // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
+                             // Method::pinch_no_contact
+  Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that a piece of a chain holds whose
+                             // number of nodes adapts, by adapt_nodes, as:
   double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
-  Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that it holds
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
+  double grip = 1.0;         // factor on the friction of its pinches
+  double bend = 0.0;         // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
