@@ -129,14 +129,15 @@ struct alignas(64) CableState {
   double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
   std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
   // What few steps read.
-  double least_gap = 0.0;    // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
-                             // Method::pinch_no_contact
-  Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that a piece of a chain holds whose
-                             // number of nodes adapts, by adapt_nodes, as:
+  double least_gap = 0.0;  // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
+                           // Method::pinch_no_contact
+  // Of a chain whose number of nodes adapts, by adapt_nodes:
+  Vec2 held = Vec2::Zero();  // kg m, first moment of the bend that it holds
   double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
-  double grip = 1.0;         // factor on the friction of its pinches
-  double bend = 0.0;         // N m a rad, between it and `bends_with`
+  // Of any:
+  double grip = 1.0;  // factor on the friction of its pinches
+  double bend = 0.0;  // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
