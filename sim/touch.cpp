@@ -102,7 +102,7 @@ Outside in_front(const World& world, int body, const Vec2& point, const Tip& tip
   const Vec2 way = turned(tip.way, -angle);
   const double near = one_place(world, body, tip.body);
   if (out.distance > near && (tip.body < 0 || out.normal.dot(way) <= tip.most)) return out;
-  const Outside sides = outside_of_sides(corners, point, way, tip.most);
+  Outside sides = outside_of_sides(corners, point, way, tip.most);
   if (out.distance <= near) return sides;
   // Two tips that lean over each other as they meet pass by below both: neither is in the other.
   const bool has_passed =

@@ -83,7 +83,8 @@ std::vector<Made> run_samples(int count, int first, Progress& progress,
   std::mutex telling;
   const auto work = [&] {
     for (int i = next++; i < count; i = next++) {
-      samples[static_cast<std::size_t>(i)] = sample(static_cast<std::uint64_t>(first + i));
+      samples[static_cast<std::size_t>(i)] =
+          sample(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
       const std::lock_guard lock(telling);
       progress.done(1.0);
     }

@@ -84,7 +84,7 @@ void find_normals(const PartSystem& s, DualScratch& d) {
     double* normal = &at(d.normals, r * d.dimension);
     const auto add = [&](int body, const Eigen::Vector3d& j) {
       const Eigen::Map<const Eigen::Matrix3d> root(&at(d.roots, 9 * body));
-      Eigen::Map<Eigen::Vector3d>(normal + 3 * body) += root * j;
+      Eigen::Map<Eigen::Vector3d>(normal + 3 * std::ptrdiff_t{body}) += root * j;
     };
     const RowBodies& row = at(s.bodies, r);
     add(row.a, row.ja);
