@@ -80,7 +80,7 @@ struct Rim {
 /// The free span that arrives at the link of the same index from the link before it.
 struct Segment {
   // What every step reads.
-  double alpha = 0.0;               // rad, heading(direction), continuous in time
+  double alpha = 0.0;               // rad, heading(direction), continuous; of pieces: turn_pieces
   double length = 0.0;              // m, distance along the tangent; 0 when pinched
   double rest_length = 0.0;         // m of material; may be negative by round-off when pinched
   double tension = 0.0;             // N, of the last step; in a non-transitional pinch the change
