@@ -2,6 +2,7 @@
 #pragma once
 // Bodies that touch, or may do so within the next step.
 
+#include <array>
 #include <cstdint>
 
 #include "sim/scene.h"
@@ -18,6 +19,10 @@ enum class Touch : std::int8_t {
   end_of_wall,  // meets the outline of a
   piece,  // of a hanging cable, of which a or b is a node, meets the other or the wall: pieces.h
 };
+
+/// By how much more than J v a row's condition has changed in the last interval, over its length
+/// (m/s), and the backward differences of that: foresight.h.
+using Curvature = std::array<double, 4>;
 
 /// Two bodies, or a body and an obstacle, that touch or may touch within the next step. Where one
 /// of them is a polygon there may be several of a pair.
@@ -45,6 +50,7 @@ struct Contact {
   Slip slip = Slip::stick;  // of bare surfaces, by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
+  Curvature curvature{};       // of its normal row, by note_curvature
 };
 
 }  // namespace pinchlab

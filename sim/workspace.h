@@ -57,6 +57,7 @@ struct Trial {
   bool met = true;            // lengths and gaps are exact at its end
   bool settled = true;        // every solve
   bool violated = false;      // what it began with, by more than it makes up for
+  bool foreseen = false;      // its curvatures were, of a part at least
   bool contradicts = false;   // a correction of the first solution asks for what cannot be
   double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
   double excess = 0.0;        // the same, over what would do
@@ -73,6 +74,7 @@ struct StepStart {
   int changes = 0;  // World::changes
   std::vector<Contact> contacts;
   std::vector<int> still_steps;
+  std::vector<Regularity> regularity;
   Diagnostics diagnostics;
 };
 

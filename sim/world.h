@@ -98,6 +98,7 @@ struct Segment {
                                                                 // tangent is for
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
+  Curvature curvature{};                                            // by note_curvature
 };
 
 struct alignas(64) CableState {
@@ -213,6 +214,13 @@ struct Diagnostics {
   std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 
+/// Of intervals of one length that followed one another.
+struct Regularity {
+  double length = 0.0;  // s
+  int intervals = 0;    // how many, as far as their curvatures are kept
+  int unmeasured = 0;   // of the last of them the errors are not known
+};
+
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
 /// bits.
 struct World {
@@ -234,6 +242,7 @@ struct World {
                                          // store_solution
   std::vector<int> still_steps;          // steps for which the body's part has been at rest, by
                                          // note_rest
+  std::vector<Regularity> regularity;    // one a body, of its part, by note_curvature
   std::vector<Contact> contacts;         // sorted by (a, b, wall); by find_contacts, forces and
                                          // states by store_solution
   std::vector<PiecesAtNode> pieces_at;   // one a body; empty where pieces of hanging cables meet

@@ -185,6 +185,7 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
       contact.slip = previous->slip;
       contact.normal_force = previous->normal_force;
       contact.tangent_force = previous->tangent_force;
+      contact.curvature = previous->curvature;
     }
   }
 }

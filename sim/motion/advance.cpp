@@ -19,6 +19,7 @@
 #include "sim/motion/interval.h"
 #include "sim/motion/repair.h"
 #include "sim/solve/forces.h"
+#include "sim/solve/foresight.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
@@ -187,6 +188,25 @@ StepStatus fail_by_changes(World& world) {
   return StepStatus::failed;
 }
 
+/// Notes of these parts, which were `lag` behind before an interval of `length` (s), how their ways
+/// bend.
+void note_ways(World& world, Workspace& work, std::span<const int> parts, double lag, double length,
+               bool met) {
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
+    const PartSystem& s = at(work.systems, part.system);
+    if (s.rows.empty()) continue;
+    const Trial& trial = at(work.trials, p);
+    if (!met || !trial.settled || !work.events.empty() || !trial.met) {
+      forget_curvature(work.parts, part, world);
+      continue;
+    }
+    const double allowed = share_of_error * world.configuration.error;
+    note_curvature(work.parts, part, s,
+                   {length, lag + 0.5 * length, trial.foreseen, trial.local_error, allowed}, world);
+  }
+}
+
 /// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
 void finish_interval(const Scene& scene, World& world, Workspace& work, int n, double length,
                      bool met) {
@@ -200,6 +220,7 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
       if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
     }
   }
+  note_ways(world, work, parts, course.lag, length, met && course.located);
   course.time = work.start.time + length;
   course.left = length < course.left ? course.left - length : 0.0;
   course.lag = 0.5 * length;

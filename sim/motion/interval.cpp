@@ -14,6 +14,7 @@
 #include "sim/motion/vanishing.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
+#include "sim/solve/foresight.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/rows.h"
@@ -40,7 +41,8 @@ struct Attempt {
   double length;                   // s
   int most_rounds = shake_rounds;  // of corrections
   bool begins = false;             // it is the first since begin_interval
-  bool locates = true;  // what happens in it; else constraints bear force as early as it takes
+  bool locates = true;    // what happens in it; else constraints bear force as early as it takes
+  bool foresees = false;  // what is to be corrected, where the intervals before tell
 };
 
 /// omega^2 (1/s^2) of the fastest wave on a part's cables of nodes.
@@ -118,6 +120,7 @@ double add_missed(const World& world, const CapstanScratch& capstan, const TimeS
     const bool bears = row.on && !(shares && row.impulse == 0.0);
     if (!bears) missed = std::min(missed, 0.0);
     row.bias += missed / t.length;
+    row.curved += missed / t.length;
     most = std::max(most, std::abs(missed));
   }
   return most;
@@ -170,7 +173,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
     if (follows) follow_flow(scene, work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
-    if (round == 1) trial.local_error = std::max(trial.local_error, missed);
+    // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
+    if (round == 1 || t.foreseen) trial.local_error = std::max(trial.local_error, missed);
     // In so short an interval there is nothing to correct but round-off.
     const bool meets = missed <= exact_share * s.reach || t.length < shortest_corrected * t.repair;
     if (meets && !follows) return true;
@@ -206,6 +210,7 @@ void add(const Trial& one, Trial& all) {
   all.met = all.met && one.met;
   all.settled = all.settled && one.settled;
   all.violated = all.violated || one.violated;
+  all.foreseen = all.foreseen || one.foreseen;
   all.contradicts = all.contradicts || one.contradicts;
   all.missed = std::max(all.missed, one.missed);
   all.excess = std::max(all.excess, one.excess);
@@ -234,10 +239,12 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     apply_forces(scene, world, t, work.parts, part, s);
     watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
+    t.foreseen = attempt.foresees && s.carried.empty() && is_foreseen(world, work.parts, part, t);
     t.reach = attempt.locates ? s.reach : infinity;
     const double longest =
         attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;
     trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
+    trial.foreseen = t.foreseen;
     trial.longest = longest;
     trial.wave = wave_on(world, work.parts, part);
     add(trial, work.trial);
@@ -453,7 +460,12 @@ double length_to_try(const World& world, const Workspace& work, std::span<const 
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool begins, Stopwatch& watch) {
-  try_interval(scene, world, work, movers, {length, shake_rounds, begins}, watch);
+  const Attempt attempt{.length = length, .begins = begins, .foresees = true};
+  try_interval(scene, world, work, movers, attempt, watch);
+  if (!work.trial.met && work.trial.foreseen) {
+    work.events.clear();
+    try_again(scene, world, work, movers, {length}, watch);
+  }
   return is_sound(world, work.trial, length) && work.events.empty();
 }
 

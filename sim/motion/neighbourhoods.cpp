@@ -137,6 +137,7 @@ void keep_start(const World& world, Workspace& work) {
   kept.changes = world.changes;
   kept.contacts = world.contacts;
   kept.still_steps = world.still_steps;
+  kept.regularity = world.regularity;
   kept.diagnostics = world.diagnostics;
 }
 
@@ -146,6 +147,7 @@ void take_back(World& world, Workspace& work) {
   world.changes = kept.changes;
   world.contacts = kept.contacts;
   world.still_steps = kept.still_steps;
+  world.regularity = kept.regularity;
   world.diagnostics = kept.diagnostics;
   Workspace fresh;
   fresh.start = kept.start;
@@ -201,6 +203,17 @@ bool divide(const Scene& scene, const World& world, Workspace& work) {
 
 void list_parts(Parts& parts, Neighbourhoods& near) {
   std::vector<int>& begin = near.parts.begin;
+  if (near.list.size() == 1) {
+    near.parts.items.clear();
+    for (int p = 0; index(p) < parts.list.size(); ++p) {
+      Part& part = at(parts.list, p);
+      part.waits = near.divided && !near.list.front().moved;
+      if (!part.asleep) near.parts.items.push_back(p);
+    }
+    begin.assign({0, static_cast<int>(near.parts.items.size())});
+    near.moving = near.parts.items;
+    return;
+  }
   begin.assign(near.list.size() + 1, 0);
   for (Part& part : parts.list) {
     const int n = number_of(near, parts, part);

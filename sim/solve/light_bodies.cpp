@@ -167,7 +167,7 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     const double of_b = speed(s.bodies[r].b, s.bodies[r].jb);
     const ThirdBody* third = third_of(s, r);
     const double of_third = third ? speed(third->place, third->j) : 0.0;
-    gain += row.impulse * (of_a + of_b + of_third);
+    gain += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
     impulse += std::abs(row.impulse);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }

@@ -3,6 +3,7 @@
 // Motors that hold an angular velocity, as far as they can.
 
 #include "base/at.h"
+#include "sim/solve/foresight.h"
 #include "sim/solve/part_system.h"
 #include "sim/solve/rows.h"
 #include "sim/workspace.h"
@@ -49,6 +50,7 @@ bool solve_with_motors(const Scene& scene, const World& world, Workspace& work, 
   if (!s.motors.empty()) s.unconstrained = s.free_velocity;
   for (int changes = 0;; ++changes) {
     make_rows(scene, world, work.parts, part, interval, s, work.solve, watch);
+    if (interval.foreseen) foresee(world, interval.length, s);
     const bool settled = solve();
     if (s.motors.empty() || changes == most_changes) return settled;
     if (!change_motors(world, work.parts, part, s, work.solve)) return settled;

@@ -61,6 +61,7 @@ struct TimeSpan {
   double reach = infinity;    // m: what is further from bearing force than that bears none
   bool clamps = false;        // pressed bodies hold the cable in a transitional pinch both ways
   bool held_only = false;     // nothing bears force that does not do so already
+  bool foreseen = false;      // the rows' curvatures are: foresight.h
 };
 
 enum class RowKind : std::int8_t {
@@ -115,6 +116,7 @@ struct Row {
   int item = -1;            // segment, middle link, or place of its third body
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
   double bias = 0.0;        // m/s
+  double curved = 0.0;      // m/s, of the bias: by what C changes otherwise than by J v
   double compliance = 0.0;  // 1/kg
   double diagonal = 0.0;    // 1/kg, J * mobility * J^T
   double impulse = 0.0;     // N s

@@ -19,13 +19,14 @@ namespace {
 
 /// Whether that follows without a sum: with A = J M^-1 J^T, where each impulse is an unknown of its
 /// own, J v- = -bias - A p, and sum p (J v- + J v+) = -p A p - 2 p bias; unless impulses are so
-/// large that what the solution leaves of these equations counts, on spans that hardly can give.
+/// large that what the solution leaves of these equations counts, on spans that hardly can give. Of
+/// the bias the curvature of the way makes none: what the chord takes, or gives, the way does not.
 bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
   if (!set.direct) return false;
   const double round_off = s.reach / set.step_length;  // m/s
   constexpr double residual = 1e-15;  // of a row's equation, as a share of its own impulse's part
   return std::all_of(s.rows.begin(), s.rows.end(), [round_off](const Row& row) {
-    return !row.on || (std::abs(row.bias) <= round_off &&
+    return !row.on || (std::abs(row.bias - row.curved) <= round_off &&
                        residual * row.diagonal * std::abs(row.impulse) <= round_off);
   });
 }
@@ -55,9 +56,10 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
     const double of_third =
         speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
-    made += row.impulse * (of_a + of_b + of_third);
+    made += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
     impulse += std::abs(row.impulse);
-    made_up += std::abs(row.impulse) * std::min(std::abs(row.bias), s.reach / set.step_length);
+    made_up += std::abs(row.impulse) *
+               std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;

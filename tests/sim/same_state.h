@@ -38,7 +38,8 @@ inline bool same_segment(const Segment& p, const Segment& q) {
          p.moved == q.moved && p.slack == q.slack && p.pinched == q.pinched &&
          p.was_pinched == q.was_pinched && p.contact == q.contact &&
          p.previous_tail == q.previous_tail && p.previous_head == q.previous_head &&
-         p.tail_centre == q.tail_centre && p.head_centre == q.head_centre;
+         p.tail_centre == q.tail_centre && p.head_centre == q.head_centre && p.slope == q.slope &&
+         p.curvature == q.curvature;
 }
 
 inline bool same_contact(const Contact& p, const Contact& q) {
@@ -47,7 +48,12 @@ inline bool same_contact(const Contact& p, const Contact& q) {
          p.target == q.target && p.pinch_points == q.pinch_points &&
          p.pinch_linked == q.pinch_linked && p.pressed_friction == q.pressed_friction &&
          p.layers_cable == q.layers_cable && p.touching == q.touching && p.rebounds == q.rebounds &&
-         p.slip == q.slip && p.normal_force == q.normal_force && p.tangent_force == q.tangent_force;
+         p.slip == q.slip && p.normal_force == q.normal_force &&
+         p.tangent_force == q.tangent_force && p.curvature == q.curvature;
+}
+
+inline bool same_regularity(const Regularity& p, const Regularity& q) {
+  return p.length == q.length && p.intervals == q.intervals && p.unmeasured == q.unmeasured;
 }
 
 /// Whether two worlds of one scene are in the same state to the last bit.
@@ -62,6 +68,12 @@ inline bool same_state(const World& a, const World& b) {
          a.step_length == b.step_length && a.lag == b.lag && a.position == b.position &&
          a.angle == b.angle && a.velocity == b.velocity &&
          a.angular_velocity == b.angular_velocity && a.still_steps == b.still_steps &&
+         equal(a.regularity, b.regularity, same_regularity) && a.changes == b.changes &&
+         a.passing == b.passing && a.passing_at_ends == b.passing_at_ends &&
+         equal(a.pieces_at, b.pieces_at,
+               [](const PiecesAtNode& p, const PiecesAtNode& q) {
+                 return p.before == q.before && p.after == q.after;
+               }) &&
          equal(a.cables, b.cables,
                [&](const CableState& p, const CableState& q) {
                  return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
@@ -75,6 +87,7 @@ inline bool same_state(const World& a, const World& b) {
          a.diagnostics.fallbacks == b.diagnostics.fallbacks &&
          a.diagnostics.events == b.diagnostics.events &&
          a.diagnostics.intervals == b.diagnostics.intervals &&
+         a.diagnostics.node_changes == b.diagnostics.node_changes &&
          a.diagnostics.clusters == b.diagnostics.clusters;
 }
 
