@@ -35,7 +35,6 @@ World bodies_of_scene(const Scene& scene) {
     world.position.push_back(body.position);
     world.angle.push_back(body.angle);
     world.still_steps.push_back(0);
-    world.regularity.emplace_back();
     Vec2 v = can_move(body) ? body.velocity : Vec2::Zero();
     if (body.kind == BodyKind::rail) v = body.rail_axis * body.rail_axis.dot(v);
     world.velocity.push_back(v);

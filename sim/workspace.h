@@ -74,7 +74,7 @@ struct StepStart {
   int changes = 0;  // World::changes
   std::vector<Contact> contacts;
   std::vector<int> still_steps;
-  std::vector<Regularity> regularity;
+  Regularity regularity;
   Diagnostics diagnostics;
 };
 

@@ -214,7 +214,7 @@ struct Diagnostics {
   std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 
-/// Of intervals of one length that followed one another.
+/// The intervals of one length that came one after another, of all parts together, until now.
 struct Regularity {
   double length = 0.0;  // s
   int intervals = 0;    // how many, as far as their curvatures are kept
@@ -242,7 +242,6 @@ struct World {
                                          // store_solution
   std::vector<int> still_steps;          // steps for which the body's part has been at rest, by
                                          // note_rest
-  std::vector<Regularity> regularity;    // one a body, of its part, by note_curvature
   std::vector<Contact> contacts;         // sorted by (a, b, wall); by find_contacts, forces and
                                          // states by store_solution
   std::vector<PiecesAtNode> pieces_at;   // one a body; empty where pieces of hanging cables meet
@@ -250,6 +249,7 @@ struct World {
   std::vector<std::array<int, 2>> passing;  // sorted: a piece, and the body (or -1 - wall) that it
                                             // does not meet;
   std::vector<std::array<int, 2>> passing_at_ends;  // of these those for good, by make_world
+  Regularity regularity;                            // by finish_interval
   int changes = 0;  // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite

@@ -188,22 +188,20 @@ StepStatus fail_by_changes(World& world) {
   return StepStatus::failed;
 }
 
-/// Notes of these parts, which were `lag` behind before an interval of `length` (s), how their ways
-/// bend.
-void note_ways(World& world, Workspace& work, std::span<const int> parts, double lag, double length,
-               bool met) {
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    const PartSystem& s = at(work.systems, part.system);
-    if (s.rows.empty()) continue;
-    const Trial& trial = at(work.trials, p);
-    if (!met || !trial.settled || !work.events.empty() || !trial.met) {
-      forget_curvature(work.parts, part, world);
-      continue;
-    }
-    const double allowed = share_of_error * world.configuration.error;
-    note_curvature(work.parts, part, s,
-                   {length, lag + 0.5 * length, trial.foreseen, trial.local_error, allowed}, world);
+/// Notes how ways bend in an interval of `length` (s) of all parts, which were `lag` behind before;
+/// `met`: nothing happened in it, and lengths and gaps are exact.
+void note_ways(World& world, Workspace& work, double lag, double length, bool met) {
+  const Trial& trial = work.trial;
+  const double kick = lag + 0.5 * length, allowed = share_of_error * world.configuration.error;
+  const Regularity before = world.regularity;
+  world.regularity = {};
+  if (!met || !trial.settled || work.neighbourhoods.divided) return;
+  world.regularity =
+      regularity_after(before, {length, kick, trial.foreseen, trial.local_error, allowed});
+  if (world.regularity.intervals == 0) return;
+  for (const int p : work.neighbourhoods.parts.items) {
+    const PartSystem& s = at(work.systems, at(work.parts.list, p).system);
+    note_curvatures(s, world.regularity.intervals - 1, world);
   }
 }
 
@@ -220,7 +218,7 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
       if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
     }
   }
-  note_ways(world, work, parts, course.lag, length, met && course.located);
+  note_ways(world, work, course.lag, length, met && course.located && work.events.empty());
   course.time = work.start.time + length;
   course.left = length < course.left ? course.left - length : 0.0;
   course.lag = 0.5 * length;

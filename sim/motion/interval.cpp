@@ -9,8 +9,8 @@
 #include "sim/cable/mass.h"
 #include "sim/cable/waves.h"
 #include "sim/compound.h"
-#include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
+#include "sim/motion/missed.h"
 #include "sim/motion/vanishing.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
@@ -55,11 +55,6 @@ double wave_on(const World& world, const Parts& parts, const Part& part) {
   return fastest;
 }
 
-bool is_exact_row(const Row& row) {
-  if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
-  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
-}
-
 /// Everything that moves of a part, `length` seconds after the interval's start.
 void place_part(World& world, Workspace& work, const Part& part, double length, bool begins) {
   const Start& start = work.start;
@@ -82,48 +77,6 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
     const bool moved = update_cable(world, cable, begins, is_known(work));
     work.spans_moved = work.spans_moved || moved;
   }
-}
-
-/// Adds to the rows' biases what their conditions have missed at the present positions; returns the
-/// most (m).
-double add_missed(const World& world, const CapstanScratch& capstan, const TimeSpan& t,
-                  PartSystem& s, Trial& trial) {
-  const bool slides = !capstan.runs.empty();
-  const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
-  double most = 0.0;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Row& row = s.rows[r];
-    const int group = slides ? capstan.group_of_row[r] : -1;
-    // Of a group that is slack somewhere any segment may run short of its share of the material.
-    const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
-    if (!is_exact_row(row) || (row.idle && !shares)) continue;
-    const bool middle = row.kind == RowKind::pinch_middle;
-    if (middle && !row.on) continue;
-    const bool violated = row.clearance < -t.made_up || (middle && row.clearance > t.made_up);
-    if (violated && !middle && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
-      trial.violated = true;
-    }
-    if (!row.on && group >= 0 && !shares) continue;
-    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
-    const bool made_up = row.clearance <= s.reach;
-    const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
-    double missed = clearance_of(world, row) - left;
-    if (row.compliance > 0.0) {
-      if (!row.on || group >= 0) continue;
-      // The stretch over the interval's end is the real one.
-      const double straight = row_speed(s, r) - row.bias;
-      const double curvature = (missed + left - row.clearance) / t.length - straight;
-      missed = (curvature - s.bodies[r].curvature) * t.length;
-      s.bodies[r].curvature = curvature;
-    }
-    // Without tension no segment of a group is held to its length.
-    const bool bears = row.on && !(shares && row.impulse == 0.0);
-    if (!bears) missed = std::min(missed, 0.0);
-    row.bias += missed / t.length;
-    row.curved += missed / t.length;
-    most = std::max(most, std::abs(missed));
-  }
-  return most;
 }
 
 /// The greatest speed of a part's bodies and their rims (m/s), of `velocity` less `other`.
@@ -239,7 +192,7 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     apply_forces(scene, world, t, work.parts, part, s);
     watch.lap(Stage::apply_forces);
     t.made_up = s.reach;
-    t.foreseen = attempt.foresees && s.carried.empty() && is_foreseen(world, work.parts, part, t);
+    t.foreseen = attempt.foresees && s.carried.empty() && is_foreseen(world, t);
     t.reach = attempt.locates ? s.reach : infinity;
     const double longest =
         attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;

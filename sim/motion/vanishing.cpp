@@ -16,12 +16,10 @@ constexpr double slow_share = 1e-6;   // of Delta^2: what turns by a milliradian
 constexpr double short_share = 0.5;   // of Delta: what is longer hardly turns
 constexpr double least_share = 1e-4;  // of a step
 
-/// The time for which the span that arrives at the link has been there, or will be (s), where that
-/// is less than `most`; else that.
-double time_left(const World& world, const CableState& cable, std::size_t i, double most) {
-  const Segment& span = cable.segments[i];
-  const Link& head = cable.links[i];
-  const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(i)));
+/// The time for which a span between two links has been there, or will be (s), where that is less
+/// than `most`; else that.
+double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,
+                 double most) {
   const double delta = head.signed_radius() - tail.signed_radius();
   if (!(span.length > 0.0 && span.length < short_share * std::abs(delta))) return most;
   if (span.pinched || span.slack) return most;
@@ -44,8 +42,11 @@ double longest_interval(const World& world, const Parts& parts, std::span<const 
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
       if (cable.stands || cable.elastic) continue;
-      for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-        left = time_left(world, cable, i, left);
+      const Link* tail = cable.closed ? &cable.links.back() : nullptr;
+      for (std::size_t i = 0; i < cable.segments.size(); ++i) {
+        const Link& head = cable.links[i];
+        if (tail) left = time_left(world, cable.segments[i], *tail, head, left);
+        tail = &head;
       }
     }
   }

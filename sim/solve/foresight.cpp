@@ -5,8 +5,6 @@
 #include <cmath>
 
 #include "base/at.h"
-#include "sim/parts.h"
-#include "sim/world.h"
 
 namespace pinchlab {
 
@@ -27,24 +25,21 @@ bool is_same(double p, double q) {
   return std::abs(p - q) <= rounding * q;
 }
 
-/// How many intervals of that length all bodies of a part have just gone through, and their last.
-Regularity regularity_of(const World& world, const Parts& parts, const Part& part, double length) {
-  Regularity all{length, order, 0};
-  for (const int body : bodies_of(parts, part)) {
-    const Regularity& one = at(world.regularity, body);
-    all.intervals = is_same(one.length, length) ? std::min(all.intervals, one.intervals) : 0;
-    all.unmeasured = std::max(all.unmeasured, one.unmeasured);
-  }
-  return all;
+/// Whether an interval of that length (s) is one more of those before.
+bool goes_on(const Regularity& regular, double length) {
+  return regular.intervals > 0 && is_same(regular.length, length);
 }
 
-/// Of a World, const or not, a row's own curvature; or null where it has none.
+/// Of a World, const or not, a row's own curvature; or null where its condition is linear. What
+/// spans between circles that have not moved is: lengths stay, and material turns evenly.
 template <typename AnyWorld>
 auto* curvature_of(AnyWorld& world, const Row& row) {
+  using Pointer = decltype(&at(world.contacts, 0).curvature);
   if (row.kind == RowKind::segment || row.kind == RowKind::pinch_middle) {
-    return &at(at(world.cables, row.index).segments, row.item).curvature;
+    auto& segment = at(at(world.cables, row.index).segments, row.item);
+    return segment.moved ? &segment.curvature : Pointer(nullptr);
   }
-  return row.kind == RowKind::normal ? &at(world.contacts, row.index).curvature : nullptr;
+  return row.kind == RowKind::normal ? &at(world.contacts, row.index).curvature : Pointer(nullptr);
 }
 
 /// The backward differences that `known` values before and this one have.
@@ -59,10 +54,9 @@ void append(double value, int known, Curvature& differences) {
 
 }  // namespace
 
-bool is_foreseen(const World& world, const Parts& parts, const Part& part, const TimeSpan& t) {
-  if (!is_same(t.kick, t.length)) return false;
-  const Regularity regular = regularity_of(world, parts, part, t.length);
-  if (regular.intervals == 0) return false;
+bool is_foreseen(const World& world, const TimeSpan& t) {
+  const Regularity& regular = world.regularity;
+  if (!is_same(t.kick, t.length) || !goes_on(regular, t.length)) return false;
   return world.configuration.error == 0.0 || regular.unmeasured < most_unmeasured;
 }
 
@@ -83,26 +77,23 @@ void foresee(const World& world, double length, PartSystem& s) {
   }
 }
 
-void note_curvature(const Parts& parts, const Part& part, const PartSystem& s,
-                    const IntervalDone& done, World& world) {
-  if (!is_same(done.kick, done.length)) return forget_curvature(parts, part, world);
-  Regularity regular = regularity_of(world, parts, part, done.length);
+void note_curvatures(const PartSystem& s, int known, World& world) {
   for (const Row& row : s.rows) {
     Curvature* differences = curvature_of(world, row);
-    if (differences)
-      append(row.on && !row.idle ? row.curved : 0.0, regular.intervals, *differences);
+    if (differences) append(row.on && !row.idle ? row.curved : 0.0, known, *differences);
   }
-  regular.intervals = std::min(regular.intervals + 1, order);
-  if (done.foreseen) {
-    ++regular.unmeasured;
-  } else {
-    regular.unmeasured = done.local_error <= safe_share * done.allowed ? 0 : most_unmeasured;
-  }
-  for (const int body : bodies_of(parts, part)) at(world.regularity, body) = regular;
 }
 
-void forget_curvature(const Parts& parts, const Part& part, World& world) {
-  for (const int body : bodies_of(parts, part)) at(world.regularity, body).intervals = 0;
+Regularity regularity_after(const Regularity& before, const IntervalDone& done) {
+  if (!is_same(done.kick, done.length)) return {};
+  Regularity after{done.length, 1, most_unmeasured};
+  if (goes_on(before, done.length)) after.intervals = std::min(before.intervals + 1, order);
+  if (done.foreseen) {
+    after.unmeasured = std::min(before.unmeasured + 1, most_unmeasured);
+  } else if (done.local_error <= safe_share * done.allowed) {
+    after.unmeasured = 0;
+  }
+  return after;
 }
 
 }  // namespace pinchlab

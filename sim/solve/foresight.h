@@ -12,23 +12,20 @@
 // interval that it does not serve is tried without it.
 
 #include "sim/solve/part_system.h"
+#include "sim/world.h"
 
 namespace pinchlab {
-
-struct Part;
-struct Parts;
-struct World;
 
 /// Whether an interval follows on others of its length whose curvatures tell its own. Where steps
 /// are divided by their error, which only the first correction tells, some in between are not
 /// foreseen.
-bool is_foreseen(const World& world, const Parts& parts, const Part& part, const TimeSpan& t);
+bool is_foreseen(const World& world, const TimeSpan& t);
 
 /// Adds the curvatures that are foreseen for an interval of `length` (s) to the biases of rows that
 /// bear force.
 void foresee(const World& world, double length, PartSystem& system);
 
-/// What an interval of a part came to.
+/// What an interval of all parts came to.
 struct IntervalDone {
   double length = 0.0, kick = 0.0;  // s
   bool foreseen = false;
@@ -36,11 +33,10 @@ struct IntervalDone {
   double allowed = 0.0;      // m, of that; 0: steps are not divided by their error
 };
 
-/// Notes the curvatures of an interval that was met, for the next one, from its rows.
-void note_curvature(const Parts& parts, const Part& part, const PartSystem& system,
-                    const IntervalDone& done, World& world);
+/// World::regularity after an interval that was met, as it was `before`.
+Regularity regularity_after(const Regularity& before, const IntervalDone& done);
 
-/// Notes that what the part did last tells nothing of its next interval.
-void forget_curvature(const Parts& parts, const Part& part, World& world);
+/// Notes the curvatures of a part's rows in an interval that `known` like it came before.
+void note_curvatures(const PartSystem& system, int known, World& world);
 
 }  // namespace pinchlab

@@ -68,7 +68,7 @@ inline bool same_state(const World& a, const World& b) {
          a.step_length == b.step_length && a.lag == b.lag && a.position == b.position &&
          a.angle == b.angle && a.velocity == b.velocity &&
          a.angular_velocity == b.angular_velocity && a.still_steps == b.still_steps &&
-         equal(a.regularity, b.regularity, same_regularity) && a.changes == b.changes &&
+         same_regularity(a.regularity, b.regularity) && a.changes == b.changes &&
          a.passing == b.passing && a.passing_at_ends == b.passing_at_ends &&
          equal(a.pieces_at, b.pieces_at,
                [](const PiecesAtNode& p, const PiecesAtNode& q) {

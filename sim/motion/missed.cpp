@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/missed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/motion/clearance.h"
+#include "sim/solve/capstan.h"
+#include "sim/solve/part_system.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+bool is_exact_row(const Row& row) {
+  if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
+  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
+}
+
+/// Whether a row's condition changes by J v and nothing else: that of a segment between circles
+/// which have not moved, as its length stands and its material turns evenly.
+bool is_linear(const World& world, const Row& row) {
+  if (row.kind != RowKind::segment || row.compliance > 0.0) return false;
+  const CableState& cable = at(world.cables, row.index);
+  return !at(cable.segments, row.item).moved && !cable.fills && cable.rims.empty();
+}
+
+}  // namespace
+
+double add_missed(const World& world, const CapstanScratch& capstan, const TimeSpan& t,
+                  PartSystem& s, Trial& trial) {
+  const bool slides = !capstan.runs.empty();
+  const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
+  double most = 0.0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    Row& row = s.rows[r];
+    const int group = slides ? capstan.group_of_row[r] : -1;
+    // Of a group that is slack somewhere any segment may run short of its share of the material.
+    const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
+    if (!is_exact_row(row) || (row.idle && !shares)) continue;
+    const bool middle = row.kind == RowKind::pinch_middle;
+    if (middle && !row.on) continue;
+    const bool violated = row.clearance < -t.made_up || (middle && row.clearance > t.made_up);
+    if (violated && !middle && row.compliance == 0.0 && (row.diagonal > 0.0 || group >= 0)) {
+      trial.violated = true;
+    }
+    if (!row.on && group >= 0 && !shares) continue;
+    if (group < 0 && is_linear(world, row)) continue;
+    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
+    const bool made_up = row.clearance <= s.reach;
+    const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
+    double missed = clearance_of(world, row) - left;
+    if (row.compliance > 0.0) {
+      if (!row.on || group >= 0) continue;
+      // The stretch over the interval's end is the real one.
+      const double straight = row_speed(s, r) - row.bias;
+      const double curvature = (missed + left - row.clearance) / t.length - straight;
+      missed = (curvature - s.bodies[r].curvature) * t.length;
+      s.bodies[r].curvature = curvature;
+    }
+    // Without tension no segment of a group is held to its length.
+    const bool bears = row.on && !(shares && row.impulse == 0.0);
+    if (!bears) missed = std::min(missed, 0.0);
+    row.bias += missed / t.length;
+    row.curved += missed / t.length;
+    most = std::max(most, std::abs(missed));
+  }
+  return most;
+}
+
+}  // namespace pinchlab

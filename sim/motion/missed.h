@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// What lengths and gaps miss at an interval's end: SHAKE.
+
+namespace pinchlab {
+
+struct CapstanScratch;
+struct PartSystem;
+struct TimeSpan;
+struct Trial;
+struct World;
+
+/// Adds to the rows' biases what their conditions have missed at the present positions; returns the
+/// most (m). Notes in the trial whether one was violated from the start.
+double add_missed(const World& world, const CapstanScratch& capstan, const TimeSpan& interval,
+                  PartSystem& system, Trial& trial);
+
+}  // namespace pinchlab
