@@ -79,6 +79,29 @@ void place_part(World& world, Workspace& work, const Part& part, double length, 
   }
 }
 
+/// Puts a part back to where its interval began.
+void put_back(World& world, Workspace& work, const Part& part) {
+  const Start& start = work.start;
+  const auto put_body = [&](int body) {
+    at(world.position, body) = at(start.position, body);
+    at(world.velocity, body) = at(start.velocity, body);
+    at(world.angle, body) = at(start.angle, body);
+    at(world.angular_velocity, body) = at(start.angular_velocity, body);
+  };
+  for (const int body : bodies_of(work.parts, part)) put_body(body);
+  for (const int shape : carried_of(work.parts, part)) put_body(shape);
+  for (const int c : cables_of(work.parts, part)) {
+    CableState& cable = at(world.cables, c);
+    if (const int first = at(work.first_link, c); first >= 0) {
+      for (std::size_t i = 0; i < cable.links.size(); ++i) {
+        cable.links[i].material = start.material[index(first) + i];
+        if (is_massed(cable)) cable.links[i].slip_speed = start.slip[index(first) + i];
+      }
+    }
+    update_cable(world, cable, false, is_known(work));
+  }
+}
+
 /// The greatest speed of a part's bodies and their rims (m/s), of `velocity` less `other`.
 double greatest_speed(const World& world, std::span<const int> bodies,
                       const std::vector<Eigen::Vector3d>& velocity,
@@ -151,6 +174,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   PartSystem& s = at(work.systems, part.system);
   bool met = move_part(scene, world, work, part, t, attempt, most_changes, trial, watch);
   for (int turn = 0; met && turn < most_turns && change_limited_motors(s); ++turn) {
+    put_back(world, work, part);
     s.free_velocity = s.unconstrained;
     drive(s);
     trial = Trial{};
@@ -324,29 +348,8 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
 }  // namespace
 
 void go_back(World& world, Workspace& work, std::span<const int> parts) {
-  const Start& start = work.start;
-  world.diagnostics.fallbacks = start.fallbacks;
-  const auto put_back = [&](int body) {
-    at(world.position, body) = at(start.position, body);
-    at(world.velocity, body) = at(start.velocity, body);
-    at(world.angle, body) = at(start.angle, body);
-    at(world.angular_velocity, body) = at(start.angular_velocity, body);
-  };
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    for (const int body : bodies_of(work.parts, part)) put_back(body);
-    for (const int shape : carried_of(work.parts, part)) put_back(shape);
-    for (const int c : cables_of(work.parts, part)) {
-      CableState& cable = at(world.cables, c);
-      if (const int first = at(work.first_link, c); first >= 0) {
-        for (std::size_t i = 0; i < cable.links.size(); ++i) {
-          cable.links[i].material = start.material[index(first) + i];
-          if (is_massed(cable)) cable.links[i].slip_speed = start.slip[index(first) + i];
-        }
-      }
-      update_cable(world, cable, false, is_known(work));
-    }
-  }
+  world.diagnostics.fallbacks = work.start.fallbacks;
+  for (const int p : parts) put_back(world, work, at(work.parts.list, p));
 }
 
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time) {
