@@ -112,8 +112,8 @@ void note_cable_held(const World& world, const CableState& cable, const Link& li
   if (link.layers.way != 0) {
     contact.layers_cable = static_cast<int>(&cable - world.cables.data());
   }
-  if (at(world.bodies, link.body).cable_friction < infinity || cable.grip == 0.0) return;
-  const double mu = cable.grip * at(world.bodies, presser).cable_friction;
+  if (at(world.bodies, link.body).cable_friction < infinity) return;
+  const double mu = friction_in_pinch(world, cable, presser);
   contact.pressed_friction = std::max(contact.pressed_friction, mu);
 }
 

@@ -187,15 +187,6 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   }
 }
 
-/// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that
-/// cable's own rows have it.
-double coefficient_of(const World& world, const Contact& contact) {
-  if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
-  const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
-                                      : at(world.obstacles, contact.wall).contact_friction;
-  return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);
-}
-
 /// A new last row between two places.
 int append_row(PartSystem& s, int a, int b) {
   s.rows.emplace_back();
