@@ -4,6 +4,9 @@
 
 #include <vector>
 
+#include "base/at.h"
+#include "sim/solve/profile_ldl.h"
+
 namespace pinchlab {
 
 /// LU factors without pivoting inside the matrix' profile (skyline; George & Liu 1981, ch. 4): row
@@ -23,9 +26,9 @@ class ProfileLu {
   /// Adds to entry (u, v); |u - v| must lie inside the profile.
   void add(int u, int v, double value) {
     if (v < u) {
-      lower_.data()[offset_[static_cast<std::size_t>(u)] + v] += value;
+      lower_.data()[at(offset_, u) + v] += value;
     } else {
-      upper_.data()[offset_[static_cast<std::size_t>(v)] + u] += value;
+      upper_.data()[at(offset_, v) + u] += value;
     }
   }
 
