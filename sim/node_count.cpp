@@ -19,8 +19,9 @@ namespace pinchlab {
 
 namespace {
 
-/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) /
-/// l^2, and a leapfrog is stable to omega h = 2.
+/// m: bending of the shortest wave, along which nodes alternate, has
+///     omega = 4 sqrt(EI / rho) / l^2,
+/// and a leapfrog is stable to omega h = 2.
 double shortest_that_bends(const Scene& scene, const Cable& cable) {
   const double speed = std::sqrt(cable.bending_stiffness / cable.mass_per_metre);  // m^2/s
   return std::sqrt(2.0 * step_length(scene) * speed);

@@ -98,8 +98,9 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 namespace {
 
 /// The radius of a drum's outermost turn depends on the direction of the span that leaves it, which
-/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by w /
-/// (pi length) each time.
+/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by
+///     w / (pi length)
+/// each time.
 void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
                         const Link& from, const Link& to) {
   constexpr int most_rounds = 60;

@@ -95,8 +95,9 @@ struct ThirdBody {
   Eigen::Vector3d j = Eigen::Vector3d::Zero(), response = j;
 };
 
-/// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
-/// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
+/// A row's own values. With w = J v + bias and the impulse p a unilateral row asks
+///     p >= 0,   w + compliance p >= 0,   p (w + compliance p) = 0.
+/// The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind = RowKind::segment;
   Slip slip = Slip::stick;  // active set: friction rows

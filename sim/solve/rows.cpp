@@ -54,10 +54,12 @@ double lever(const World& world, const Link& link, const Vec2& e) {
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
 /// tension (p >= 0) shortens the segment.
 ///
-/// Where the bodies have sunk into a pinched cable, their distance D is less than |Delta| = R_A +
-/// R_B. There L is 0 and e, across the centre line, turns at e.(v_B - v_A) / D: dC/dt has |Delta| /
-/// D times e.(v_B - v_A). So J says how rest lengths change, and its forces have no moment: neither
-/// energy nor angular momentum comes from a pinch.
+/// Where the bodies have sunk into a pinched cable, their distance D is less than
+///     |Delta| = R_A + R_B.
+/// There L is 0 and e, across the centre line, turns at e.(v_B - v_A) / D: dC/dt has
+///     |Delta| / D times e.(v_B - v_A).
+/// So J says how rest lengths change, and its forces have no moment: neither energy nor angular
+/// momentum comes from a pinch.
 void set_segment_bodies(const World& world, const Link& from, const Link& to,
                         const Segment& segment, bool sunk, RowBodies& row) {
   Vec2 e = segment.direction;
