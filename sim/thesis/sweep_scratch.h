@@ -32,7 +32,8 @@ struct SweepRow {
 };
 
 struct SweepScratch {
-  std::vector<SweepRow> rows;  // as PartSystem::rows: those of cables, then those of contacts
+  std::vector<SweepRow> rows;  // as PartSystem::rows: those of cables, then those of contacts; by
+                               // solve_iterative
 };
 
 }  // namespace pinchlab
