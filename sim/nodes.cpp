@@ -152,7 +152,7 @@ bool stands(const Scene& scene, const Attachment& end) {
 /// weight by no tension: a sag s asks for rho g L^2 / 8 s.
 void refuse_what_cannot_sag(const Scene& scene, const Cable& cable, const Vec2& d,
                             const std::string& place) {
-  constexpr double rounding = 1e-12;
+  constexpr double rounding = 1e-12;  // rad: of directions between places that are decimal figures
   if (cable.slack > 0.0 || cable.axial_stiffness < infinity) return;
   if (!stands(scene, cable.start) || !stands(scene, cable.end)) return;
   if (std::abs(cross(d, scene.gravity)) <= rounding * d.norm() * scene.gravity.norm()) return;

@@ -17,7 +17,7 @@ namespace pinchlab {
 /// its unknown is left at zero (a basic solution) and counted.
 class ProfileLu {
  public:
-  static constexpr double dependence = 1e-13;
+  static constexpr double dependence = ProfileLdl::dependence;
 
   /// Starts an n x n matrix of zeros; first[u] <= u is the least index coupled with u.
   void reset(const std::vector<int>& first);
