@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/at.h"
 #include "demos/scenes/fineness.h"
 
 namespace pinchlab {
@@ -44,7 +45,7 @@ Motion play(const SceneFile& file, const Scene& scene, MethodFigures& figures) {
       motion.at_wall.emplace_back(world.position.size(), 0);
       for (const Contact& contact : world.contacts) {
         if (contact.wall < 0 || !contact.touching) continue;
-        motion.at_wall.back()[static_cast<std::size_t>(contact.a)] = 1;
+        at(motion.at_wall.back(), contact.a) = 1;
       }
     }
   } catch (const std::runtime_error& error) {

@@ -19,14 +19,12 @@ void EventWatch::hold(const std::string& what, double time) {
 void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
   const CableState& cable = world.cables[c];
   if (cable.joint == Joint::stop && cable.segments[1].tension > 0.0) {
-    hold(fmt::format("{} at its stop",
-                     scene_.bodies[static_cast<std::size_t>(cable.links[1].body)].name),
-         time);
+    hold(fmt::format("{} at its stop", at(scene_.bodies, cable.links[1].body).name), time);
   }
   if (cable.joint != Joint::none) return;
   const std::string& name = scene_.cables[c].name;
   const auto body = [&](std::size_t link) -> const std::string& {
-    return scene_.bodies[static_cast<std::size_t>(cable.links[link].body)].name;
+    return at(scene_.bodies, cable.links[link].body).name;
   };
   const std::size_t count = cable.links.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -51,17 +49,17 @@ void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
 }
 
 std::string EventWatch::name_of_other(const World& world, const Contact& contact) const {
-  if (contact.b >= 0) return scene_.bodies[static_cast<std::size_t>(contact.b)].name;
+  if (contact.b >= 0) return at(scene_.bodies, contact.b).name;
   const int cable = at(world.obstacles, contact.wall).cable;
   if (cable < 0) return "a wall";
-  return fmt::format("the end of {}", scene_.cables[static_cast<std::size_t>(cable)].name);
+  return fmt::format("the end of {}", at(scene_.cables, cable).name);
 }
 
 void EventWatch::look(const World& world, double time) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) look_at_cable(world, c, time);
   for (const Contact& contact : world.contacts) {
     if (!contact.touching || contact.pinch_points > 0) continue;
-    const std::string& a = scene_.bodies[static_cast<std::size_t>(contact.a)].name;
+    const std::string& a = at(scene_.bodies, contact.a).name;
     hold(fmt::format("{} touches {}", a, name_of_other(world, contact)), time);
   }
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/at.h"
 #include "render/frame_changes.h"
 #include "render/mesh.h"
 #include "render/painter.h"
@@ -84,7 +85,7 @@ struct Canvas::State {
     const int count = static_cast<int>(pictures.size());
     for (int i = 0; i < count; ++i) {
       const int left = width * i / count;
-      build(*pictures[static_cast<std::size_t>(i)], left, width * (i + 1) / count - left);
+      build(*at(pictures, i), left, width * (i + 1) / count - left);
     }
     changed = frame_changes(last_mesh, mesh, width, height, painter->rectangle_cost());
     if (!changed.empty()) {

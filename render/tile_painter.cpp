@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/at.h"
 #include "render/frame_changes.h"
 #include "render/painter.h"
 #include "render/tile.h"
@@ -45,7 +46,7 @@ class TilePainter : public Painter {
         brushes_in_[i].clear();
       }
     }
-    for (const int tile : tiles_) place_[static_cast<std::size_t>(tile)] = 0;
+    for (const int tile : tiles_) at(place_, tile) = 0;
   }
 
  private:
@@ -64,7 +65,7 @@ class TilePainter : public Painter {
     tiles_.clear();
     for (const PixelRect& part : changed) {
       each_tile(part, [this](int tile) {
-        std::size_t& place = place_[static_cast<std::size_t>(tile)];
+        std::size_t& place = at(place_, tile);
         if (place != 0) return;
         tiles_.push_back(tile);
         place = tiles_.size();
@@ -86,7 +87,7 @@ class TilePainter : public Painter {
         const Vertex* const quad = mesh.quad(q);
         const Brush* brush = nullptr;
         each_tile(quad_bounds(quad, width_, height_), [&](int tile) {
-          const std::size_t place = place_[static_cast<std::size_t>(tile)];
+          const std::size_t place = at(place_, tile);
           if (place == 0) return;
           if (brush == nullptr) {
             brush = &brushes_.emplace_back(make_brush(batch.program, quad, mesh.frame(q), image));

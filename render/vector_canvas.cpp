@@ -16,6 +16,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/at.h"
 #include "base/output_file.h"
 #include "render/mesh.h"
 #include "render/text.h"
@@ -263,7 +264,7 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
   const Colour& behind = frames.front().picture.background;
   if (count > 1 && behind.alpha == 255) paint(behind);  // under the labels
   for (int i = 0; i < count; ++i) {
-    const VectorFrame& frame = frames[static_cast<std::size_t>(i)];
+    const VectorFrame& frame = at(frames, i);
     const int column = i % page.columns, row = i / page.columns;
     const double left = page.gap + column * (width + page.gap);
     const double top = page.gap + row * (height + page.strip);

@@ -17,8 +17,9 @@ constexpr std::int32_t fixed_point(double value) {
   return static_cast<std::int32_t>(value * (1 << bits) + (value < 0.0 ? -0.5 : 0.5));
 }
 
-// ITU-R BT.709-6, items 3.2 to 3.4: Y' = Kr R + Kg G + Kb B, Cb = (B - Y') / 1.8556, Cr = (R - Y')
-// / 1.5748; luma takes 16 to 235 and chroma 16 to 240 of 8 bits.
+// ITU-R BT.709-6, items 3.2 to 3.4:
+//     Y' = Kr R + Kg G + Kb B,   Cb = (B - Y') / 1.8556,   Cr = (R - Y') / 1.5748;
+// luma takes 16 to 235 and chroma 16 to 240 of 8 bits.
 constexpr double kr = 0.2126, kg = 0.7152, kb = 0.0722;
 constexpr double luma = 219.0 / 255.0;
 constexpr double chroma_b = 224.0 / 255.0 / 1.8556, chroma_r = 224.0 / 255.0 / 1.5748;

@@ -7,7 +7,7 @@
 
 namespace pinchlab {
 
-/// How bodies, and cables with mass, move at one time.
+/// How bodies, and cables with mass, move at one time. By note_instant.
 struct Instant {
   std::vector<Vec2> velocity;            // m/s
   std::vector<double> turning;           // rad/s

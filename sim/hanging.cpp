@@ -7,6 +7,8 @@
 namespace pinchlab {
 
 Hanging hang(const std::vector<Vec2>& weights, double length, const Vec2& d) {
+  // Near its end Newton's method doubles its digits with each; before that, where a piece has next
+  // to no tension, it may go by halved steps for long. This ends what would never get there.
   constexpr int most_rounds = 200;
   const std::size_t pieces = weights.size() + 1;
   Vec2 total = Vec2::Zero();
@@ -35,13 +37,15 @@ Hanging hang(const std::vector<Vec2>& weights, double length, const Vec2& d) {
       hessian += length / norm * (Eigen::Matrix2d::Identity() - u * u.transpose());
       if (k < weights.size()) tension -= weights[k];
     }
+    // Round-off of a sum of that many pieces; then of the value, which a halved step cannot lower.
     if (gradient.norm() <= 1e-15 * length * static_cast<double>(pieces)) break;
     const Vec2 step = -hessian.inverse() * gradient;
     if (!step.allFinite()) break;
     const double before = value(start);
     double share = 1.0;
-    while (share > 1e-12 && !(value(start + share * step) <= before)) share *= 0.5;
-    if (share <= 1e-12) break;
+    constexpr double least = 1e-12;  // of a step, after 40 halvings: it changes nothing
+    while (share > least && !(value(start + share * step) <= before)) share *= 0.5;
+    if (share <= least) break;
     start += share * step;
   }
   return hanging;

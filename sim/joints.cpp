@@ -98,7 +98,8 @@ void add_stops(Scene& scene, int body, double low, double high) {
     Cable stop = segment_of(scene, b.name + (side > 0.0 ? ":high" : ":low"), Joint::stop, anchor,
                             {body, Vec2::Zero(), false});
     stop.slack = 2.0 * range - (b.position - anchor.point).norm();
-    if (stop.slack < 1e-12 * range) stop.slack = 0.0;  // it starts there
+    // It starts there, but for round-off of the places, some thousand times less.
+    if (stop.slack < 1e-12 * range) stop.slack = 0.0;
     scene.cables.push_back(stop);
   }
 }

@@ -106,7 +106,7 @@ void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
 /// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not
 /// held yet gives way and lowers them, so that it takes some trials.
 void find_first_tensions(const Scene& scene, World& world) {
-  constexpr int most_trials = 10;
+  constexpr int most_trials = 10;  // a first step that goes by others is no error
   World trial;
   Workspace work;
   for (int i = 0; i < most_trials; ++i) {

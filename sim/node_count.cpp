@@ -19,14 +19,16 @@ namespace pinchlab {
 
 namespace {
 
-/// m: bending of the shortest wave, along which nodes alternate, has omega = 4 sqrt(EI / rho) /
-/// l^2, and a leapfrog is stable to omega h = 2.
+/// m: bending of the shortest wave, along which nodes alternate, has
+///     omega = 4 sqrt(EI / rho) / l^2,
+/// and a leapfrog is stable to omega h = 2.
 double shortest_that_bends(const Scene& scene, const Cable& cable) {
   const double speed = std::sqrt(cable.bending_stiffness / cable.mass_per_metre);  // m^2/s
   return std::sqrt(2.0 * step_length(scene) * speed);
 }
 
-/// m, of each piece, where the scene leaves it open.
+/// m, of each piece, where the scene leaves it open; a tenth more than the least that bends stably,
+/// since at omega h = 2 itself round-off grows.
 double shortest_piece(const Scene& scene, const Cable& cable, double length, double tension) {
   const double wave = 2.0 * step_length(scene) * std::sqrt(tension / cable.mass_per_metre);
   return std::max({4.0 * cable.half_width, length / (most_nodes_chosen + 1.0), wave,
@@ -178,7 +180,7 @@ Vec2 velocity_of(const Scene& scene, const Attachment& end) {
 
 /// N, of a cable that hangs between two points that stand.
 double hanging_tension(const Scene& scene, const Cable& cable) {
-  constexpr int pieces = 64;
+  constexpr int pieces = 64;  // sag to 1 / n^2 of it; only the number of nodes comes of it
   const double length = length_of(scene, cable);
   const Vec2 d = place_of(scene, cable.end) - place_of(scene, cable.start);
   const Vec2 weight = cable.mass_per_metre * length * scene.gravity;

@@ -152,7 +152,7 @@ bool stands(const Scene& scene, const Attachment& end) {
 /// weight by no tension: a sag s asks for rho g L^2 / 8 s.
 void refuse_what_cannot_sag(const Scene& scene, const Cable& cable, const Vec2& d,
                             const std::string& place) {
-  constexpr double rounding = 1e-12;
+  constexpr double rounding = 1e-12;  // rad: of directions between places that are decimal figures
   if (cable.slack > 0.0 || cable.axial_stiffness < infinity) return;
   if (!stands(scene, cable.start) || !stands(scene, cable.end)) return;
   if (std::abs(cross(d, scene.gravity)) <= rounding * d.norm() * scene.gravity.norm()) return;
@@ -161,6 +161,29 @@ void refuse_what_cannot_sag(const Scene& scene, const Cable& cable, const Vec2& 
       "between two points that stand a cable with mass hangs, and no tension bears its "
       "weight where it is only as long as their distance; give it slack, or an axial "
       "stiffness");
+}
+
+/// Piece k of the cable that `made` tells of, which has `spare` (m) to give, between its nodes.
+Cable piece_of(const Cable& whole, const NodedCable& made, int k, double piece, double spare) {
+  const bool is_last = k == made.pieces;
+  Cable part = whole;
+  part.node_tolerance = 0.0;
+  part.mass_per_metre = 0.0;
+  part.nodes = 0;
+  part.piece = true;
+  part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
+  part.bending_stiffness = 0.0;
+  if (whole.bending_stiffness > 0.0 && !is_last) {
+    part.bends_with = made.first_piece + k;
+    part.bend = whole.bending_stiffness / piece;
+  }
+  part.slack = spare;
+  if (k > 0) {
+    part.name = whole.name + ":" + std::to_string(k);
+    part.start = {made.first_body + k - 1, Vec2::Zero(), false};
+  }
+  if (!is_last) part.end = {made.first_body + k, Vec2::Zero(), false};
+  return part;
 }
 
 NodedCable spread(Scene& scene, std::size_t c, double tension) {
@@ -190,25 +213,9 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
                   static_cast<int>(scene.cables.size()), pieces - 1};
   Vec2 position = from;
   for (int k = 0; k < pieces; ++k) {
-    Cable part = whole;
-    part.node_tolerance = 0.0;
-    part.mass_per_metre = 0.0;
-    part.nodes = 0;
-    part.piece = true;
-    part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
-    part.bending_stiffness = 0.0;
-    if (whole.bending_stiffness > 0.0 && k + 1 < pieces) {
-      part.bends_with = made.first_piece + k;
-      part.bend = whole.bending_stiffness / piece;
-    }
     // What a straight cable has to spare, its pieces share.
-    part.slack = hangs ? 0.0 : whole.slack / pieces;
-    if (k > 0) {
-      part.name = whole.name + ":" + std::to_string(k);
-      part.start = {made.first_body + k - 1, Vec2::Zero(), false};
-    }
+    const Cable part = piece_of(whole, made, k, piece, hangs ? 0.0 : whole.slack / pieces);
     if (k + 1 < pieces) {
-      part.end = {made.first_body + k, Vec2::Zero(), false};
       position +=
           hangs ? Vec2(piece * at(directions, k)) : Vec2(straight / pieces * at(directions, k));
       scene.bodies.push_back(node_of(whole, k + 1, position, at(masses, k)));

@@ -89,8 +89,9 @@ double inner_radius(const BodyProperties& body) {
 }
 
 // The polygon is a sum of triangles from the origin; its rounded outline adds a strip to each side
-// and a sector to each corner. Of a sector of half angle b and radius r the centre lies 2 r sin b /
-// (3 b) from the corner, and its moment about the corner is b r^4 / 2.
+// and a sector to each corner. Of a sector of half angle b and radius r the centre lies
+//     2 r sin b / (3 b)
+// from the corner, and its moment about the corner is b r^4 / 2.
 Plate plate_of(std::span<const Vec2> corners, double r) {
   Plate plate;
   for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "base/at.h"
 #include "sim/scene.h"
 
 namespace pinchlab {
@@ -34,7 +35,7 @@ inline Vec2 turned(const Vec2& x, double angle) {
 /// Where an end is in the world when the scene starts (m).
 inline Vec2 place_of(const Scene& scene, const Attachment& end) {
   if (end.body < 0) return end.point;
-  const Body& body = scene.bodies[static_cast<std::size_t>(end.body)];
+  const Body& body = at(scene.bodies, end.body);
   return body.position + turned(end.point, body.angle);
 }
 

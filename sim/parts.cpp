@@ -17,7 +17,8 @@ namespace pinchlab {
 
 namespace {
 
-/// After this long (s) at rest a part stays at rest: all its forces are constant.
+/// After this long (s) at rest a part stays at rest: all its forces are constant. What is thrown up
+/// or swings is as slow as what rests for a moment only, where it turns round.
 constexpr double rest_time = 0.5;
 
 /// The pairs in contact and the changes of all cables; false if they are those of the last time, as

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/at.h"
 #include "sim/scene.h"
 
 namespace pinchlab {
@@ -69,8 +70,7 @@ struct Parts {
 };
 
 inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {
-  return std::span(all).subspan(static_cast<std::size_t>(begin),
-                                static_cast<std::size_t>(end - begin));
+  return std::span(all).subspan(index(begin), index(end - begin));
 }
 inline std::span<const int> bodies_of(const Parts& parts, const Part& part) {
   return slice(parts.bodies, part.bodies_begin, part.bodies_end);
@@ -92,14 +92,13 @@ void find_parts(const World& world, Workspace& work);
 /// Whether the body's outline is where it was: it cannot change, or its part is idle.
 inline bool is_still(const Parts& parts, int body) {
   if (parts.immobile.empty()) return false;  // not divided yet
-  const auto b = static_cast<std::size_t>(body);
-  return parts.immobile[b] || is_idle(parts.list[static_cast<std::size_t>(parts.of_body[b])]);
+  const std::size_t b = index(body);
+  return parts.immobile[b] || is_idle(at(parts.list, parts.of_body[b]));
 }
 
 /// Whether the cable's part is idle.
 inline bool is_idle(const Parts& parts, std::size_t cable) {
-  return !parts.of_cable.empty() &&
-         is_idle(parts.list[static_cast<std::size_t>(parts.of_cable[cable])]);
+  return !parts.of_cable.empty() && is_idle(at(parts.list, parts.of_cable[cable]));
 }
 
 /// Counts for how many steps the bodies of a part have been at rest, after the solve. A part with a

@@ -16,9 +16,12 @@ namespace pinchlab {
 
 namespace {
 
-constexpr int most_hops = 64;  // along a chain, within an interval
-constexpr double most_curved =
-    1.0;  // length of a piece, of the radius at which cable may lie on it
+// Along a chain, within an interval: ends a search that goes to and fro over a bend. Nothing moves
+// by so many pieces at once.
+constexpr int most_hops = 64;
+// The radius at which cable may lie on what touches it, in lengths of a piece: round what is larger
+// the nodes follow its curve, with pieces less than an eighth of their length off it.
+constexpr double most_curved = 1.0;
 
 bool sleeps(const CableState& piece) {
   return piece.pieces == 0;

@@ -54,6 +54,7 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
       !is_convex(body.corners), place,
       "the corners must go round a convex polygon counter-clockwise, with none on a straight side");
   const Vec2 centre = plate_of(body.corners, body.corner_radius).centre;
+  // Corners that are written with six digits have their centre so near.
   refuse(!(centre.norm() <= 1e-6 * body.radius), place,
          fmt::format(
              "corners are given from the centre of mass, which lies at [{}, {}] of these; take "

@@ -10,6 +10,7 @@
 namespace pinchlab {
 
 double overlap_allowed(const Scene& scene) {
+  // Places that are worked out, and written with ten digits, touch to within this.
   constexpr double share = 1e-9;
   double size = 0.0;
   const auto include = [&size](const Vec2& x) { size = std::max(size, x.cwiseAbs().maxCoeff()); };

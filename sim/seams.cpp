@@ -11,7 +11,9 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double near = 1e-9;  // of lengths, and rad
+// Of lengths, and rad: ends of walls that are meant to be one place, and are written with ten
+// digits. Far above round-off, and no gap that anything could get into.
+constexpr double near = 1e-9;
 
 /// Notes a wall that goes on from an end of another by `on` (m), where it makes a nook that is
 /// narrower than that which is known. `out` is the other's unit vector towards that end.

@@ -47,7 +47,7 @@ Tip tip_of_wall(const Obstacle& wall, int end) {
 
 /// Where corners are this near (m), which of two sides they are in front of is round-off.
 double one_place(const World& world, int body, int other) {
-  constexpr double share = 1e-11;
+  constexpr double share = 1e-11;  // the solver's within_reach: gaps are right to a tenth of it
   const double coordinate = at(world.position, body).cwiseAbs().maxCoeff();
   return share * (coordinate + at(world.bodies, body).radius +
                   (other >= 0 ? at(world.bodies, other).radius : 0.0));
@@ -303,6 +303,7 @@ void append_touches(const World& world, int a, int b, int wall, double most,
   if (!is_polygon(body)) return;
   // Where corner meets corner, one of the two is enough, that with the lesser gap.
   const auto of_a = static_cast<std::ptrdiff_t>(to.size());
+  // Far above round-off, and nothing that turns a body by a force at the one corner or the other.
   const double same = 1e-9 * (body.radius + other.radius);
   for (int k = 0; k < points_of(other); ++k) {
     const Vec2 point = place_of_point(world, b, k);

@@ -42,7 +42,7 @@ struct Happening {
   bool seen = false;   // in the last trial
 };
 
-/// Where things were when an interval began.
+/// Where things were when an interval began: by begin_interval.
 struct Start {
   double time = 0.0;  // s
   std::vector<Vec2> position, velocity;
@@ -66,7 +66,7 @@ struct Trial {
   double wave = 0.0;          // 1/s^2, on cables of nodes under the tensions that it found: waves.h
 };
 
-/// A step's start, but for what Start has, to take it back to.
+/// A step's start, but for what Start has, to take it back to. By keep_start.
 struct StepStart {
   Start start;
   std::vector<int> first_link;  // of Workspace
@@ -80,14 +80,15 @@ struct StepStart {
 
 /// Storage of find_contacts and configure_pinches.
 struct ContactScratch {
-  std::vector<Contact> old_contacts;  // of the step before
+  std::vector<Contact> old_contacts;  // of the step before; by find_contacts
   Lists<int> contacts_of_body;        // bodies without walls; by configure_pinches
-  std::vector<int> fill;              // cursor of contacts_of_body while it is made
+  std::vector<int> fill;              // cursor of contacts_of_body while it is made, likewise
   bool contacts_kept = false;         // all contacts are those of the step before; by find_contacts
   bool pinches_kept = false;          // and all pinches; by configure_pinches
   std::vector<char> stirred;          // parts of which a contact is not; by configure_pinches
-  std::vector<char> stands;           // cables whose links and pinches are those of the step before
-  int configured_changes = -1;        // changes of all cables when pinches were configured
+  std::vector<char> stands;     // cables whose links and pinches are those of the step before;
+                                // likewise
+  int configured_changes = -1;  // changes of all cables when pinches were configured
 };
 
 struct Workspace {
@@ -105,19 +106,18 @@ struct Workspace {
   SweepScratch sweeps;  // of the iterative solver
 
   Start start;                  // of the last interval
-  Instant found;                // for which contacts were found, before the last impact
-  std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide
+  std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide. As that
   std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
-  std::vector<Trial> trials;                     // the last of each part
+  std::vector<Trial> trials;                     // the last of each part; by try_interval, as
   Trial trial;                                   // the last, of all that were tried
-  std::vector<Happening> events;                 // of the interval being tried
-  std::vector<int> known_events;                 // of them, before the trial, by what they are
+  std::vector<Happening> events;  // of the interval being tried; by motion/events.cpp
+  std::vector<int> known_events;  // of them, before the trial; by begin_trial
 
   Neighbourhoods neighbourhoods;  // by advance
   StepStart step_start;           // of a step that has been divided
-  Instant before;                 // at the start of the step; with diagnostics
-  std::vector<double> speeds;     // m/s, of a part's bodies before an impact
-  std::vector<char> repaired;     // parts, at an interval's end
+  Instant before;                 // at the start of the step; with diagnostics, by step
+  std::vector<double> speeds;     // m/s, of a part's bodies before an impact; by strike_and_hasten
+  std::vector<char> repaired;     // parts, at an interval's end; by settle_end
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

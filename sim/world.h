@@ -222,7 +222,8 @@ struct Regularity {
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
-/// bits.
+/// bits. Marks of cables and segments that follow from the rest are here too, since stages that get
+/// no Workspace read them, in the lines of the cache that they read anyway.
 struct World {
   Configuration configuration;
   double step_length = 0.0;  // s

@@ -8,6 +8,7 @@
 
 #include "analysis/experiments/accuracy.h"
 #include "analysis/gnuplot.h"
+#include "base/at.h"
 
 namespace pinchlab::experiments {
 
@@ -37,8 +38,7 @@ std::vector<std::string> row_of(const ProblemResult& result, const std::string& 
   row.push_back(order_text(result.problem, rungs));
   for (const double error : wanted_errors) {
     const int best = cheapest(result.problem, rungs, error, true);
-    row.push_back(best < 0 ? "not reached"
-                           : microseconds(rungs[static_cast<std::size_t>(best)].trial.cpu_s_per_s));
+    row.push_back(best < 0 ? "not reached" : microseconds(at(rungs, best).trial.cpu_s_per_s));
   }
   return row;
 }
@@ -125,8 +125,7 @@ std::string events_sentence(const std::vector<ProblemResult>& all) {
       const int a = cheapest(result->problem, mine, error, true);
       const int b = cheapest(result->problem, result->at_steps, error, true);
       if (a < 0 || b < 0) continue;
-      ratios.push_back(mine[static_cast<std::size_t>(a)].trial.cpu_s_per_s /
-                       result->at_steps[static_cast<std::size_t>(b)].trial.cpu_s_per_s);
+      ratios.push_back(at(mine, a).trial.cpu_s_per_s / at(result->at_steps, b).trial.cpu_s_per_s);
     }
   }
   std::string text = fmt::format(

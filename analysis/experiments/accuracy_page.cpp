@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "analysis/experiments/accuracy.h"
+#include "base/at.h"
 
 namespace pinchlab::experiments {
 
@@ -48,7 +49,7 @@ std::string cheapest_table(const std::vector<ProblemResult>& results) {
         row.push_back(not_reached(result.problem, result.rungs, error));
         continue;
       }
-      const Rung& rung = result.rungs[static_cast<std::size_t>(best)];
+      const Rung& rung = at(result.rungs, best);
       row.push_back(fmt::format("{}, {}: {}", rung.setting, steps_text(rung.steps_per_frame),
                                 microseconds(rung.trial.cpu_s_per_s)));
     }
@@ -63,7 +64,7 @@ std::string peer_cell(const Problem& problem, const PeerResult& peer, double err
   if (!peer.cannot.empty()) return "cannot";
   const int best = cheapest(problem, peer.rungs, error, false);
   if (best < 0) return not_reached(problem, peer.rungs, error);
-  const Rung& rung = peer.rungs[static_cast<std::size_t>(best)];
+  const Rung& rung = at(peer.rungs, best);
   const std::string cost = fmt::format("{} ({})", microseconds(rung.trial.cpu_s_per_s),
                                        steps_text(rung.steps_per_frame));
   return mine ? fmt::format("{}, {:.2g} times ours", cost,
@@ -74,7 +75,7 @@ std::string peer_cell(const Problem& problem, const PeerResult& peer, double err
 const Rung* cheapest_of_ours(const ProblemResult& result, const std::vector<Rung>& rungs,
                              double error) {
   const int best = cheapest(result.problem, rungs, error, true);
-  return best < 0 ? nullptr : &rungs[static_cast<std::size_t>(best)];
+  return best < 0 ? nullptr : &at(rungs, best);
 }
 
 /// "1e-02 to 1e-04"
@@ -168,7 +169,7 @@ std::string where_beaten(const std::vector<ProblemResult>& results,
       for (std::size_t p = 0; p < peers.size(); ++p) {
         const int peer = cheapest(result.problem, result.peers[p].rungs, error, false);
         if (peer < 0) continue;
-        const Rung& rung = result.peers[p].rungs[static_cast<std::size_t>(peer)];
+        const Rung& rung = at(result.peers[p].rungs, peer);
         if (beats(rung)) {
           beaten.note(result.problem, error, peers[p].name + ", " + rung.setting, rung, best);
         }
@@ -215,8 +216,7 @@ std::string peer_sentence(const std::vector<ProblemResult>& results, const Peer&
       ++cases;
       const int best = cheapest(result.problem, result.peers[p].rungs, error, false);
       if (best < 0) continue;
-      ratios.push_back(result.peers[p].rungs[static_cast<std::size_t>(best)].trial.cpu_s_per_s /
-                       own->trial.cpu_s_per_s);
+      ratios.push_back(at(result.peers[p].rungs, best).trial.cpu_s_per_s / own->trial.cpu_s_per_s);
     }
   }
   if (ratios.empty()) {

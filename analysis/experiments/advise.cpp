@@ -13,6 +13,7 @@
 #include "analysis/experiments/accuracy_scenes.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/steady_times.h"
+#include "base/at.h"
 #include "demos/command_line.h"
 #include "demos/scenes/scene_json.h"
 
@@ -160,7 +161,7 @@ int best_to_type(const Question& question, const Advice& advice) {
   rungs.reserve(rows.size());
   for (const std::size_t row : rows) rungs.push_back(advice.rungs[row]);
   const int best = cheapest(advice.problem, rungs, question.error_m, true);
-  return best < 0 ? -1 : static_cast<int>(rows[static_cast<std::size_t>(best)]);
+  return best < 0 ? -1 : static_cast<int>(at(rows, best));
 }
 
 Advice advise(const Question& question) {
@@ -215,7 +216,7 @@ std::string advice_text(const Question& question, const Advice& advice) {
                "finer steps.\n",
                question.error_m);
   }
-  const Rung& best = advice.rungs[static_cast<std::size_t>(advice.best)];
+  const Rung& best = at(advice.rungs, advice.best);
   return text + fmt::format("Cheapest within {:g} m: {}, {} step{} a frame: {:.1e} m off, {}.\n{}",
                             question.error_m, best.setting, best.steps_per_frame,
                             best.steps_per_frame == 1 ? "" : "s", best.trial.error,

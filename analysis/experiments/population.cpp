@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "analysis/experiments/population_scenes.h"
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/diagnostics.h"
 #include "sim/mirror.h"
@@ -35,8 +36,7 @@ void note_spans(const Scene& scene, const World& world, Soundness& sound) {
         sound.loose_span = std::max(sound.loose_span, segment.length - segment.rest_length);
       }
       const Link& to = cable.links[s];
-      const Link& from =
-          cable.links[static_cast<std::size_t>(previous_link(cable, static_cast<int>(s)))];
+      const Link& from = at(cable.links, previous_link(cable, static_cast<int>(s)));
       for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         if (to.body == static_cast<int>(b) || from.body == static_cast<int>(b)) continue;
         const Vec2 x = world.position[b] - segment.tail;
@@ -83,8 +83,7 @@ std::vector<Made> run_samples(int count, int first, Progress& progress,
   std::mutex telling;
   const auto work = [&] {
     for (int i = next++; i < count; i = next++) {
-      samples[static_cast<std::size_t>(i)] =
-          sample(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
+      at(samples, i) = sample(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(i));
       const std::lock_guard lock(telling);
       progress.done(1.0);
     }

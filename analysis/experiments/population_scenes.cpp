@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/at.h"
 #include "sim/compound.h"
 #include "sim/make_world.h"
 #include "sim/nodes.h"
@@ -80,8 +81,8 @@ void add_cable(Random& random, const Surfaces& surfaces, int pulleys, Scene& sce
   for (int p = first; p <= last; ++p) cable.wraps.push_back({p, -1, 0});
   if (!cable.closed) {
     const double low = -2.2 - 0.5 * static_cast<double>(scene.cables.size());
-    const Body left = scene.bodies[static_cast<std::size_t>(first)];
-    const Body right = scene.bodies[static_cast<std::size_t>(last)];
+    const Body left = at(scene.bodies, first);
+    const Body right = at(scene.bodies, last);
     cable.start = make_end(random, surfaces, scene,
                            {left.position.x() - left.radius - random.uniform(0.0, 0.3), low});
     cable.end = make_end(random, surfaces, scene,

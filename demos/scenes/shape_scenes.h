@@ -51,8 +51,8 @@ constexpr double belt_half_width = 0.01;  // m
 Scene belt_drive(double radius, double tension, double difference, int steps_per_frame);
 
 /// Atwood's machine with a heavy rope, of 4 m and 0.4 kg/m in all: weights of 1 and 1.5 kg, bodies
-/// 0 and 1, hang level over a pulley with I / R^2 = 0.25 kg. From rest the heavier one falls by x =
-/// 0.625 m (cosh k t - 1), k^2 = 0.8 kg/m g / 4.35 kg.
+/// 0 and 1, hang level over a pulley with I / R^2 = 0.25 kg. From rest the heavier one falls by
+///     x = 0.625 m (cosh k t - 1),   k^2 = 0.8 kg/m g / 4.35 kg.
 Scene rope_atwood(int steps_per_frame);
 
 /// A rope of 1.6 kg that slips on a standing peg, 0.2 m longer on the right, with 0.1 kg at either

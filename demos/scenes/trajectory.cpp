@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string>
 
+#include "base/at.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/scenes/fineness.h"
@@ -31,7 +32,7 @@ void add_bodies(const Player& player, std::string& rows) {
 }
 
 const char* body_name(const Scene& scene, const Link& link) {
-  return link.body < 0 ? "world" : scene.bodies[static_cast<std::size_t>(link.body)].name.c_str();
+  return link.body < 0 ? "world" : at(scene.bodies, link.body).name.c_str();
 }
 
 void add_segments(const Player& player, std::string& rows) {

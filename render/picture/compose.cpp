@@ -240,7 +240,7 @@ class Composer {
   void add_stop(const CableState& cable) {
     const Link& body = cable.links.back();
     const Vec2 axis = cable.segments[1].direction;
-    const double radius = scene_.bodies[static_cast<std::size_t>(body.body)].radius;
+    const double radius = at(scene_.bodies, body.body).radius;
     const Vec2 foot =
         cable.links.front().offset + (cable.length + radius) * axis + 1.2 * scenery_.line() * axis;
     const Vec2 half = std::max(0.5 * radius, 1.5 * scenery_.unit()) * left(axis);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "sim/step.h"
 #include "sim/tangent.h"
@@ -126,7 +127,7 @@ void Rehearsal::look(const World& world, bool keep) {
     if (!cable.fills) continue;
     for (const Link& link : cable.links) {
       if (link.body < 0) continue;
-      double& fullest = scenery_.fullest[static_cast<std::size_t>(link.body)];
+      double& fullest = at(scenery_.fullest, link.body);
       fullest = std::max(fullest, thickness_of_layers(link));
     }
   }
@@ -234,7 +235,7 @@ void Rehearsal::place_arrows() {
     double least = infinity;
     for (int k = 0; k < 8; ++k) {
       constexpr std::array<int, 8> order = {2, 1, 3, 0, 4, 7, 5, 6};  // from the top down
-      const double middle = order[static_cast<std::size_t>(k)] * 0.25 * std::numbers::pi;
+      const double middle = at(order, k) * 0.25 * std::numbers::pi;
       double sum = 0.0;
       for (int j = -2; j <= 2; ++j) {
         const double angle = middle + 0.28 * j;

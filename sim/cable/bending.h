@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Bending of chains of nodes: where two pieces of length l meet at the angle th, a moment M = EI th
-// / l.
+// Bending of chains of nodes: where two pieces of length l meet at the angle th, a moment
+//     M = EI th / l.
 
 #include "sim/world.h"
 

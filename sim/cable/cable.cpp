@@ -98,10 +98,13 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 namespace {
 
 /// The radius of a drum's outermost turn depends on the direction of the span that leaves it, which
-/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by w /
-/// (pi length) each time.
+/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by
+///     w / (pi length)
+/// each time.
 void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
                         const Link& from, const Link& to) {
+  // A span as long as the cable is wide gains a factor pi with each, all bits with 33; what is
+  // shorter still has no room for a turn more or less.
   constexpr int most_rounds = 60;
   const Segment& span = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
@@ -111,7 +114,7 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
     const double alpha = unwrapped(heading(e), span.alpha);
     const double before = drum.radius;
     drum.radius = drum.layers.radius(std::max(0.0, turned_until(drum, alpha, angle)));
-    if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;
+    if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;  // not by a bit
   }
 }
 

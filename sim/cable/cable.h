@@ -71,6 +71,13 @@ inline double material_rounding(const CableState& cable) {
   return 1e-15 * cable.length;
 }
 
+/// What a body that presses the cable in a pinch holds it by, as a share of the force that presses;
+/// infinity: without slip. The law that it is part of: solve/friction.h.
+inline double friction_in_pinch(const World& world, const CableState& cable, int body) {
+  if (cable.grip == 0.0) return 0.0;  // of no slip too: 0 times infinity
+  return cable.grip * at(world.bodies, body).cable_friction;
+}
+
 /// Whether bodies that pinch the cable sink into it.
 inline bool yields(const CableState& cable) {
   return cable.least_gap < 2.0 * cable.half_width;

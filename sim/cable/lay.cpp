@@ -193,6 +193,9 @@ void choose_first_heading(CableState& cable) {
 
 /// Wrap angles from the turning of the tangents, in [0, 2 pi) plus the turns asked for.
 void lay_wraps(const Scene& scene, Course& course) {
+  // A cable that is to run nearly all the way round crosses itself there, which is rarely meant: a
+  // body that it should pass just so on the other side asks for that. 30 degrees are more than such
+  // a touch, and less than what pulleys beside one another leave of a turn.
   constexpr double suspicious = 330.0 / 360.0 * turn;
   CableState& cable = course.cable;
   choose_first_heading(cable);

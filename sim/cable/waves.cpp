@@ -10,10 +10,13 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double in_steps = 1.0;                // (omega h)^2 of a whole step at most
-constexpr double in_intervals = 0.25;           // of the intervals of others, as tried
-constexpr double at_most = 2.0 * in_intervals;  // with the tensions that have come of them
-constexpr double shortest = 1e-3;               // of a step: an interval for waves
+// The header has the reasons: (omega h)^2 where omega h is 1 and a half, and what is lost.
+constexpr double in_steps = 1.0;       // of a whole step at most
+constexpr double in_intervals = 0.25;  // of the intervals of others, as tried
+// With the tensions that have come of them: they may double before an interval is tried again, so
+// that one that rises does not ask for a trial each time; omega h is well below 1 still.
+constexpr double at_most = 2.0 * in_intervals;
+constexpr double shortest = 1e-3;  // of a step: an interval for waves
 
 }  // namespace
 

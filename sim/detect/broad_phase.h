@@ -70,14 +70,15 @@ struct BroadPhase {
   std::vector<BodyPair> body_pairs;    // sorted
   std::vector<WallPair> wall_pairs;    // sorted
   std::vector<PiecePair> piece_pairs;  // sorted
-  std::vector<PieceEnds> pieces;       // that are awake: while `boxes` are those of a world
+  std::vector<PieceEnds> pieces;       // that are awake: while `boxes` are those of a world; by
+                                       // list_pieces
   std::vector<int> near_pieces;        // bodies and, as -1 - wall, walls: of find_piece_pairs
   std::vector<int> no_nodes;           // bodies that pieces may meet, likewise
   std::vector<char> meets_pieces;      // of each body, likewise
-  std::vector<SpanPair> span_pairs;    // sorted, unless patched
-  std::vector<SpanList> of_cable;
-  std::vector<int> last_of_body;  // the last of span_pairs with each body, or -1
-  std::vector<int> one_before;    // of each of span_pairs, that with the same body before it, or -1
+  std::vector<SpanPair> span_pairs;    // sorted, unless patched; by find_span_pairs, as all of
+  std::vector<SpanList> of_cable;      // these:
+  std::vector<int> last_of_body;       // the last of span_pairs with each body, or -1
+  std::vector<int> one_before;  // of each of span_pairs, that with the same body before it, or -1
   bool patched =
       false;  // within a divided step pairs of single cables were found anew: they are at
               // the end of span_pairs, and those that they had count no more

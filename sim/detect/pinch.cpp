@@ -112,8 +112,8 @@ void note_cable_held(const World& world, const CableState& cable, const Link& li
   if (link.layers.way != 0) {
     contact.layers_cable = static_cast<int>(&cable - world.cables.data());
   }
-  if (at(world.bodies, link.body).cable_friction < infinity || cable.grip == 0.0) return;
-  const double mu = cable.grip * at(world.bodies, presser).cable_friction;
+  if (at(world.bodies, link.body).cable_friction < infinity) return;
+  const double mu = friction_in_pinch(world, cable, presser);
   contact.pressed_friction = std::max(contact.pressed_friction, mu);
 }
 
@@ -125,7 +125,8 @@ bool off_side(const World& world, const CableState& cable, const Contact& contac
   const Link& link = cable.links[i];
   const Vec2 x =
       nearest_place(world, contact, link.body) - place_of_point(world, link.body, link.corner);
-  constexpr double at_corner = 1e-9;  // of the body's radius
+  // Of the body's radius: nearer to the corner, the way from it is round-off and has no direction.
+  constexpr double at_corner = 1e-9;
   const double distance = x.norm();
   if (distance <= at_corner * at(world.bodies, link.body).radius) return false;
   const int before = previous_link(cable, static_cast<int>(i));
@@ -194,7 +195,8 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
 }
 
 /// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
-/// closes by the second-order gap of a rolling step.
+/// closes by the second-order gap of a rolling step: half of what gaps may err by before a promise
+/// is broken (promises.h), so that what it keeps breaks none.
 void remove_open_pinches(World& world, const Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (work.contacts.stands[c] || is_idle(work.parts, c)) continue;
@@ -204,9 +206,10 @@ void remove_open_pinches(World& world, const Workspace& work) {
       if (!link.pinch_middle) continue;
       const int pressed = at(cable.links, previous_link(cable, i)).body;
       const Contact* contact = find_contact(world, link.body, pressed, link.contact);
+      constexpr double margin = 5e-4;  // of the width
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
-          (!presses(world, cable, *contact) && contact->gap > width * (1.0 + 5e-4))) {
+          (!presses(world, cable, *contact) && contact->gap > width * (1.0 + margin))) {
         leave_body(world, cable, i);
       }
     }

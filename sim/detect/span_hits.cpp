@@ -60,7 +60,8 @@ Circle circle_of(const World& world, const Workspace& work, const CableState& ca
 /// The middle link of a pinch near the end of the wrapped arc comes off through that arc's removal,
 /// not by hitting the span that leaves the arc.
 bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
-  constexpr double near_end = 0.5;  // rad
+  // rad: more than an arc that comes off turns by in a step, far less than to the next turn.
+  constexpr double near_end = 0.5;
   const int head = static_cast<int>(segment);
   const int tail = previous_link(cable, head);
   const int before = previous_link(cable, tail), after = next_link(cable, head);

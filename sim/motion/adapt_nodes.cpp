@@ -18,7 +18,9 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double hysteresis = 0.5;  // of what makes one piece two: what lets two be one
+// Of what makes one piece two, what lets two be one: so that nothing comes and goes at one border,
+// though two pieces show somewhat less of a curve than one would.
+constexpr double hysteresis = 0.5;
 
 /// A straight line between two ends: of a piece, or of what two would become.
 struct Line {
@@ -237,7 +239,9 @@ bool is_still(const NodeChain& chain, const Workspace& work) {
 
 /// Lets out the bend of a piece towards where half of its tension would have it.
 void let_out(const Scene& scene, World& world, const NodeChain& chain, int first) {
-  constexpr double enough = 0.999;  // a share that is to be left: nothing changes
+  // A share that is to be left: nothing changes. A bend is within the tolerance, and a thousandth
+  // of that does not show; so a cable at rest hangs as it hung.
+  constexpr double enough = 0.999;
   CableState& cable = at(world.cables, piece_of(chain, first));
   const Segment& segment = cable.segments[1];
   const double spare = cable.pieces * chain.piece_length - cable.length;

@@ -34,12 +34,14 @@
 // line, and neither is pushed. So nothing comes and goes at one border.
 //
 // A bend that is held does not give by itself as the tension T rises. At equilibrium the least
-// energy -T c - R(theta) h . g has, of a bend f times as great (to second order in it, with D = n l
-// - c and the moment's weight across G = n . g h_y), f = G / (2 T D). Where that is less than 1 for
-// half of the last tension, the bend is let out to it, by the critically damped f'' = (f_0 - f) w^2
-// - 2 w f' of w^2 = g / c: at no more than D g / c, so slowly that the rest of the cable hardly
-// feels it. The ends gain length under at least the tension that this needs, and lose what energy
-// is over. So a cable that is drawn taut becomes as long as it is.
+// energy -T c - R(theta) h . g has, of a bend f times as great (to second order in it),
+//     f = G / (2 T D),   D = n l - c,   G = n . g h_y   the moment's weight across.
+// Where that is less than 1 for half of the last tension, the bend is let out to it, by the
+// critically damped
+//     f'' = (f_0 - f) w^2 - 2 w f',   w^2 = g / c:
+// at no more than D g / c, so slowly that the rest of the cable hardly feels it. The ends gain
+// length under at least the tension that this needs, and lose what energy is over. So a cable that
+// is drawn taut becomes as long as it is.
 
 #include "sim/world.h"
 

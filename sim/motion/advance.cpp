@@ -31,8 +31,10 @@ namespace pinchlab {
 
 namespace {
 
-constexpr int most_rebounds = 24;  // of a step's events: what comes after them does not rebound
-constexpr int most_events = 48;    // that are located in one step
+// Of a step's events: what comes after most_rebounds does not rebound, so that what bounces without
+// end lies still for the other half of those that are located. Both bound what a step may cost.
+constexpr int most_rebounds = 24;
+constexpr int most_events = 48;
 
 // Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round
 // what they are in without end, each change making more, and steps last minutes.
@@ -41,7 +43,7 @@ constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part,
                    double lag) {
-  constexpr int changes_of_motors = 8;
+  constexpr int changes_of_motors = 8;  // as in solve_with_motors
   TimeSpan t;
   t.repair = world.step_length;
   t.kick = t.lag = lag;
@@ -86,6 +88,7 @@ bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
   if (!part.can_move) return false;
   for (const int number : contacts_of(parts, part)) {
     const Contact& c = at(world.contacts, number);
+    // By more than what solves of other events leave, each within a reach.
     if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
     if (can_give(world, c)) return true;
   }
@@ -289,7 +292,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   if (!round.may_divide) {
     length = length_to_try(world, work, movers.parts, length, course.located);
   }
-  constexpr double next_to_nothing = 1e-2;
+  constexpr double next_to_nothing = 1e-2;  // halvings for other reasons end at a 32nd
   bool met = true, crept = false;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);

@@ -26,7 +26,9 @@ void find_gone_links(const World& world, Workspace& work, int part);
 void find_span_hits(const Scene& scene, const World& world, Workspace& work);
 
 /// What closes is met early rather than late, by this share of its reach, so that nothing is ever
-/// squeezed or stretched; what changes a cable's course late, so that it has happened.
+/// squeezed or stretched; what changes a cable's course late, so that it has happened. It is met
+/// within half of that either way (locate_first_event): never on the other side of nothing, and
+/// well within the reach.
 constexpr double aim = 0.25;
 
 /// Of the events the one of least clearance, over its reach; 0 where it is aimed at.

@@ -29,12 +29,16 @@ namespace {
 // it into, and that bodies move so little in that only round-off would be corrected.
 constexpr double shortest = 1e-4;
 constexpr double shortest_corrected = 1e-6;
-constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles
-constexpr double bent = 0.5;  // most that a way may bend in an interval, as a share of the speed
-constexpr double shortest_told = 1e-3;  // of a step, whose impulses tell forces
-constexpr int shake_rounds = 12;        // each gains at least a factor 2 (move_part), mostly 100
-constexpr int most_trials = 60;         // of an interval's length
-constexpr int most_halvings = 5;        // of an interval that does not converge
+constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles: nobody sees it
+// Most that a way may bend in an interval, as a share of the speed: beyond it what the first
+// solution knows of the way's end has little to do with that.
+constexpr double bent = 0.5;
+// Of a step, whose impulses tell forces: in shorter ones what round-off of positions asks for, as
+// much however short they are, is no small part of them.
+constexpr double shortest_told = 1e-3;
+constexpr int shake_rounds = 12;  // each gains at least a factor 2 (move_part), mostly 100
+constexpr int most_trials = 60;   // of an interval's length, which has 53 bits to be halved for
+constexpr int most_halvings = 5;  // of one that does not converge: on a 32nd ways hardly bend
 
 /// How an interval is tried.
 struct Attempt {
@@ -170,7 +174,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
 /// are those of the interval's start, does not know half of the force that a curved way takes.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
                const Attempt& attempt, Trial& trial, Stopwatch& watch) {
-  constexpr int most_changes = 8, most_turns = 3;
+  constexpr int most_changes = 8;  // as in solve_with_motors
+  constexpr int most_turns = 3;    // each motor to its limit, back, and no third time
   PartSystem& s = at(work.systems, part.system);
   bool met = move_part(scene, world, work, part, t, attempt, most_changes, trial, watch);
   for (int turn = 0; met && turn < most_turns && change_limited_motors(s); ++turn) {
@@ -258,6 +263,8 @@ bool errs(const World& world, const Trial& trial) {
 /// far in that the cable's directions tell, and lengths are exact only if that is next to nothing:
 /// an interval is taken up to there. Another in succession would not help.
 double share_to_try(const Trial& trial, const Movers& movers) {
+  // No less than what corrections can tell (shortest_corrected), and of the share that would just
+  // do somewhat less, lest the next trial misses by a hair.
   constexpr double half = 0.5, least = 1e-6, safety = 0.7;
   if (!trial.contradicts || movers.crept || !(trial.excess < infinity)) return half;
   return std::clamp(safety / std::sqrt(trial.excess), least, half);
@@ -283,6 +290,8 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     again(shake_rounds);
   }
   double whole = length;  // before the first halving
+  // Below, an interval becomes no shorter than a tenth at once, as what it is chosen by was found
+  // with the long one, and at least so much that another trial is worth its cost.
   for (int halvings = 0;;) {
     if (is_outrun(world, trial, length)) {
       length *= std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
@@ -336,6 +345,7 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
     }
     double share = 0.5;
     if (early_by < infinity && early_by > 0.0) share = early_by / (early_by - late_by);
+    // Not so near to an end that the trial tells nothing new.
     const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
     if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
     tried = next;

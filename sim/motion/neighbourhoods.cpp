@@ -17,7 +17,7 @@ namespace {
 
 /// Where a body may get to in a step from its start, at twice its speed.
 Reach reach_of(const Scene& scene, const World& world, const Start& start, int body) {
-  constexpr double room = 1.02;
+  constexpr double room = 1.02;  // contacts are looked for somewhat further than bodies reach
   const double h = world.step_length;
   Reach reach{body, at(start.position, body), room * at(world.bodies, body).radius};
   if (is_static(at(world.bodies, body))) return reach;

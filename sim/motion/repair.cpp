@@ -18,6 +18,8 @@ namespace pinchlab {
 
 namespace {
 
+// Where directions turn little, a repair leaves the square of what it found, so that few do; the
+// rest is for ways that are halved. What a 64th of a way makes no better, the way is wrong for.
 constexpr int most_repairs = 8, most_halvings = 6;
 
 /// The most that a part's constraints are violated by (m).
@@ -143,7 +145,9 @@ void empty_pinches(World& world, const Parts& parts) {
 }
 
 bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
-  constexpr double longest = 0.05;  // of a body's radius
+  // Of a body's radius: on it directions turn by about as many radians, and rows err by half the
+  // square of that, a thousandth.
+  constexpr double longest = 0.05;
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;

@@ -12,9 +12,11 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double slow_share = 1e-6;   // of Delta^2: what turns by a milliradian in vanishing_time
-constexpr double short_share = 0.5;   // of Delta: what is longer hardly turns
-constexpr double least_share = 1e-4;  // of a step
+constexpr double slow_share = 1e-6;  // of Delta^2: what turns by a milliradian in vanishing_time
+constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
+// Of a step, which the touch itself would ask to be 0; at tau = 1e-6 T, where the span has a
+// thousandth of its length.
+constexpr double least_share = 1e-4;
 
 /// The time for which a span between two links has been there, or will be (s), where that is less
 /// than `most`; else that.

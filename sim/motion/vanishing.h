@@ -25,7 +25,9 @@ namespace pinchlab {
 
 struct Parts;
 
-constexpr double vanishing_time = 1.0 / 30.0;  // s
+/// s. Not so many steps: it must stay while these get shorter, for the second order. About a frame,
+/// so that only the frame of the touch costs the 3 T / h intervals.
+constexpr double vanishing_time = 1.0 / 30.0;
 
 /// How long an interval of these parts may be (s), as the world is; infinity: as long as the step.
 /// No shorter than a share of 1e-4 of it.

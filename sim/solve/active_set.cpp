@@ -70,8 +70,11 @@ Tolerances tolerances(const PartSystem& s, const SolveScratch& scratch) {
     if (row.on) speed = std::max(speed, std::abs(row.bias));
   }
   // What takes many solves is round-off more likely than not: it is given more room with each.
+  // A thousandfold is still far below what shows.
   constexpr int patience = 4, most_doublings = 10;
   const int doublings = std::clamp(scratch.solves - patience, 0, most_doublings);
+  // Of speeds some thousand units in their last place, as a long cable adds them up, and some units
+  // of its extent; of impulses a hundred times that, since they come by way of a matrix.
   const double tolerance =
       std::ldexp(1e-12 * speed + 1e-15 * s.extent / scratch.step_length, doublings);
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
@@ -80,7 +83,7 @@ Tolerances tolerances(const PartSystem& s, const SolveScratch& scratch) {
 /// Against its friction; but the other way where a row has slid that way in this step and was found
 /// to stick: then friction presses the bodies together by more than it takes to slide (Painleve).
 Slip direction_of_sliding(const Friction& friction, const Row& row, double bound, int solves) {
-  constexpr int patience = 4;
+  constexpr int patience = 4;  // solves, in which what presses may find its state
   const Slip against = slip_of(row.impulse, bound);
   if (friction.slid != against || solves < patience) return against;
   return against == Slip::forward ? Slip::backward : Slip::forward;
@@ -271,6 +274,8 @@ void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
 /// impulse of its own, no friction has changed its state in this step, which has remedies of its
 /// own, and there is no more than a fallback should take on.
 bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
+  // Its work is that of a full basis, the cube of their number, where a guess costs about their
+  // number: of 300, 3e7 operations, some hundredths of a second.
   constexpr std::size_t most_rows = 300;
   if (!s.sleeves.empty() || s.rows.size() > most_rows) return false;
   // A motor that winds in what hardly can give is to stall (motors.h): held exactly it throws that.
@@ -311,7 +316,10 @@ bool solve_for_rows(PartSystem& s, SolveScratch& set) {
 
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
-  // All contradicted states flip while that makes progress, then one at a time.
+  // All contradicted states flip while that makes progress, then one at a time. Remedies come in
+  // the order of what they give up: nothing but time, what has slid so far, sliding for the whole
+  // step, friction, the solution. After each there are solves enough for a dozen states to flip one
+  // at a time and settle before the next.
   constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
                 before_dropping = 80, most_solves = 150;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
@@ -376,6 +384,8 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
   clear_negative(s);
   for (Run& run : capstan.runs) run.speed = 0.0;
   apply_impulses(s);
+  // A fallback, which is told: it is to be finite and to make no energy, rather than right. With
+  // each sweep a row's impulse reaches the next one at least.
   constexpr int sweeps = 200;
   for (int k = 0; k < sweeps; ++k) {
     for (std::size_t r = 0; r < s.rows.size(); ++r) {

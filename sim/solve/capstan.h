@@ -48,6 +48,9 @@ struct Shortage {
   bool gives = false;      // impulses on it move something
 };
 
+/// What of a part slides. Runs, passages and the lists by cables are of find_runs, and stand for a
+/// step's solves; groups and all of theirs of make_groups, anew for each guess of the states; terms
+/// of express_impulses and add_group_equations; speeds, factors and end impulses of slip_speeds.
 struct CapstanScratch {
   std::vector<Run> runs;
   std::vector<Passage> passages;

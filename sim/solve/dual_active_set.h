@@ -19,6 +19,8 @@ namespace pinchlab {
 
 struct PartSystem;
 
+/// Storage of solve_dual, which writes all of it. Others read of it then: way, energy and what is
+/// skipped or unbiased.
 struct DualScratch {
   int dimension = 0;
   double step_length = 0.0;         // s, by which what rows have missed becomes their biases

@@ -25,9 +25,10 @@ double capstan_factor(double mu, double arc) {
 void append_pressed_end(const World& world, const SolveScratch& scratch, const Segment& segment,
                         double mu, std::vector<Passage>& passages) {
   if (segment.contact < 0 || mu == 0.0) return;
+  const Press press = press_of(world, scratch, segment.contact, mu);
   Passage passage;
-  passage.normal = at(scratch.normal_row_of_contact, segment.contact);
-  passage.friction = share(mu, at(world.contacts, segment.contact));
+  passage.normal = press.normal;
+  passage.friction = press.friction;
   passages.push_back(passage);
 }
 
@@ -37,13 +38,20 @@ double share(double mu, const Contact& contact) {
   return mu / std::max(1, contact.pinch_points);
 }
 
-double friction_in_pinch(const World& world, const CableState& cable, int body) {
-  if (cable.grip == 0.0) return 0.0;  // of no slip too: 0 times infinity
-  return cable.grip * at(world.bodies, body).cable_friction;
+Press press_of(const World& world, const SolveScratch& scratch, int contact, double mu) {
+  if (contact < 0) return {};
+  return {at(scratch.normal_row_of_contact, contact), share(mu, at(world.contacts, contact))};
 }
 
 double contact_coefficient(double mu_a, double mu_b) {
   return std::sqrt(mu_a * mu_b);
+}
+
+double coefficient_of(const World& world, const Contact& contact) {
+  if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
+  const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
+                                      : at(world.obstacles, contact.wall).contact_friction;
+  return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);
 }
 
 Friction contact_friction(int row, int normal, double coefficient) {
@@ -164,10 +172,9 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
             capstan_factor(friction_in_pinch(world, cable, part.body), middle_arc);
       } else {
         at(system.frictions, at(system.rows, passage.middle).friction).run = run;
-        if (part.contact >= 0) {
-          passage.normal = at(scratch.normal_row_of_contact, part.contact);
-          passage.friction = share(pinched_mu, at(world.contacts, part.contact));
-        }
+        const Press press = press_of(world, scratch, part.contact, pinched_mu);
+        passage.normal = press.normal;
+        passage.friction = press.friction;
       }
     } else {
       passage.factor = capstan_factor(mu, at(system.wraps, begin + i));

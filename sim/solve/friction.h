@@ -8,7 +8,8 @@
 //   pinch on the way:         T_after - T_before within mu N of the wrapped body, less what the
 //                             middle body takes
 //
-// A contact's force is shared evenly by the cables (or turns of one) that lie in it.
+// A contact's force is shared evenly by the cables (or turns of one) that lie in it. The mu of a
+// pinch stands in cable/cable.h (friction_in_pinch), since detection asks for it too.
 
 #include <algorithm>
 #include <cmath>
@@ -61,13 +62,23 @@ constexpr double largest_exponent = 40.0;
 /// A contact's coefficient for one of the cables that lie in it.
 double share(double mu, const Contact& contact);
 
-/// What a body that presses the cable in a pinch holds it by, as a share of the force that presses;
-/// infinity: without slip.
-double friction_in_pinch(const World& world, const CableState& cable, int body);
+/// What presses a cable at a contact: the row of its force, or -1, and the most that this holds of
+/// the cable, as a share of it.
+struct Press {
+  int normal = -1;
+  double friction = 0.0;
+};
+
+/// Of a contact, or none (-1), by a body that holds what is pressed by `mu`.
+Press press_of(const World& world, const SolveScratch& scratch, int contact, double mu);
 
 /// Coulomb coefficient of two bare surfaces: the geometric mean of the two bodies' (or the body's
 /// and the wall's).
 double contact_coefficient(double mu_a, double mu_b);
+
+/// Of a contact, of bare surfaces or on a cable that is held between them; 0 where that cable's own
+/// rows have it.
+double coefficient_of(const World& world, const Contact& contact);
 
 /// Friction of a bare contact of the given coefficient, pressed by row `normal`.
 Friction contact_friction(int row, int normal, double coefficient);

@@ -18,7 +18,8 @@ namespace pinchlab {
 
 namespace {
 
-/// Below this part of a body's mass a span's share is not worth adding up.
+/// Below this part of a body's mass a span's share is not worth adding up: twenty spans of one body
+/// would have to pull on it for a body to be too light by what is left out.
 constexpr double negligible = 0.05;
 
 bool is_node(const World& world, const Link& link) {
@@ -171,6 +172,7 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     impulse += std::abs(row.impulse);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
+  // Far below any gain that shows; and round-off of speeds that large impulses work on.
   constexpr double rounding = 1e-9, of_impulses = 1e-14;
   return gain > rounding * energy + of_impulses * impulse * fastest;
 }

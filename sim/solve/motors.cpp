@@ -8,10 +8,11 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double rounding = 1e-9;  // of a torque, or an angular velocity
-constexpr double contradicting =
-    1e-6;                        // of a rim's speed: far above round-off, far below its share
-constexpr double thrown = 10.0;  // times that
+// Of a torque, or an angular velocity: far above round-off of sums of rows, and no motor's table
+// tells so little apart.
+constexpr double rounding = 1e-9;
+// Of a rim's speed: far above round-off, far below its share.
+constexpr double contradicting = 1e-6;
 
 /// Angular impulse of the rows on a body (N m s).
 double impulse_of_rows(const PartSystem& s, int place) {

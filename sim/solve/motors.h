@@ -24,6 +24,10 @@ void add_stalled_motor(const BodyProperties& body, int place, double before, Par
 /// Whether it can hold its speed by itself, or gives all it can.
 void find_first_state(Motor& motor);
 
+/// Times a rim's speed: what cables make faster than that, they throw. A body that a motor drives
+/// by a cable goes at its rim's speed, or at some times that where the cable bends.
+constexpr double thrown = 10.0;
+
 /// What the motors do to the free velocities and mobilities of the part's bodies.
 void drive(PartSystem& system);
 
@@ -33,15 +37,15 @@ void drive(PartSystem& system);
 /// that gives all it can holds its speed where it would turn faster.
 bool change_limited_motors(PartSystem& system);
 
-/// The same for all motors. Where cables of the part
-/// that cannot give contradict a motor without a limit, or could only give by throwing a body at
-/// ten times its rim's speed, it stalls: it leaves its body to the cables for this kick, unless
-/// that does not help and it threw nothing.
+/// The same for all motors. Where cables of the part that cannot give contradict a motor without a
+/// limit, or could only give by throwing a body, it stalls: it leaves its body to the cables for
+/// this kick, unless that does not help and it threw nothing.
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                    const SolveScratch& scratch);
 
 /// Makes the rows of a part and solves them by `solve`, again where its motors change what they do;
-/// returns what the last solve did. With `most_changes` of 0 they do what they do.
+/// returns what the last solve did. With `most_changes` of 0 they do what they do. Each has five
+/// states (MotorState): eight changes are more than one goes through, and end a cycle.
 template <typename Solve>
 bool solve_with_motors(const Scene& scene, const World& world, Workspace& work, const Part& part,
                        const TimeSpan& interval, Stopwatch& watch, Solve solve,

@@ -96,8 +96,9 @@ struct ThirdBody {
   Eigen::Vector3d j = Eigen::Vector3d::Zero(), response = j;
 };
 
-/// A row's own values. w = J v + bias, impulse p: a unilateral row asks p >= 0, w + compliance p >=
-/// 0, p (w + compliance p) = 0. The impulse changes the bodies' velocities by mobility * J^T p.
+/// A row's own values. With w = J v + bias and the impulse p a unilateral row asks
+///     p >= 0,   w + compliance p >= 0,   p (w + compliance p) = 0.
+/// The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind = RowKind::segment;
   Slip slip = Slip::stick;  // active set: friction rows
@@ -229,8 +230,9 @@ struct PartSystem {
   std::vector<Forcing> forcing;                // what the mobilities' kick adds
   std::vector<Eigen::Vector3d> free_velocity;  // m/s, m/s, rad/s: after forces, before impulses
   std::vector<Eigen::Vector3d> velocity;       // likewise, after impulses
-  std::vector<SpanMass> span_masses;           // empty until one body is too light
-  std::vector<Motor> motors;                   // of its driven bodies
+  std::vector<SpanMass> span_masses;           // empty until one body is too light; by
+                                               // steady_light_bodies
+  std::vector<Motor> motors;                   // of its driven bodies; states by solve_with_motors
   std::vector<Eigen::Matrix3d> carried;        // by its bodies; empty: cables without mass
   double mobility_kick = 0.0;                  // s, what the mobilities are for
   double extent_of_still = 0.0;                // m, coordinates of bodies that cannot move at most
@@ -253,10 +255,12 @@ struct PartSystem {
   bool segments_stand = false;  // and so are their bodies and diagonals
   bool same_rows = false;       // all rows are of what they were of in the step before
   bool rows_stand = false;      // and so are their bodies and diagonals
-  bool factored = false;        // `ldl` has factors of its matrix, and no row repeats others
+  bool factored = false;        // `ldl` has factors of its matrix, and no row repeats others; by
+                                // solve_for_states
   std::vector<int> middles;     // rows of kind pinch_middle
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
-  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending
+  std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending. By
+                                // find_repeated_middles
 
   // Order of the rows and what it is for, two bodies a row; by order_rows.
   std::vector<int> structure, order;
@@ -268,22 +272,25 @@ struct PartSystem {
   std::vector<double> scale;   // diagonals
 
   // Beside what every step reads.
-  CableMasses masses;                          // of its cables; bodies are places in the part
+  CableMasses masses;                          // of its cables; bodies are places in the part. By
+                                               // apply_forces
   std::vector<Eigen::Vector3d> flow;           // N, N, N m: find_flow_forces, in free_velocity,
   std::vector<Eigen::Vector3d> flow_velocity;  // at these velocities; by follow_flow
   std::vector<Eigen::Vector3d> flow_before;    // storage of follow_flow
-  std::vector<SleevePlace> sleeves;            // bodies between the part's own and the world
+  std::vector<SleevePlace> sleeves;            // bodies between the part's own and the world; by
+                                               // find_sleeves, laws by make_sleeve_rows
   std::vector<Sleeve> listed_sleeves;          // storage of find_sleeves
-  std::vector<Term> rub_terms;                 // of rows
+  std::vector<Term> rub_terms;                 // of rows; by make_sleeve_rows, as
   double rub_kick = 0.0;                       // s, that the rows are for,
   Vec2 rub_fall = Vec2::Zero();                // m/s, and what gravity adds in it
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   std::vector<ElasticEnd> elastic_ends;        // of the rows; empty without elastic cables that may
-                                               // slide
-  std::vector<int> row_of_segment;             // cable after cable; -1: none
+                                               // slide. By make_all_elastic
+  std::vector<int> row_of_segment;             // cable after cable; -1: none. By
+                                               // make_segment_rows, as
   std::vector<int> segment_begin;              // of the part's cables, in row_of_segment
   std::vector<double> wraps;  // rad, of links when the rows were made, as row_of_segment; of parts
-                              // that may slide
+                              // that may slide. By note_wraps
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
 };

@@ -24,7 +24,8 @@ namespace {
 bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
   if (!set.direct) return false;
   const double round_off = s.reach / set.step_length;  // m/s
-  constexpr double residual = 1e-15;  // of a row's equation, as a share of its own impulse's part
+  // Of a row's equation, as a share of its own impulse's part: some units in its last place.
+  constexpr double residual = 1e-15;
   return std::all_of(s.rows.begin(), s.rows.end(), [round_off](const Row& row) {
     return !row.on || (std::abs(row.bias - row.curved) <= round_off &&
                        residual * row.diagonal * std::abs(row.impulse) <= round_off);
@@ -34,7 +35,7 @@ bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
 /// What counts as energy made (J), where the solver knows it but for round-off: of speeds, as a
 /// share of what the rows have changed.
 double least_energy(const SolveScratch& set) {
-  constexpr double rounding = 1e-11;
+  constexpr double rounding = 1e-11;  // as makes_energy has it, of energies
   double energy = 0.0;
   for (const double way : set.dual.way) energy += way * way;
   return rounding * (energy + std::abs(set.dual.energy));
@@ -62,6 +63,7 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
                std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
+  // Ten times active_set.cpp's tolerance: what that has let pass makes no energy.
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;
   return !(made <= impulse * rounding + 2.0 * made_up);
 }
@@ -84,7 +86,6 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   held.may_slide = false;
   const bool held_settled = solve_direct(world, parts, held, s, set);
   // A motor may wind in what cannot slide any more, and throw what hardly bends the cable.
-  constexpr double thrown = 10.0;
   const bool throws = !s.motors.empty() && greatest_speed(s.velocity) > thrown * fastest;
   if (!throws && !makes_energy(s, set)) return held_settled;
   for (Row& row : s.rows) row.impulse = 0.0;

@@ -4,6 +4,9 @@
 
 #include <vector>
 
+#include "base/at.h"
+#include "sim/solve/profile_ldl.h"
+
 namespace pinchlab {
 
 /// LU factors without pivoting inside the matrix' profile (skyline; George & Liu 1981, ch. 4): row
@@ -14,7 +17,7 @@ namespace pinchlab {
 /// its unknown is left at zero (a basic solution) and counted.
 class ProfileLu {
  public:
-  static constexpr double dependence = 1e-13;
+  static constexpr double dependence = ProfileLdl::dependence;
 
   /// Starts an n x n matrix of zeros; first[u] <= u is the least index coupled with u.
   void reset(const std::vector<int>& first);
@@ -23,9 +26,9 @@ class ProfileLu {
   /// Adds to entry (u, v); |u - v| must lie inside the profile.
   void add(int u, int v, double value) {
     if (v < u) {
-      lower_.data()[offset_[static_cast<std::size_t>(u)] + v] += value;
+      lower_.data()[at(offset_, u) + v] += value;
     } else {
-      upper_.data()[offset_[static_cast<std::size_t>(v)] + u] += value;
+      upper_.data()[at(offset_, v) + u] += value;
     }
   }
 

@@ -54,10 +54,12 @@ double lever(const World& world, const Link& link, const Vec2& e) {
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
 /// tension (p >= 0) shortens the segment.
 ///
-/// Where the bodies have sunk into a pinched cable, their distance D is less than |Delta| = R_A +
-/// R_B. There L is 0 and e, across the centre line, turns at e.(v_B - v_A) / D: dC/dt has |Delta| /
-/// D times e.(v_B - v_A). So J says how rest lengths change, and its forces have no moment: neither
-/// energy nor angular momentum comes from a pinch.
+/// Where the bodies have sunk into a pinched cable, their distance D is less than
+///     |Delta| = R_A + R_B.
+/// There L is 0 and e, across the centre line, turns at e.(v_B - v_A) / D: dC/dt has
+///     |Delta| / D times e.(v_B - v_A).
+/// So J says how rest lengths change, and its forces have no moment: neither energy nor angular
+/// momentum comes from a pinch.
 void set_segment_bodies(const World& world, const Link& from, const Link& to,
                         const Segment& segment, bool sunk, RowBodies& row) {
   Vec2 e = segment.direction;
@@ -186,15 +188,6 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
     row.bias = restitution * speed;
     row.rebounds = true;
   }
-}
-
-/// Of friction at a contact, of bare surfaces or on a cable that is held between them; 0 where that
-/// cable's own rows have it.
-double coefficient_of(const World& world, const Contact& contact) {
-  if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
-  const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
-                                      : at(world.obstacles, contact.wall).contact_friction;
-  return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);
 }
 
 /// A new last row between two places.

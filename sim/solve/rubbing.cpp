@@ -145,9 +145,8 @@ void pass_arc(const CableState& cable, const Link& link, const Vec2& e_in, const
 /// What presses at a pinch on the way adds friction.
 void pass_pinch(const World& world, const SolveScratch& scratch, int contact, double mu,
                 std::vector<Term>& terms) {
-  if (contact < 0 || mu == 0.0) return;
-  const int normal = at(scratch.normal_row_of_contact, contact);
-  if (normal >= 0) terms.push_back({normal, share(mu, at(world.contacts, contact))});
+  const Press press = press_of(world, scratch, contact, mu);
+  if (press.normal >= 0 && mu != 0.0) terms.push_back({press.normal, press.friction});
 }
 
 /// The law for slipping forward (sign = 1) or backward (-1).

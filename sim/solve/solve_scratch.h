@@ -34,11 +34,11 @@ struct Flip {
   Slip slip;
 };
 
-/// Storage of order_rows.
+/// Storage of order_rows, which writes all of it.
 struct OrderScratch {
-  Lists<int> rows_of_body;  // that mobile bodies couple
-  std::vector<int> fill;
-  std::vector<int> row_stamp, body_stamp;
+  Lists<int> rows_of_body;                 // that mobile bodies couple
+  std::vector<int> fill;                   // cursor of rows_of_body while it is made
+  std::vector<int> row_stamp, body_stamp;  // of each, the last search that has come to it
 };
 
 struct SolveScratch {
@@ -52,9 +52,13 @@ struct SolveScratch {
   double step_length = 0.0;  // s, by which round-off of positions becomes speed
   double reach = infinity;   // m, TimeSpan::reach
   CapstanScratch capstan;    // empty without finite friction on a cable
-  std::vector<int> middle_row_of_contact;  // the first of its middle rows; -1: none
-  std::vector<int> normal_row_of_contact;  // of the part's contacts; -1: none
-  std::vector<int> unknown_of_row;         // of rows that have one of their own, or -1
+  std::vector<int> middle_row_of_contact;  // the first of its middle rows; -1: none. Storage of
+                                           // find_repeated_middles
+  std::vector<int> normal_row_of_contact;  // of the part's contacts; -1: none. By make_rows
+
+  // Unknowns and their equations; by solve_for_states, terms of what slides by capstan.cpp and
+  // rubbing.cpp.
+  std::vector<int> unknown_of_row;  // of rows that have one of their own, or -1
   std::vector<int> row_of_unknown;
   bool symmetric = true;                        // every unknown is one row's impulse
   std::vector<int> impulse_begin, impulse_end;  // of each row's impulse, in impulse_terms
@@ -68,11 +72,12 @@ struct SolveScratch {
   std::vector<int> least_column, least_equation;  // least unknown that moves, or sees, each body
   std::vector<int> first;                         // profile
   std::vector<double> right_side, solution, residual;
+  // Of a symmetric system; by symmetric.cpp.
   std::vector<RowEnd> ends;   // two an unknown: what it does to its row's bodies
   std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
   ProfileLu lu;
-  std::vector<Term> rubbing;  // of unknowns: an impulse while it is expressed
-  std::vector<Flip> flips;
+  std::vector<Term> rubbing;  // of unknowns: an impulse while it is expressed, by express_rubbing
+  std::vector<Flip> flips;    // by the checks after each solve: check, check_runs, check_rubbing
   OrderScratch ordering;
   DualScratch dual;
 };

@@ -328,11 +328,18 @@ double find_missing(const PartSystem& s, SolveScratch& set) {
   return largest;
 }
 
+/// What rows may miss by round-off (m/s) that `missed` so much at first: a row's speed is known to
+/// two units in the last place of the greatest, 4e-16 of it; of what it began with a solve leaves
+/// some hundred units, since elimination along a cable adds them up.
+double rounding_of(const PartSystem& s, double missed) {
+  return 1e-13 * missed + 4e-16 * greatest_speed(s.velocity);
+}
+
 /// Makes up for what a solution of a regular symmetric system misses, as long as that helps: an
 /// error that has fallen by some factor will do so again, so that the last one need not be
 /// measured. Returns whether it has come down to round-off: next to singular matrices keep some.
 bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
-  constexpr double little = 1e-10;
+  constexpr double little = 1e-10;  // of the first: far above round-off, no speed that shows
   const std::size_t count = set.row_of_unknown.size();
   double missing = find_missing(s, set);
   const double first = missing;
@@ -344,7 +351,7 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
       push(s, index(set.row_of_unknown[u]), -set.residual[u]);
     }
     if (k + 1 == most_times) break;
-    if (k == 0) rounding = 1e-13 * first + 4e-16 * greatest_speed(s.velocity);
+    if (k == 0) rounding = rounding_of(s, first);
     if (k > 0 && missing * missing <= rounding * first) {
       missing = rounding;
       break;
@@ -390,7 +397,7 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
   }
   const double before = start(s, set);
   double residual = refine(s, set);
-  const double rounding = 1e-13 * before + 4e-16 * greatest_speed(s.velocity);
+  const double rounding = rounding_of(s, before);
   for (int k = 0; k < 2 && repeated == 0 && residual > rounding; ++k) residual = refine(s, set);
   if (repeated > 0) spread_over_repeated_rows(s, set, rounding);
 }

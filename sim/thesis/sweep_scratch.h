@@ -16,21 +16,24 @@ enum class Clamp {
 
 /// A row with all that a sweep reads of it, in one piece.
 struct SweepRow {
-  int a, b;        // places of the part's bodies
-  int other = -1;  // see Clamp
-  Clamp clamp;
-  bool by_run;                             // relaxed with the body that its cable slides over
-  Eigen::Vector3d ja, jb;                  // w = ja va + jb vb + bias + compliance * impulse
-  Eigen::Vector3d response_a, response_b;  // velocity change of the bodies by a unit impulse
-  double bias;                             // m/s
-  double compliance;                       // 1/kg
-  double stiffness;                        // 1/kg, dw / dimpulse; 0 where nothing can move
-  double bound;                            // see Clamp
-  double impulse;                          // N s
+  int a = 0, b = 0;  // places of the part's bodies
+  int other = -1;    // see Clamp
+  Clamp clamp = Clamp::tension;
+  bool by_run = false;  // relaxed with the body that its cable slides over
+  // w = ja va + jb vb + bias + compliance * impulse
+  Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = ja;
+  // Velocity change of the bodies by a unit impulse.
+  Eigen::Vector3d response_a = Eigen::Vector3d::Zero(), response_b = response_a;
+  double bias = 0.0;        // m/s
+  double compliance = 0.0;  // 1/kg
+  double stiffness = 0.0;   // 1/kg, dw / dimpulse; 0 where nothing can move
+  double bound = 0.0;       // see Clamp
+  double impulse = 0.0;     // N s
 };
 
 struct SweepScratch {
-  std::vector<SweepRow> rows;  // as PartSystem::rows: those of cables, then those of contacts
+  std::vector<SweepRow> rows;  // as PartSystem::rows: those of cables, then those of contacts; by
+                               // solve_iterative
 };
 
 }  // namespace pinchlab

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "analysis/experiments/experiment.h"
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/make_world.h"
 #include "sim/outline.h"
@@ -177,7 +178,7 @@ class ChainWorld {
   }
 
   b2Body* carrier(const Attachment& attachment) {
-    return attachment.body < 0 ? ground_ : bodies_[static_cast<std::size_t>(attachment.body)];
+    return attachment.body < 0 ? ground_ : at(bodies_, attachment.body);
   }
 
   void join(b2Body* a, b2Body* b, const Vec2& at) {
@@ -189,8 +190,7 @@ class ChainWorld {
   /// Between two nodes.
   void add_rod(const Cable& rod) {
     const auto end = [&](const Attachment& a) {
-      return a.body < 0 ? a.point
-                        : problem_.scene.bodies[static_cast<std::size_t>(a.body)].position;
+      return a.body < 0 ? a.point : at(problem_.scene.bodies, a.body).position;
     };
     b2DistanceJointDef joint;  // stiff, at the length that it begins with
     joint.Initialize(carrier(rod.start), carrier(rod.end), vec(end(rod.start), settings_.scale),

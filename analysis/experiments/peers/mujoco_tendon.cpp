@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/make_world.h"
 
@@ -45,7 +46,7 @@ double pulley_share(const Scene& scene, const CableState& cable) {
   double share = 0.0;
   for (const Link& link : cable.links) {
     if (link.orientation == 0) continue;
-    const Body& body = scene.bodies[static_cast<std::size_t>(link.body)];
+    const Body& body = at(scene.bodies, link.body);
     if (turns(body)) share += inertia_of(body) / (link.radius * link.radius);
   }
   return share;

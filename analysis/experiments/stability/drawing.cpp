@@ -8,6 +8,7 @@
 
 #include "analysis/experiments/stability/stability.h"
 #include "analysis/gnuplot.h"
+#include "base/at.h"
 
 namespace pinchlab::experiments::stability {
 
@@ -235,7 +236,7 @@ Drawing draw_map(const ItemResults& done) {
       static_cast<double>(ys.size()) - 0.5, item.x_name, item.y_name);
   const std::string x = number_of("x", xs), y = number_of("y", ys);
   for (int m = 0; m < panels; ++m) {
-    const std::string& method = item.methods[static_cast<std::size_t>(m)];
+    const std::string& method = at(item.methods, m);
     text += panel_margins(m, panels, 22.0, 0, height_px) + map_border(done, method, xs, ys);
     text += fmt::format("set title '{}' offset 0,-0.6\n", method_title(method));
     if (m == 1) text += "unset ylabel\n" + bare_tics(ys);

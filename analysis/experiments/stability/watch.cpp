@@ -13,10 +13,6 @@ namespace pinchlab::experiments::stability {
 
 namespace {
 
-std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 double gap(const Scene& scene, const World& world, std::size_t a, std::size_t b) {
   return (world.position[b] - world.position[a]).norm() - scene.bodies[a].radius -
          scene.bodies[b].radius;
