@@ -336,19 +336,24 @@ void add_simulate(CLI::App& app) {
 }
 
 void add_baseline(CLI::App& app) {
-  auto scene = std::make_shared<std::string>();
+  struct Options {
+    std::string scene;
+    std::optional<double> time_limit;
+  };
+  auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
-  add_scene(*command, *scene);
+  add_scene(*command, options->scene);
+  add_time_limit(*command, options->time_limit, "Give up on a method");
   command->footer(
       "Plain cable joints (cable) are recommended where they break nothing, not even the scene's "
       "error_m, and\nmove as smoothly as pinch joints without contact (pinch_no_contact), under "
       "which bodies come equally close.\n\n"
       "Examples:\n"
       "  pinchlab baseline demos/02-stack.json");
-  command->callback([scene] {
-    const SceneFile file = read_scene_file(*scene);
-    print_result(text(file, advise_baseline(file)));
+  command->callback([options] {
+    const SceneFile file = read_scene_file(options->scene);
+    print_result(text(file, advise_baseline(file, options->time_limit)));
   });
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/at.h"
+#include "base/progress.h"
 #include "demos/scenes/fineness.h"
 
 namespace pinchlab {
@@ -24,18 +25,29 @@ struct Motion {
 };
 
 /// What clips show. A simulation that fails is told by the one that follows.
-Scene as_fine_as_asked(const SceneFile& file, const Scene& scene, const MethodFigures& figures) {
+Scene as_fine_as_asked(const SceneFile& file, const Scene& scene, Method method,
+                       std::optional<double> time_limit, const std::string& who) {
   try {
     const int last = scene.frame_count - 1;
-    return made_finer(scene, find_fineness(file, scene, figures.method, last, {}).factor);
+    const Fineness fineness = find_fineness_aloud(file, scene, method, last, time_limit, who);
+    return made_finer(scene, fineness.factor);
+  } catch (const GivenUp&) {
+    throw;
   } catch (const std::runtime_error&) {
     return scene;
   }
 }
 
-Motion play(const SceneFile& file, const Scene& scene, MethodFigures& figures) {
+Motion play(const SceneFile& file, const Scene& scene, std::optional<double> time_limit,
+            MethodFigures& figures) {
+  const std::string who = fmt::format("{}, {}", scene.name, to_string(figures.method));
   Motion motion;
-  Player player(file, as_fine_as_asked(file, scene, figures), figures.method);
+  Player player(file, as_fine_as_asked(file, scene, figures.method, time_limit, who),
+                figures.method);
+  player.give_up_after(time_limit);
+  Progress progress("simulating " + who, "steps",
+                    std::int64_t{scene.frame_count - 1} * player.scene().steps_per_frame);
+  player.on_step([&progress] { progress.add(1); });
   try {
     for (int frame = 0; frame < scene.frame_count; ++frame) {
       player.advance_to(frame);
@@ -48,6 +60,8 @@ Motion play(const SceneFile& file, const Scene& scene, MethodFigures& figures) {
         at(motion.at_wall.back(), contact.a) = 1;
       }
     }
+  } catch (const GivenUp&) {
+    throw;
   } catch (const std::runtime_error& error) {
     figures.problems.emplace_back(error.what());
   }
@@ -90,12 +104,13 @@ std::pair<double, double> apart(const Motion& one, const Motion& other) {
 
 // Steps of plain cable joints are not divided for a scene's error_m. What half a step changes, m,
 // tells whether they keep it all the same.
-double changed_by_half_steps(const SceneFile& file, const Motion& motion) {
+double changed_by_half_steps(const SceneFile& file, const Motion& motion,
+                             std::optional<double> time_limit) {
   Timing finer;
   finer.steps_per_frame = 2 * file.scene.steps_per_frame;
   MethodFigures figures;
   figures.method = Method::cable;
-  return apart(motion, play(file, with_timing(file.scene, finer), figures)).first;
+  return apart(motion, play(file, with_timing(file.scene, finer), time_limit, figures)).first;
 }
 
 void decide(const Scene& scene, BaselineAdvice& advice) {
@@ -125,17 +140,18 @@ void decide(const Scene& scene, BaselineAdvice& advice) {
 
 }  // namespace
 
-BaselineAdvice advise_baseline(const SceneFile& file) {
+BaselineAdvice advise_baseline(const SceneFile& file, std::optional<double> time_limit) {
   BaselineAdvice advice;
   advice.no_contact.method = Method::pinch_no_contact;
   advice.cable.method = Method::cable;
-  const Motion pinch = play(file, file.scene, advice.pinch);
+  const Motion pinch = play(file, file.scene, time_limit, advice.pinch);
   for (MethodFigures* figures : {&advice.pinch, &advice.no_contact, &advice.cable}) {
-    const Motion motion = figures == &advice.pinch ? pinch : play(file, file.scene, *figures);
+    const Motion motion =
+        figures == &advice.pinch ? pinch : play(file, file.scene, time_limit, *figures);
     figures->roughness = roughness(motion);
     std::tie(figures->largest_distance, figures->largest_turn) = apart(pinch, motion);
     if (figures == &advice.cable && file.scene.error > 0.0) {
-      advice.changed_by_half_steps = changed_by_half_steps(file, motion);
+      advice.changed_by_half_steps = changed_by_half_steps(file, motion, time_limit);
     }
   }
   decide(file.scene, advice);

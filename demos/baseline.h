@@ -3,6 +3,7 @@
 // Which baseline is fair for a scene: plain cable joints where they work, pinch joints without
 // contact where they break.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,10 @@ struct BaselineAdvice {
 /// the scene's error_m, and move at most this many times as roughly.
 constexpr double fair_roughness = 1.2;
 
-/// Plays the scene with all three methods. Throws SceneFileError where the geometry cannot exist.
-BaselineAdvice advise_baseline(const SceneFile& file);
+/// Plays the scene with all three methods, and tells on standard error how far it is. Throws
+/// SceneFileError where the geometry cannot exist, GivenUp where one simulation takes longer than
+/// `time_limit` (s).
+BaselineAdvice advise_baseline(const SceneFile& file, std::optional<double> time_limit = {});
 
 /// A table, the recommendation, and the lines to put into the scene.
 std::string text(const SceneFile& file, const BaselineAdvice& advice);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/progress.h"
 #include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
@@ -55,15 +56,16 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
       throw std::invalid_argument("--time must go forward on the sheet of a series");
     }
     sheet.resize(frames.size() * columns);
-    const Scenery scenery = for_file(stimulus.source.path, [&] {
-      return set_scenery(scene, stimulus.source.look, options.theme.theme,
-                         rehearsal_limit(stimulus.source, options.time_limit));
-    });
+    const Scenery scenery = set_scenery_aloud(stimulus.source, scene, options);
     const Configuration& configuration = stimulus.plan.methods[0];
-    const Fineness fineness = find_fineness(stimulus.source, scene, configuration,
-                                            scene.frame_count - 1, options.time_limit);
+    const std::string who = fmt::format("{}, {}", scene.name, to_string(configuration));
+    const Fineness fineness = find_fineness_aloud(stimulus.source, scene, configuration,
+                                                  scene.frame_count - 1, options.time_limit, who);
     Player player(stimulus.source, made_finer(scene, fineness.factor), configuration);
     player.give_up_after(options.time_limit);
+    Progress progress("simulating " + who, "steps",
+                      std::int64_t{frames.back()} * player.scene().steps_per_frame);
+    player.on_step([&progress] { progress.add(1); });
     for (std::size_t i = 0; i < frames.size(); ++i) {
       player.advance_to(frames[i]);
       VectorFrame& frame = sheet[i * columns + column];
@@ -72,6 +74,7 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
         frame.picture.add(time_label(scenery, player.time(), 1.0 * options.width / options.height));
       frame.label = fmt::format("{}, {:.2f} s", label_of(sweep.table, column), player.time());
     }
+    progress.clear();
     std::vector<std::string> broken = player.broken_promises();
     add_missed_error(fineness, configuration, broken);
     tell_broken_promises(sweep.table.place(column), broken);

@@ -48,10 +48,8 @@ void play(const SceneFile& file, const StillOptions& options, const Configuratio
   const std::string who = fmt::format("{}, {}", file.scene.name, to_string(method));
   // Of the whole clip, whose frames these are.
   const int all = file.scene.frame_count - 1;
-  std::optional<Progress> measuring(std::in_place, "measuring the error of " + who, "frames", all);
-  const Fineness fineness = find_fineness(file, file.scene, method, all, options.time_limit,
-                                          [&measuring] { measuring->add(1); });
-  measuring.reset();
+  const Fineness fineness =
+      find_fineness_aloud(file, file.scene, method, all, options.time_limit, who);
   Player player(file, made_finer(file.scene, fineness.factor), method);
   player.give_up_after(options.time_limit);
   Progress progress("simulating " + who, "steps",
@@ -175,6 +173,19 @@ std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& t
   return frames;
 }
 
+Scenery set_scenery_aloud(const SceneFile& file, const Scene& scene, const StillOptions& options) {
+  constexpr std::int64_t methods = 2;  // the pair's
+  Progress progress(fmt::format("placing labels and fitting the view of {}", scene.name), "steps",
+                    methods * scene.frame_count * scene.steps_per_frame);
+  const auto check_time = rehearsal_limit(file, options.time_limit);
+  return for_file(file.path, [&] {
+    return set_scenery(scene, file.look, options.theme.theme, [&](const World& world) {
+      progress.add(1);
+      check_time(world);
+    });
+  });
+}
+
 void check_sheet_size(std::size_t pictures, const StillOptions& options, const std::string& cure) {
   const std::size_t pixels =
       pictures * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
@@ -203,10 +214,7 @@ void write_still(const SceneFile& file, const StillOptions& options) {
                          : "a # in --out's name gives each frame a file of its own; or take fewer "
                            "times or a smaller --size");
   }
-  const Scenery scenery = for_file(file.path, [&] {
-    return set_scenery(file.scene, file.look, options.theme.theme,
-                       rehearsal_limit(file, options.time_limit));
-  });
+  const Scenery scenery = set_scenery_aloud(file, file.scene, options);
   if (sequence) {
     write_sequence(file, options, frames, scenery);
   } else if (ending == ".png") {

@@ -8,6 +8,7 @@
 
 #include "demos/scenes/scene_json.h"
 #include "demos/scenes/theme.h"
+#include "render/picture/scenery.h"
 
 namespace pinchlab {
 
@@ -27,6 +28,10 @@ struct StillOptions {
 /// The frames that `times` name, in their order. Throws std::invalid_argument for what is no time
 /// of the scene.
 std::vector<int> frames_at(const Scene& scene, const std::vector<std::string>& times);
+
+/// set_scenery for a scene of `file`, and tells on standard error how far its rehearsal is. Throws
+/// SceneFileError where the geometry cannot exist, GivenUp.
+Scenery set_scenery_aloud(const SceneFile& file, const Scene& scene, const StillOptions& options);
 
 /// Throws std::invalid_argument, with `cure`, if a PNG of so many pictures of the options' size is
 /// more than a sheet may hold.

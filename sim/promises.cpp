@@ -53,7 +53,7 @@ double energy_of_round_off(const Scene& scene, const World& world) {
 
 Promises::Promises(const Scene& scene, const World& world) {
   const bool direct = world.configuration.solver == Solver::direct;
-  watches_spans_ = direct;
+  most_strain_ = direct ? limits_.strain : limits_.sweeps_strain;
   watches_gaps_ = direct && world.configuration.method == Method::pinch;
   watches_energy_ = direct && is_undriven(scene);
   if (!watches_energy_) return;
@@ -89,8 +89,8 @@ void Promises::note_cables(const Scene& scene, const World& world) {
     }
     note_value(Promise::length, std::abs(length - cable.length) / cable.length, limits_.length,
                world.step, static_cast<int>(c), -1);
-    if (!watches_spans_ || scene.cables[c].axial_stiffness < infinity) continue;
-    note_value(Promise::strain, excess / cable.length, limits_.strain, world.step,
+    if (scene.cables[c].axial_stiffness < infinity) continue;
+    note_value(Promise::strain, excess / cable.length, most_strain_, world.step,
                static_cast<int>(c), -1);
   }
 }
@@ -228,9 +228,8 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
     std::string what;
     switch (static_cast<Promise>(i)) {
       case Promise::strain:
-        what =
-            fmt::format("cable '{}' was stretched by {} of its length (limit {})",
-                        at(scene.cables, w.item).name, percent(w.value), percent(limits_.strain));
+        what = fmt::format("cable '{}' was stretched by {} of its length (limit {})",
+                           at(scene.cables, w.item).name, percent(w.value), percent(most_strain_));
         break;
       case Promise::squeeze:
         what = fmt::format(

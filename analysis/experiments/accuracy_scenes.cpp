@@ -268,8 +268,9 @@ std::vector<Problem> finely_solved_problems(int steps_per_frame) {
 }
 
 Problem own_solution(const std::string& name, const Scene& scene, double seconds,
-                     int steps_per_frame) {
+                     int steps_per_frame, const std::function<void(const World&)>& on_steps) {
   Problem problem;
+  problem.on_steps = on_steps;
   problem.name = name;
   problem.title = scene.title.empty() ? name : scene.title;
   problem.scene = scene;

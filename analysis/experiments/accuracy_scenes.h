@@ -29,9 +29,10 @@ std::vector<Problem> known_problems();
 std::vector<Problem> finely_solved_problems(int steps_per_frame);
 
 /// A scene against its own solution (pinch, direct) at `steps_per_frame`, over `seconds`: for
-/// scenes whose motion is not known otherwise. All bodies are watched, rims too. Throws SceneError
-/// where the scene cannot exist, std::runtime_error where its solution is not finite.
+/// scenes whose motion is not known otherwise. All bodies are watched, rims too. `on_steps` is the
+/// problem's. Throws SceneError where the scene cannot exist, std::runtime_error where its solution
+/// is not finite.
 Problem own_solution(const std::string& name, const Scene& scene, double seconds,
-                     int steps_per_frame);
+                     int steps_per_frame, const std::function<void(const World&)>& on_steps = {});
 
 }  // namespace pinchlab::experiments

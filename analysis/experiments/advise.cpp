@@ -5,16 +5,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "analysis/experiments/accuracy_scenes.h"
 #include "analysis/experiments/experiment.h"
 #include "analysis/experiments/steady_times.h"
 #include "base/at.h"
 #include "demos/command_line.h"
+#include "demos/scenes/player.h"
 #include "demos/scenes/scene_json.h"
 
 namespace pinchlab::experiments {
@@ -28,6 +31,44 @@ constexpr double enough_surety = 8.0;
 
 /// What the name of the configuration ends with that divides steps by their error.
 constexpr const char* by_error = ", steps by error";
+
+/// Looks on as one simulation follows the other: tells how far they are, and gives up in time.
+class Watch {
+ public:
+  explicit Watch(std::function<void(const World&)> check_time)
+      : check_time_(std::move(check_time)) {}
+
+  /// What follows is `parts` times `steps` steps, all in all.
+  void start(const std::string& what, double parts, double steps) {
+    progress_.reset();  // one line at a time
+    progress_.emplace(what, parts * steps);
+    left_ = steps;
+  }
+  /// One of the parts is done, with however many of its steps; so many has the next one.
+  void next(double steps) {
+    progress_->done(left_);
+    left_ = steps;
+  }
+  /// Whether the simulations that follow count. Those do not that are repeated for their time.
+  void count(bool counts) { counts_ = counts; }
+
+  void look(const World& world) {
+    check_time_(world);
+    const std::int64_t before = world.step > last_step_ ? last_step_ : 0;  // else another one's
+    last_step_ = world.step;
+    if (!counts_) return;
+    const double steps = std::min(static_cast<double>(world.step - before), left_);
+    progress_->done(steps);
+    left_ -= steps;
+  }
+
+ private:
+  std::function<void(const World&)> check_time_;
+  std::optional<Progress> progress_;
+  double left_ = 0.0;  // steps of this part
+  std::int64_t last_step_ = 0;
+  bool counts_ = true;
+};
 
 /// All configurations of the experiments, and ours with the error as what steps are divided by.
 std::vector<Contender> tried(const Question& question) {
@@ -164,35 +205,65 @@ int best_to_type(const Question& question, const Advice& advice) {
   return best < 0 ? -1 : static_cast<int>(at(rows, best));
 }
 
-Advice advise(const Question& question) {
-  const Scene scene = read_scene_file(question.scene).scene;
-  start_world(scene, question.scene, Method::pinch);  // tells what is wrong with it by its file
+namespace {
+
+/// The scene's own solution, as sure as is asked for or can be had.
+void solve(const Question& question, const Scene& scene, Watch& watch, Advice& advice) {
   const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
   const double seconds = question.seconds > 0.0 ? question.seconds : clip;
-  Advice advice;
+  const double frames = std::round(seconds * scene.frames_per_second);
+  const auto start = [&](double steps) {
+    watch.start(fmt::format("solving {} at {} steps a frame", scene.name, advice.reference_steps),
+                1.0, frames * steps);
+  };
   advice.reference_steps = 2 * question.most_steps;
-  advice.problem = own_solution(scene.name, scene, seconds, advice.reference_steps);
+  start(3.0 * question.most_steps);  // at half as many steps first
+  advice.problem = own_solution(scene.name, scene, seconds, advice.reference_steps,
+                                [&watch](const World& world) { watch.look(world); });
   while (advice.problem.doubt_m * enough_surety > question.error_m &&
          2 * advice.reference_steps <= question.most_reference_steps) {
     advice.reference_steps *= 2;
+    start(advice.reference_steps);
     refine(advice.problem, advice.reference_steps);
   }
   advice.problem.length_m = 1.0;
   advice.problem.length = "a metre";
-  if (!vouched_for(question, advice.problem)) return advice;
-  const std::vector<Contender> all = tried(question);
-  Progress progress("advise", static_cast<double>(all.size()));
+}
+
+void try_all(const Question& question, const std::vector<Contender>& all, Watch& watch,
+             Advice& advice) {
+  const double steps = static_cast<double>(advice.problem.frames) * (2 * question.most_steps - 1);
+  watch.start("trying all configurations", static_cast<double>(all.size()), steps);
   for (const Contender& contender : all) {
-    const auto run = [&](int steps) {
-      return simulate(advice.problem, contender.configuration, steps);
+    int known = 0;  // steps a frame
+    const auto run = [&](int steps_per_frame) {
+      watch.count(steps_per_frame != std::exchange(known, steps_per_frame));
+      return simulate(advice.problem, contender.configuration, steps_per_frame);
     };
     const std::vector<Rung> rungs =
         climb(advice.problem, contender.name, run, question.most_steps, Limits());
     advice.rungs.insert(advice.rungs.end(), rungs.begin(), rungs.end());
-    progress.done(1.0);
+    watch.next(steps);
   }
-  time_finalists(question, all, advice);
-  advice.best = best_to_type(question, advice);
+  watch.count(false);
+}
+
+}  // namespace
+
+Advice advise(const Question& question) {
+  const SceneFile file = read_scene_file(question.scene);
+  start_world(file.scene, question.scene,
+              Method::pinch);  // tells what is wrong with it by its file
+  Watch watch(time_limit_of_all(file, question.time_limit, "a shorter --time is faster"));
+  Advice advice;
+  solve(question, file.scene, watch, advice);
+  if (vouched_for(question, advice.problem)) {
+    const std::vector<Contender> all = tried(question);
+    try_all(question, all, watch, advice);
+    time_finalists(question, all, advice);
+    advice.best = best_to_type(question, advice);
+  }
+  advice.problem.on_steps = nullptr;  // the watch ends here
   return advice;
 }
 
@@ -240,6 +311,7 @@ void add_advise_command(CLI::App& app) {
       ->add_option("--time", question->seconds, "How much of the scene counts, s [the whole clip]")
       ->type_name("S")
       ->check(number_in(0.05, 600.0));
+  add_time_limit(*command, question->time_limit, "Give up");
   command->add_flag("--all", question->all, "Show all that was tried, not one row a configuration");
   command->footer(
       "Tries every method with every solver, the thesis' configuration, and steps that are divided "

@@ -4,6 +4,7 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,12 @@ namespace pinchlab::experiments {
 /// What was asked.
 struct Question {
   std::filesystem::path scene;
-  double error_m = 1e-3;            ///< > 0
-  double seconds = 0.0;             ///< 0: the whole clip
-  bool all = false;                 ///< show every rung, not one a configuration
-  int most_steps = 256;             ///< a frame, that are tried
-  int most_reference_steps = 4096;  ///< a frame, of the scene's own solution
+  double error_m = 1e-3;             ///< > 0
+  double seconds = 0.0;              ///< 0: the whole clip
+  bool all = false;                  ///< show every rung, not one a configuration
+  int most_steps = 256;              ///< a frame, that are tried
+  int most_reference_steps = 4096;   ///< a frame, of the scene's own solution
+  std::optional<double> time_limit;  ///< s of all of it, after which it is given up
 };
 
 /// What was found.
@@ -34,8 +36,8 @@ struct Advice {
 int best_to_type(const Question& question, const Advice& advice);
 
 /// Refines the scene's own solution until it is eight times as sure as the wanted error, or as
-/// fine as allowed, then tries all configurations. Throws SceneFileError, or std::runtime_error
-/// where the scene's own solution is not finite.
+/// fine as allowed, then tries all configurations; tells on standard error how far it is. Throws
+/// SceneFileError, GivenUp, or std::runtime_error where the scene's own solution is not finite.
 Advice advise(const Question& question);
 
 /// The advice in words, with the table of what was tried.

@@ -52,6 +52,7 @@ Recording simulate(const Problem& problem, Configuration configuration, int step
     for (int i = 0; i < steps_per_frame; ++i) {
       if (step(scene, world, work) != StepStatus::ok) recording.finite = false;
       if (!recording.finite) return recording;
+      if (problem.on_steps && (i % 64 == 63 || i + 1 == steps_per_frame)) problem.on_steps(world);
     }
     record(problem, world, recording.motion[frame]);
   }

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "base/progress.h"
+
 namespace pinchlab {
 namespace {
 
@@ -58,6 +60,14 @@ Fineness find_fineness(const SceneFile& file, const Scene& scene,
       return found;
     }
   }
+}
+
+Fineness find_fineness_aloud(const SceneFile& file, const Scene& scene,
+                             const Configuration& configuration, int last,
+                             std::optional<double> time_limit, const std::string& who) {
+  Progress progress("measuring the error of " + who, "frames", last);
+  return find_fineness(file, scene, configuration, last, time_limit,
+                       [&progress] { progress.add(1); });
 }
 
 void tell_fineness(const std::string& file, const Fineness& fineness) {

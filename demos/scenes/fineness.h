@@ -38,6 +38,11 @@ Fineness find_fineness(const SceneFile& file, const Scene& scene,
                        const Configuration& configuration, int last,
                        std::optional<double> time_limit, const std::function<void()>& calls = {});
 
+/// The same, and tells on standard error how far it is with `who`, such as "drop, pinch".
+Fineness find_fineness_aloud(const SceneFile& file, const Scene& scene,
+                             const Configuration& configuration, int last,
+                             std::optional<double> time_limit, const std::string& who);
+
 /// Writes what is believed of a simulation to standard error; nothing where nothing was asked.
 void tell_fineness(const std::string& file, const Fineness& fineness);
 

@@ -112,19 +112,39 @@ Player::Player(const SceneFile& file, const Scene& scene, const Configuration& c
       world_(start_world(scene, file.path, configuration)),
       promises_(scene_, world_) {}
 
+namespace {
+
+using std::chrono::steady_clock;
+
+/// Throws GivenUp if that is more than `limit` (s) after `start`.
+void check_time(const World& world, steady_clock::time_point now, steady_clock::time_point start,
+                double limit, const std::string& place, const std::string& cure) {
+  if (std::chrono::duration<double>(now - start).count() <= limit) return;
+  throw GivenUp(fmt::format(
+      "{}method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; {}", place,
+      to_string(world.configuration), world.time(), world.step, limit, cure));
+}
+
+}  // namespace
+
 std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds,
                                              const std::string& meanwhile) {
-  using std::chrono::steady_clock;
   if (!seconds) return [](const World&) {};
   return [place = file.path.string() + ": " + meanwhile, limit = *seconds,
           start = steady_clock::now(), known = false](const World& world) mutable {
     const auto now = steady_clock::now();
     if (std::exchange(known, true) && world.step == 1) start = now;
-    if (std::chrono::duration<double>(now - start).count() <= limit) return;
-    throw std::runtime_error(fmt::format(
-        "{}method {}: given up at t = {:.6g} s, step {}, after the {} s of --time-limit; fewer "
-        "steps a frame or fewer bodies are faster",
-        place, to_string(world.configuration), world.time(), world.step, limit));
+    check_time(world, now, start, limit, place, "fewer steps a frame or fewer bodies are faster");
+  };
+}
+
+std::function<void(const World&)> time_limit_of_all(const SceneFile& file,
+                                                    std::optional<double> seconds,
+                                                    const std::string& cure) {
+  if (!seconds) return [](const World&) {};
+  return [place = file.path.string() + ": ", limit = *seconds, start = steady_clock::now(),
+          cure](const World& world) {
+    check_time(world, steady_clock::now(), start, limit, place, cure);
   };
 }
 

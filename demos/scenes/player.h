@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -43,11 +44,23 @@ void tell_broken_promises(const std::string& file, const std::vector<std::string
 /// What people call a way of simulating: "pinch joints", "cable joints".
 const char* in_words(const Configuration& configuration);
 
-/// What, called after each step of a simulation of `file`, throws std::runtime_error once its steps
-/// have taken more than `seconds`, from now on or from another simulation's first step; without
-/// `seconds` nothing. The message says that it was `meanwhile`.
+/// What --time-limit ends with. It is no fault of the simulation, so that who reports those of
+/// several methods lets it pass.
+struct GivenUp : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What, called after each step of a simulation of `file`, throws GivenUp once its steps have taken
+/// more than `seconds`, from now on or from another simulation's first step; without `seconds`
+/// nothing. The message says that it was `meanwhile`.
 std::function<void(const World&)> time_limit(const SceneFile& file, std::optional<double> seconds,
                                              const std::string& meanwhile = "");
+
+/// The same over all simulations of a command together, from now on, in any order. `cure` is what
+/// makes them faster.
+std::function<void(const World&)> time_limit_of_all(const SceneFile& file,
+                                                    std::optional<double> seconds,
+                                                    const std::string& cure);
 
 /// The same for the rehearsal of set_scenery.
 inline std::function<void(const World&)> rehearsal_limit(const SceneFile& file,
@@ -62,7 +75,7 @@ class Player {
 
   /// Called after every step.
   void on_step(std::function<void()> call) { on_step_ = std::move(call); }
-  /// Lets advance_to throw std::runtime_error at the first step that ends after `seconds` from now.
+  /// Lets advance_to throw GivenUp at the first step that ends after `seconds` from now.
   void give_up_after(std::optional<double> seconds);
 
   /// Steps on to `frame`, which must not lie before the present one. Throws std::runtime_error with

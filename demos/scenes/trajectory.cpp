@@ -80,11 +80,10 @@ void tell_last_time(const SceneFile& file, const Scene& scene, std::optional<dou
 
 Fineness find_fineness(const SceneFile& file, const Scene& scene, int last,
                        const TrajectoryOptions& options) {
-  std::optional<Progress> progress;
-  if (!options.quiet) progress.emplace("measuring the error of " + scene.name, "frames", last);
-  return find_fineness(file, scene, options.configuration, last, options.time_limit, [&progress] {
-    if (progress) progress->add(1);
-  });
+  const Configuration& how = options.configuration;
+  return options.quiet
+             ? find_fineness(file, scene, how, last, options.time_limit)
+             : find_fineness_aloud(file, scene, how, last, options.time_limit, scene.name);
 }
 
 }  // namespace

@@ -263,6 +263,33 @@ TEST(Program, TheTimeLimitBoundsTheRehearsalOfAFittedView) {
   }
 }
 
+// What may run for minutes says how long it still will, and can be given a limit.
+TEST(Program, LongWorkTellsHowFarItIsAndEndsAtItsLimit) {
+  const fs::path folder = scratch_folder();
+  nlohmann::json scene = small_scene();
+  scene["duration_s"] = 600;
+  scene["steps_per_frame"] = 1000;
+  std::ofstream(folder / "01-small.json") << scene;
+  const std::pair<std::vector<std::string>, std::string> commands[] = {
+      {{"still", "01-small.json", "--time", "0", "--out", "x.png"},
+       "placing labels and fitting the view of 01-small: "},
+      {{"baseline", "01-small.json"}, "simulating 01-small, pinch: "},
+      {{"advise", "01-small.json", "--error", "1e-9"}, "solving 01-small at 512 steps a frame: "}};
+  for (const auto& [command, expected] : commands) {
+    std::vector<std::string> limited = command;
+    limited.insert(limited.end(), {"--time-limit", "2"});
+    const std::string told = told_on_terminal(folder, limited);
+    EXPECT_NE(told.find(expected), std::string::npos) << told;
+    EXPECT_NE(told.find(" left"), std::string::npos) << told;
+    EXPECT_NE(told.find("after the 2 s of --time-limit"), std::string::npos) << told;
+    limited.back() = "0.000001";
+    const RunResult run = run_program(folder, limited);
+    EXPECT_EQ(run.exit_code, 1) << command[0];
+    EXPECT_TRUE(run.err.starts_with("01-small.json: ")) << run.err;
+    EXPECT_EQ(run.out, "");
+  }
+}
+
 // Plain joints meet a body of some hundred sizes a step in the step after.
 TEST(Program, TellsWhatIsNotKept) {
   const fs::path folder = scratch_folder();

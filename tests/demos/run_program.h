@@ -8,8 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -99,6 +101,25 @@ inline RunResult run_program(const std::filesystem::path& folder,
                              const std::vector<std::string>& arguments,
                              rlim_t file_limit = RLIM_INFINITY) {
   return wait_for_program(folder, start_program(folder, arguments, file_limit));
+}
+
+/// What the program writes to a terminal that its standard error is.
+inline std::string told_on_terminal(const std::filesystem::path& folder,
+                                    const std::vector<std::string>& arguments) {
+  const int user = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  EXPECT_TRUE(user >= 0 && ::grantpt(user) == 0 && ::unlockpt(user) == 0);
+  std::filesystem::remove(folder / "stderr.txt");
+  std::filesystem::create_symlink(::ptsname(user), folder / "stderr.txt");
+  const int kept_open = ::open(::ptsname(user), O_RDWR | O_NOCTTY);  // so that nothing is lost
+  const pid_t process = start_program(folder, arguments);
+  EXPECT_EQ(::waitpid(process, nullptr, 0), process);
+  std::string told(65536, '\0');
+  told.resize(
+      static_cast<std::size_t>(std::max<ssize_t>(0, ::read(user, told.data(), told.size()))));
+  std::filesystem::remove(folder / "stderr.txt");
+  ::close(kept_open);
+  ::close(user);
+  return told;
 }
 
 }  // namespace pinchlab

@@ -61,5 +61,15 @@ TEST_P(Fuzz, WhatWasFoundHolds) {
 INSTANTIATE_TEST_SUITE_P(Targets, Fuzz, ::testing::ValuesIn(targets),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// What is not mended yet is told at least, from early on: later steps take seconds each.
+TEST(OpenFindings, AreTold) {
+  const fs::path folder = fs::path(PINCHLAB_SOURCE_DIR) / "tests" / "fuzz" / "open" / "world";
+  const std::vector<fs::path> files = files_in(folder);
+  EXPECT_EQ(files.size(), 1U) << "README.md beside it says what each does";
+  for (const fs::path& path : files) {
+    EXPECT_FALSE(told_of_world(bytes_of(path), 50).empty()) << path;
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::fuzz

@@ -39,6 +39,10 @@ inline constexpr Target targets[] = {
 /// The scene file that fuzz_world makes of the bytes.
 std::string scene_of(std::string_view bytes);
 
+/// What the world that fuzz_world makes of the bytes breaks of sim/README.md's promises in so many
+/// steps, or how it fails. Throws a Finding where a step is ok and not finite.
+std::vector<std::string> told_of_world(std::string_view bytes, int steps);
+
 /// A folder of this process' own, which goes with it.
 const std::filesystem::path& scratch_folder();
 

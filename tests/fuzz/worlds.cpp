@@ -311,20 +311,28 @@ bool is_finite(const World& world) {
   return true;
 }
 
-bool run(const SceneFile& source, const Configuration& configuration, int steps) {
+std::vector<std::string> run(const SceneFile& source, const Configuration& configuration,
+                             int steps) {
   World world = start_world(source.scene, file, configuration);
   Workspace work;
   Promises promises(source.scene, world);
   for (int i = 0; i < steps; ++i) {
     if (step(source.scene, world, work) != StepStatus::ok) {
       if (world.failure.empty()) throw Finding("a failure that says nothing");
-      return true;
+      return {world.failure};
     }
     if (!is_finite(world)) throw Finding(fmt::format("step {} was ok and is not finite", i + 1));
     promises.note(source.scene, world);
   }
-  promises.broken(source.scene, world);
-  return true;
+  return promises.broken(source.scene, world);
+}
+
+/// What the first byte says.
+Configuration configuration_of(std::string_view bytes) {
+  const Configuration configurations[] = {Method::pinch, Method::cable, Method::pinch_no_contact,
+                                          thesis_configuration()};
+  const unsigned first = Choices(after_word(bytes)).byte();
+  return configurations[first % 8 > 3 ? 0 : first % 8];
 }
 
 }  // namespace
@@ -349,23 +357,25 @@ std::string scene_of(std::string_view bytes) {
 }
 
 bool fuzz_world(std::string_view bytes) {
-  const Configuration configurations[] = {Method::pinch, Method::cable, Method::pinch_no_contact,
-                                          thesis_configuration()};
-  const unsigned first = Choices(after_word(bytes)).byte();
   try {
-    const SceneFile source = parse_scene(scene_of(bytes), file);
-    return run(source, configurations[first % 8 > 3 ? 0 : first % 8], 240);
+    run(parse_scene(scene_of(bytes), file), configuration_of(bytes), 240);
+    return true;
   } catch (const SceneFileError& error) {
     must_name(error, file);
     return false;
   }
 }
 
+std::vector<std::string> told_of_world(std::string_view bytes, int steps) {
+  return run(parse_scene(scene_of(bytes), file), configuration_of(bytes), steps);
+}
+
 bool fuzz_scene(std::string_view bytes) {
   try {
     const SceneFile source = parse_scene(bytes, file);
     const bool is_small = source.scene.bodies.size() <= 40 && source.scene.cables.size() <= 10;
-    return !is_small || run(source, Method::pinch, 8);
+    if (is_small) run(source, Method::pinch, 8);
+    return true;
   } catch (const SceneFileError& error) {
     must_name(error, file);
     return false;
