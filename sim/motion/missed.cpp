@@ -33,6 +33,7 @@ double add_missed(const World& world, const CapstanScratch& capstan, const TimeS
                   PartSystem& s, Trial& trial) {
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
+  const double round_off = exact_share * s.reach / t.length;  // m/s
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
@@ -47,7 +48,7 @@ double add_missed(const World& world, const CapstanScratch& capstan, const TimeS
       trial.violated = true;
     }
     if (!row.on && group >= 0 && !shares) continue;
-    if (group < 0 && is_linear(world, row)) continue;
+    if (group < 0 && is_linear(world, row) && std::abs(row_speed(s, r)) <= round_off) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
