@@ -14,6 +14,7 @@
 #include "analysis/gnuplot.h"
 #include "base/csv.h"
 #include "base/output_file.h"
+#include "base/partial_file.h"
 #include "base/progress.h"
 #include "demos/version.h"
 
@@ -192,15 +193,15 @@ std::string column_where(const std::string& column,
 void Output::figure(const std::string& name, int width_px, int height_px,
                     const std::string& commands) {
   const std::string body = figure_preamble + commands + '\n';
-  const std::string unfinished = name + ".unfinished";
-  write(unfinished + ".gp", analysis::gnuplot_script(unfinished, width_px, height_px, body));
-  analysis::run_gnuplot(folder_, unfinished + ".gp");
-  write(name + ".gp", analysis::gnuplot_script(name, width_px, height_px, body));
-  for (const char* ending : {".svg", ".pdf"}) {
-    fs::rename(folder_ / (unfinished + ending), folder_ / (name + ending));
-  }
-  fs::remove(folder_ / (unfinished + ".gp"));
+  StagingFolder staging(folder_);
+  // It draws beside what is finished, and reads tables of this folder.
+  const std::string draft = (staging.path().filename() / name).string();
+  write(draft + ".gp", analysis::gnuplot_script(draft, width_px, height_px, body));
+  analysis::run_gnuplot(folder_, draft + ".gp");
   fs::remove(folder_ / "gnuplot.log");
+  staging.write(name + ".gp", analysis::gnuplot_script(name, width_px, height_px, body));
+  for (const char* ending : {".svg", ".pdf"}) staging.add(name + ending);
+  staging.keep();
 }
 
 Progress::Progress(const std::string& what, double total)

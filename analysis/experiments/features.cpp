@@ -163,6 +163,32 @@ std::vector<FeatureCost> measure(const Scene& scene, const std::string& name,
   return costs;
 }
 
+/// What it costs to keep a World, for a step to go back to.
+struct CopyCost {
+  std::string scene;
+  double anew_s = 0.0, over_s = 0.0;  // a World that is made, and one that has been a copy before
+  double step_s = 0.0;
+};
+
+CopyCost measure_copy(const Scene& scene, const std::string& name, const Effort& effort) {
+  World world = make_world(scene, configured(Method::pinch, false));
+  Workspace work;
+  const StepCost step_cost = measure_steps(scene, world, work, effort);
+  const Effort little{0.3 * effort.seconds, effort.samples};
+  volatile std::int64_t kept = 0;  // so that no copy is left out
+  World copy = world;
+  const auto anew = [&] {
+    const World made = world;
+    kept = made.step;
+  };
+  const auto over = [&] {
+    copy = world;
+    kept = copy.step;
+  };
+  const BothCosts both = measure_both(anew, over, little);
+  return {name, both.first.seconds.median, both.second.seconds.median, step_cost.step_s.median};
+}
+
 struct SleepingCables {
   int count = 0, moving = 0, steps = 0;
   double on_s = 0.0, off_s = 0.0, only_moving_s = 0.0;  // a step
@@ -255,6 +281,20 @@ std::string features_text(const std::vector<FeatureCost>& costs) {
                         rows);
 }
 
+std::string copies_text(const std::vector<CopyCost>& copies) {
+  std::vector<std::vector<std::string>> rows;
+  for (const CopyCost& c : copies) {
+    rows.push_back({c.scene, time_text(c.anew_s), time_text(c.over_s), time_text(c.step_s),
+                    share_text(c.over_s / c.step_s)});
+  }
+  return "\n## Copies\n\n"
+         "A `World` is all that a restart needs: whoever tries a step and goes back copies it. "
+         "Into "
+         "a copy that there was before nothing is allocated.\n\n" +
+         markdown_table({"scene", "a new copy", "over an old copy", "step", "old copy, of a step"},
+                        rows);
+}
+
 std::string sleep_text(const SleepingCables& s) {
   return fmt::format(
       "\n## A thousand cables of which ten move\n\n"
@@ -275,10 +315,13 @@ void run_features(const Options& options) {
   Progress progress("features", 3.0);
   constexpr int few = 3, many = 301;
   std::vector<FeatureCost> costs;
+  std::vector<CopyCost> copies;
   for (const int pulleys : {few, many}) {
-    const std::vector<FeatureCost> found =
-        measure(swinging_scene(pulleys), fmt::format("{} pulleys", pulleys), effort);
+    const Scene scene = swinging_scene(pulleys);
+    const std::string name = fmt::format("{} pulleys", pulleys);
+    const std::vector<FeatureCost> found = measure(scene, name, effort);
     costs.insert(costs.end(), found.begin(), found.end());
+    copies.push_back(measure_copy(scene, name, effort));
     progress.done(1.0);
   }
   const SleepingCables sleeping =
@@ -289,13 +332,17 @@ void run_features(const Options& options) {
     csv.row({c.scene, c.feature, c.how, c.cost_s, c.step_s, c.share()});
   }
   output.csv("features", csv, options.command);
+  Csv copied({"scene", "new_copy_s", "old_copy_s", "step_s"});
+  for (const CopyCost& c : copies) copied.row({c.scene, c.anew_s, c.over_s, c.step_s});
+  output.csv("copies", copied, options.command);
   Csv sleep({"cables", "moving", "steps", "on_s", "off_s", "only_moving_s",
              "largest_difference_moving_m", "largest_difference_resting_m"});
   sleep.row({std::int64_t{sleeping.count}, std::int64_t{sleeping.moving},
              std::int64_t{sleeping.steps}, sleeping.on_s, sleeping.off_s, sleeping.only_moving_s,
              sleeping.largest_difference_moving, sleeping.largest_difference_resting});
   output.csv("sleep", sleep, options.command);
-  output.page("features", features_text(costs) + sleep_text(sleeping), options.command);
+  output.page("features", features_text(costs) + copies_text(copies) + sleep_text(sleeping),
+              options.command);
   fmt::print("{}: what features cost scenes that do not use them\n",
              (options.out / "features.md").string());
 }

@@ -13,6 +13,7 @@
 #include "sim/diagnostics.h"
 #include "sim/scene_error.h"
 #include "tests/sim/random_scene.h"
+#include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -316,6 +317,12 @@ TEST(Joints, RandomLinkagesMakeNoEnergy) {
     }
   }
   EXPECT_EQ(runs, 600);
+}
+
+TEST(Joints, AClearedWorkspaceChangesNoBit) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    EXPECT_TRUE(is_all_state(linkage(seed), Method::pinch, 240)) << seed;
+  }
 }
 
 TEST(Joints, RefuseWhatCannotBe) {

@@ -5,6 +5,7 @@
 
 #include "demos/scenes/shape_scenes.h"
 #include "sim/cable/cable.h"
+#include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -96,6 +97,12 @@ TEST(Layers, WindOnAsTheyWindOff) {
   EXPECT_NEAR(world.angle[0], 0.0, 1e-12);
   EXPECT_NEAR(world.position[1].y(), y, 1e-9);
   EXPECT_NEAR(world.cables[0].links[1].radius, radius, 1e-12);
+}
+
+TEST(Layers, AClearedWorkspaceChangesNoBit) {
+  for (const bool from_start : {true, false}) {
+    EXPECT_TRUE(is_all_state(layered_hoist(5, 0.02, 4, from_start), Method::pinch, 400));
+  }
 }
 
 // It rolls on the outermost layer, omega (r + w) = Omega R, with its centre (r + w) + R from the

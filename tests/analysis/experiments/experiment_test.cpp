@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace pinchlab::experiments {
 namespace {
@@ -90,6 +92,15 @@ TEST(Experiment, OutputHasOriginFigureAndNoLeftovers) {
     names.push_back(entry.path().filename().string());
   }
   EXPECT_EQ(names.size(), 5U);  // csv, gp, md, pdf, svg
+  // A figure that fails leaves what there was, and nothing of its own but what gnuplot said.
+  const std::string drawn = folder.read("costs.svg"), script = folder.read("costs.gp");
+  EXPECT_THROW(output.figure("costs", 400, 300, "plot 'missing.csv'"), std::runtime_error);
+  EXPECT_EQ(folder.read("costs.svg"), drawn);
+  EXPECT_EQ(folder.read("costs.gp"), script);
+  for (const auto& entry : fs::directory_iterator(folder.path)) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_TRUE(std::ranges::count(names, name) == 1 || name == "gnuplot.log") << name;
+  }
 }
 
 TEST(Experiment, OutputNamesAFolderThatCannotBeMade) {
