@@ -127,8 +127,8 @@ bool is_chaotic(const Scene& scene, const Configuration& method, double seconds)
          largest_apart(scene, faster, place, method, seconds) > near_enough;
 }
 
-// But sweeps, which solve one row after the other, and chains of nodes, which are a run of the list.
-// Plain cable joints jitter in the stack, as its own baseline does not.
+// But sweeps, which solve one row after the other, and chains of nodes, which are a run of the
+// list. Plain cable joints jitter in the stack, as its own baseline does not.
 TEST(Order, DemonstrationsMoveAlikeInAnyOrder) {
   for (const std::string& name : demonstrations) {
     const Scene scene = demonstration(name);
