@@ -50,7 +50,7 @@ struct Contact {
   Slip slip = Slip::stick;  // of bare surfaces, by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
-  Curvature curvature{};       // of its normal row, by note_curvature
+  Curvature curvature{};       // of its normal row, by note_curvatures
 };
 
 }  // namespace pinchlab

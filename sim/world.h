@@ -98,7 +98,7 @@ struct Segment {
                                                                 // tangent is for
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
-  Curvature curvature{};                                            // by note_curvature
+  Curvature curvature{};                                            // by note_curvatures
 };
 
 struct alignas(64) CableState {
