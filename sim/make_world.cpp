@@ -15,12 +15,13 @@
 #include "sim/detect/contacts.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/pinch.h"
+#include "sim/first_tensions.h"
 #include "sim/pieces.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_words.h"
 #include "sim/seams.h"
-#include "sim/step.h"
 #include "sim/touch.h"
+#include "sim/workspace.h"
 
 namespace pinchlab {
 
@@ -30,6 +31,11 @@ World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
   for (const Wall& wall : scene.walls) world.obstacles.push_back({wall, 0.0, -1, {}, {}});
+  const std::size_t count = scene.bodies.size();
+  world.bodies.reserve(count);
+  for (std::vector<Vec2>* list : {&world.position, &world.velocity}) list->reserve(count);
+  for (std::vector<double>* list : {&world.angle, &world.angular_velocity}) list->reserve(count);
+  world.still_steps.reserve(count);
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);
@@ -54,14 +60,14 @@ World bodies_of_scene(const Scene& scene) {
 
 void lay_cables(const Scene& scene, World& world) {
   const double allowed = overlap_allowed(scene);
-  std::vector<CableState> laid;
-  laid.reserve(scene.cables.size());
+  world.cables.clear();
+  world.cables.reserve(scene.cables.size());
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    laid.push_back(lay_cable(scene, world, allowed, c));
+    // A copy is of its size, and what laying takes beside it serves the next. With that between
+    // them the steps of a scene of many cables would go through a third more pages of memory.
+    const CableState laid = lay_cable(scene, world, allowed, c);
+    world.cables.push_back(laid);
   }
-  // Copies made at once lie next to each other. With what laying leaves between them the steps of a
-  // scene of many cables would go through a third more pages of memory.
-  world.cables = laid;
 }
 
 /// Whether a body that may change gaps is where the last obstacle is, a cable's end, by more than
@@ -103,31 +109,6 @@ void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
   }
 }
 
-/// Tensions at time 0, which the first step's steady_light_bodies goes by. A light body that is not
-/// held yet gives way and lowers them, so that it takes some trials.
-void find_first_tensions(const Scene& scene, World& world) {
-  constexpr int most_trials = 10;  // a first step that goes by others is no error
-  World trial;
-  Workspace work;
-  for (int i = 0; i < most_trials; ++i) {
-    trial = world;
-    trial.configuration.diagnostics = false;
-    if (step(scene, trial, work) != StepStatus::ok) return;
-    if (i > 0 && std::all_of(work.systems.begin(), work.systems.end(),
-                             [](const PartSystem& s) { return s.span_masses.empty(); })) {
-      return;  // no body is nearly too light
-    }
-    for (std::size_t c = 0; c < world.cables.size(); ++c) {
-      std::vector<Segment>& segments = world.cables[c].segments;
-      if (segments.size() != trial.cables[c].segments.size()) continue;
-      for (std::size_t s = 0; s < segments.size(); ++s) {
-        segments[s].tension = trial.cables[c].segments[s].tension;
-      }
-    }
-    if (work.parts.movers.empty()) return;  // no body is light
-  }
-}
-
 }  // namespace
 
 World make_world(const Scene& scene, Configuration configuration) {
@@ -161,7 +142,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   refuse_cables_through_bodies(scene, world, work.broad_phase);
   find_contacts(scene, world, work);
   configure_pinches(world, work);
-  find_parts(world, work);
+  find_parts(world, work.contacts.contacts_kept, work.parts, work.parts_before);
   assign_contacts(world, work);
   refuse_squeezed_wraps(scene, world);
   world.configuration = configuration;
@@ -175,7 +156,7 @@ World make_world(const Scene& scene, Configuration configuration) {
     detect(scene, world, work);
   }
   begin_slip(scene, world);
-  find_first_tensions(scene, world);
+  find_first_tensions(scene, world, work);
   return world;
 }
 

@@ -194,7 +194,7 @@ void assign_systems(const Parts& before, Parts& parts, std::vector<PartSystem>& 
   }
 }
 
-void divide(const World& world, Parts& before, Parts& parts, std::vector<PartSystem>& systems) {
+void divide(const World& world, Parts& before, Parts& parts) {
   std::swap(before.list, parts.list);
   std::swap(before.bodies, parts.bodies);
   std::swap(before.cables, parts.cables);
@@ -221,7 +221,6 @@ void divide(const World& world, Parts& before, Parts& parts, std::vector<PartSys
       [&](int i) { return at(parts.of_body, body_of_contact(world, at(world.contacts, i))); },
       &Part::contacts_begin, &Part::contacts_end, parts.contacts);
   for (Part& part : parts.list) describe(world, parts, part);
-  assign_systems(before, parts, systems);
 }
 
 /// Below this speed (m/s; at the rim for turning) a body is at rest: a part in 1e8 of its size a
@@ -252,20 +251,24 @@ bool rests(const Parts& parts, const Part& part, const World& world) {
 }  // namespace
 
 void find_parts(const World& world, Workspace& work) {
-  Parts& parts = work.parts;
-  parts.divided = structure_changed(world, work.contacts.contacts_kept, parts);
-  if (parts.divided) divide(world, work.parts_before, parts, work.systems);
+  find_parts(world, work.contacts.contacts_kept, work.parts, work.parts_before);
+  if (work.parts.divided) assign_systems(work.parts_before, work.parts, work.systems);
+}
+
+void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& before) {
+  parts.divided = structure_changed(world, contacts_stand, parts);
+  if (parts.divided) divide(world, before, parts);
   parts.any_moves = false;
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {
-    const bool before = part.asleep;
+    const bool slept = part.asleep;
     part.asleep =
         part.dormant || (world.configuration.sleep && part.bodies_begin < part.bodies_end);
     for (const int b : bodies_of(parts, part)) {
       if (!part.asleep) break;
       part.asleep = at(world.still_steps, b) >= enough;
     }
-    part.kept = before && part.asleep;
+    part.kept = slept && part.asleep;
     parts.any_moves = parts.any_moves || (!part.asleep && part.can_move);
   }
 }

@@ -89,6 +89,10 @@ inline std::span<const int> contacts_of(const Parts& parts, const Part& part) {
 /// sleep. A part of the same bodies and cables as before keeps its system.
 void find_parts(const World& world, Workspace& work);
 
+/// The same, without systems. `contacts_stand`: they are those of the parts that were found last,
+/// whose lists go to `before` where they are not kept.
+void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& before);
+
 /// Whether the body's outline is where it was: it cannot change, or its part is idle.
 inline bool is_still(const Parts& parts, int body) {
   if (parts.immobile.empty()) return false;  // not divided yet

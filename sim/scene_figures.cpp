@@ -21,11 +21,15 @@ namespace {
 
 constexpr double rounding = 1e-9;  // of lengths that follow from others, as a share
 
-void refuse(bool wrong, const std::string& place, const std::string& message) {
-  if (wrong) throw SceneError(place, message);
-}
+/// In the scene; put into words only where it is told, as a scene may have many.
+struct Place {
+  const char* list;  // or a field, with its slash
+  int item = -1;
 
-void refuse(bool wrong, const std::string& place, const char* message) {
+  operator std::string() const { return item < 0 ? list : pointer(list, index(item)); }
+};
+
+void refuse(bool wrong, const Place& place, const char* message) {
   if (wrong) throw SceneError(place, message);
 }
 
@@ -43,23 +47,25 @@ bool is_in(const std::vector<Item>& items, int i) {
   return i >= 0 && index(i) < items.size();
 }
 
-void refuse_impossible_outline(const BodyProperties& body, const std::string& place) {
+void refuse_impossible_outline(const BodyProperties& body, const Place& place) {
   refuse(!std::all_of(body.corners.begin(), body.corners.end(),
                       [](const Vec2& corner) { return corner.allFinite(); }) ||
              !at_least_0(body.corner_radius),
          place, "corners and their radius must be finite");
-  refuse(body.corners.size() < 3 || body.corners.size() > most_corners, place,
-         fmt::format("a polygon has 3 to {} corners", most_corners));
+  if (body.corners.size() < 3 || body.corners.size() > most_corners) {
+    throw SceneError(place, fmt::format("a polygon has 3 to {} corners", most_corners));
+  }
   refuse(
       !is_convex(body.corners), place,
       "the corners must go round a convex polygon counter-clockwise, with none on a straight side");
   const Vec2 centre = plate_of(body.corners, body.corner_radius).centre;
   // Corners that are written with six digits have their centre so near.
-  refuse(!(centre.norm() <= 1e-6 * body.radius), place,
-         fmt::format(
-             "corners are given from the centre of mass, which lies at [{}, {}] of these; take "
-             "that away from each",
-             centre.x(), centre.y()));
+  if (!(centre.norm() <= 1e-6 * body.radius)) {
+    throw SceneError(
+        place, fmt::format("corners are given from the centre of mass, which lies at [{}, {}] of "
+                           "these; take that away from each",
+                           centre.x(), centre.y()));
+  }
   double furthest = 0.0;
   for (const Vec2& corner : body.corners) furthest = std::max(furthest, corner.norm());
   refuse(!(std::abs(furthest + body.corner_radius - body.radius) <= rounding * body.radius), place,
@@ -68,13 +74,13 @@ void refuse_impossible_outline(const BodyProperties& body, const std::string& pl
 }
 
 /// What bodies and walls have in common.
-void refuse_impossible_surface(double friction, double restitution, const std::string& place) {
+void refuse_impossible_surface(double friction, double restitution, const Place& place) {
   refuse(!at_least_0(friction), place, "the contact friction must be a number of at least 0");
   refuse(!(restitution >= 0.0 && restitution <= 1.0), place, "the restitution must be 0 to 1");
 }
 
 /// A shape of a compound is carried along by a body before it.
-void refuse_impossible_shape(const Scene& scene, int b, const std::string& place) {
+void refuse_impossible_shape(const Scene& scene, int b, const Place& place) {
   const Body& shape = at(scene.bodies, b);
   const bool carried =
       shape.carrier >= 0 && shape.carrier < b && !at(scene.bodies, shape.carrier).outlined &&
@@ -92,21 +98,21 @@ void refuse_impossible_shape(const Scene& scene, int b, const std::string& place
          "the radius of the body that carries it must reach round the shape (add_shapes)");
 }
 
-void refuse_impossible_mass(const Body& body, const std::string& place) {
+void refuse_impossible_mass(const Body& body, const Place& place) {
   if (body.kind == BodyKind::fixed) {
     refuse(!at_least_0(body.mass), place, "the mass must be a number of at least 0");
   } else if (body.node) {
     refuse(!positive(body.mass), place, "the mass must be a number above 0");
-  } else {
-    refuse(!(body.mass >= lightest_body && body.mass <= heaviest_body), place,
-           fmt::format("the mass must be {:g} to {:g} kg", lightest_body, heaviest_body));
+  } else if (!(body.mass >= lightest_body && body.mass <= heaviest_body)) {
+    throw SceneError(place,
+                     fmt::format("the mass must be {:g} to {:g} kg", lightest_body, heaviest_body));
   }
   refuse(body.inertia && !positive(*body.inertia), place, "the inertia must be a number above 0");
   refuse(body.kind != BodyKind::fixed && !positive(inertia_of(body)), place,
          "the inertia of such a disc is nothing; give it one, or more mass or radius");
 }
 
-void refuse_impossible_motor(const Body& body, const std::string& place) {
+void refuse_impossible_motor(const Body& body, const Place& place) {
   refuse(!std::isfinite(body.driven_angular_velocity.value_or(0.0)) || !std::isfinite(body.torque),
          place, "driven angular velocity and torque must be finite");
   refuse(!positive(body.torque_limit) && body.torque_limit != infinity, place,
@@ -122,7 +128,7 @@ void refuse_impossible_motor(const Body& body, const std::string& place) {
 
 void refuse_impossible_body(const Scene& scene, int b) {
   const Body& body = at(scene.bodies, b);
-  const std::string place = pointer("bodies", index(b));
+  const Place place{"bodies", b};
   refuse(body.kind != BodyKind::free && body.kind != BodyKind::rail &&
              body.kind != BodyKind::fixed_axle && body.kind != BodyKind::fixed,
          place, "the kind must be free, rail, fixed_axle or fixed");
@@ -153,9 +159,7 @@ bool is_straight(const Cable& cable) {
   return cable.rod || cable.piece || cable.joint != Joint::none;
 }
 
-/// Sleeves (cable/sleeve.h) are of discs, about their centres.
-void refuse_impossible_cable_mass(const Scene& scene, const Cable& cable,
-                                  const std::string& place) {
+void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
   refuse(cable.bending_stiffness != 0.0, place,
          "a cable that bends needs its nodes (spread_nodes)");
   refuse(cable.nodes != 0 || cable.node_tolerance != 0.0, place,
@@ -170,10 +174,17 @@ void refuse_impossible_cable_mass(const Scene& scene, const Cable& cable,
   refuse(becomes_nodes(cable), place, "a cable with mass needs its nodes (spread_nodes)");
   refuse(cable.start.layers || cable.end.layers, place, "a cable with mass cannot lie in layers");
   refuse(cable.creep, place, "a cable with mass cannot creep");
+}
+
+/// Sleeves (cable/sleeve.h), where a cable with mass slips, are of discs, about their centres.
+void refuse_slip_on_polygons(const Scene& scene) {
+  const auto massed = std::ranges::find_if(
+      scene.cables, [](const Cable& cable) { return cable.mass_per_metre != 0.0; });
+  if (massed == scene.cables.end()) return;
   for (const Body& body : scene.bodies) {
     if (body.cable_friction == infinity) continue;
     if (body.corners.empty() && body.carrier < 0) continue;
-    throw SceneError(place,
+    throw SceneError(Place{"cables", static_cast<int>(massed - scene.cables.begin())},
                      fmt::format("a cable with mass slips on discs only, and could on body '{}', "
                                  "which is {}; leave out the body's cable_friction, or the "
                                  "cable's mass",
@@ -181,7 +192,7 @@ void refuse_impossible_cable_mass(const Scene& scene, const Cable& cable,
   }
 }
 
-void refuse_impossible_figures_of(const Cable& cable, const std::string& place) {
+void refuse_impossible_figures_of(const Cable& cable, const Place& place) {
   refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
   refuse(!positive(cable.axial_stiffness) && cable.axial_stiffness != infinity, place,
          "the axial stiffness must be above 0");
@@ -202,7 +213,7 @@ void refuse_impossible_figures_of(const Cable& cable, const std::string& place) 
 
 /// `beside` is the wrap next to the end, or none.
 void refuse_impossible_end(const Scene& scene, const Attachment& end, const Wrap* beside,
-                           const std::string& place) {
+                           const Place& place) {
   refuse(end.body != -1 && !is_in(scene.bodies, end.body), place,
          "an end is on a body that is not in the scene");
   refuse(!end.point.allFinite(), place, "an end's point must be finite");
@@ -211,7 +222,7 @@ void refuse_impossible_end(const Scene& scene, const Attachment& end, const Wrap
          place, "layers belong to an end on a disc's rim that the cable runs round beside it");
 }
 
-void refuse_impossible_wrap(const Scene& scene, const Wrap& wrap, const std::string& place) {
+void refuse_impossible_wrap(const Scene& scene, const Wrap& wrap, const Place& place) {
   refuse(!is_in(scene.bodies, wrap.body), place, "it runs round a body that is not in the scene");
   const Body& body = at(scene.bodies, wrap.body);
   if (!body.outlined) {
@@ -221,11 +232,12 @@ void refuse_impossible_wrap(const Scene& scene, const Wrap& wrap, const std::str
   }
   refuse(wrap.orientation != 1 && wrap.orientation != -1, place,
          "a wrap's orientation must be 1 or -1");
-  refuse(wrap.extra_turns < 0 || wrap.extra_turns > most_extra_turns, place,
-         fmt::format("a wrap's extra turns must be 0 to {}", most_extra_turns));
+  if (wrap.extra_turns < 0 || wrap.extra_turns > most_extra_turns) {
+    throw SceneError(place, fmt::format("a wrap's extra turns must be 0 to {}", most_extra_turns));
+  }
 }
 
-void refuse_impossible_course(const Scene& scene, const Cable& cable, const std::string& place) {
+void refuse_impossible_course(const Scene& scene, const Cable& cable, const Place& place) {
   const std::vector<Wrap>& wraps = cable.wraps;
   for (const Wrap& wrap : wraps) refuse_impossible_wrap(scene, wrap, place);
   for (std::size_t i = cable.closed ? 0 : 1; i < wraps.size(); ++i) {
@@ -245,7 +257,7 @@ void refuse_impossible_course(const Scene& scene, const Cable& cable, const std:
 }
 
 /// Pieces bend against one another about the node between them.
-void refuse_impossible_bend(const Scene& scene, std::size_t c, const std::string& place) {
+void refuse_impossible_bend(const Scene& scene, std::size_t c, const Place& place) {
   const Cable& cable = scene.cables[c];
   refuse(!at_least_0(cable.bend), place, "what it bends by must be a number of at least 0");
   if (cable.bends_with == -1) return;
@@ -260,16 +272,16 @@ void refuse_impossible_bend(const Scene& scene, std::size_t c, const std::string
 
 void refuse_impossible_cable(const Scene& scene, std::size_t c) {
   const Cable& cable = scene.cables[c];
-  const std::string place = pointer("cables", c);
+  const Place place{"cables", static_cast<int>(c)};
   refuse_impossible_figures_of(cable, place);
-  refuse_impossible_cable_mass(scene, cable, place);
+  refuse_impossible_cable_mass(cable, place);
   refuse_impossible_course(scene, cable, place);
   refuse_impossible_bend(scene, c, place);
 }
 
 void refuse_impossible_wall(const Scene& scene, std::size_t w) {
   const Wall& wall = scene.walls[w];
-  const std::string place = pointer("walls", w);
+  const Place place{"walls", static_cast<int>(w)};
   refuse(!positive((wall.b - wall.a).norm()), place, "the wall must have a length");
   refuse_impossible_surface(wall.contact_friction, wall.restitution, place);
 }
@@ -277,7 +289,7 @@ void refuse_impossible_wall(const Scene& scene, std::size_t w) {
 /// `bodies` is where the nodes of chains before it end. The cables have been checked.
 void refuse_impossible_chain(const Scene& scene, std::size_t i, int bodies) {
   const NodeChain& chain = scene.chains[i];
-  const std::string place = pointer("chains", i);
+  const Place place{"chains", static_cast<int>(i)};
   refuse(!positive(chain.piece_length) || !positive(chain.mass_per_metre) ||
              !positive(chain.tolerance),
          place, "length and mass of its pieces and their tolerance must be numbers above 0");
@@ -303,31 +315,32 @@ void refuse_impossible_chain(const Scene& scene, std::size_t i, int bodies) {
 void refuse_impossible_view(const View& view) {
   const bool seen =
       view.low.allFinite() && view.high.allFinite() && (view.high.array() > view.low.array()).all();
-  refuse(!seen, "/view", "the view must be finite and its upper corner above its lower");
+  refuse(!seen, {"/view"}, "the view must be finite and its upper corner above its lower");
 }
 
 }  // namespace
 
 void refuse_impossible_courses(const Scene& scene) {
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    refuse_impossible_course(scene, scene.cables[c], pointer("cables", c));
+    refuse_impossible_course(scene, scene.cables[c], {"cables", static_cast<int>(c)});
   }
 }
 
 void refuse_impossible_figures(const Scene& scene) {
-  refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, "/frames_per_second",
+  refuse(scene.frames_per_second < 1 || scene.steps_per_frame < 1, {"/frames_per_second"},
          "frames per second and steps per frame must be at least 1");
-  refuse(scene.frame_count < 1, "/duration_s", "there must be at least one frame");
-  refuse(!scene.gravity.allFinite(), "/gravity_m_s2", "gravity must be finite");
-  refuse(!at_least_0(scene.error), "/error_m", "the error must be a number of at least 0");
+  refuse(scene.frame_count < 1, {"/duration_s"}, "there must be at least one frame");
+  refuse(!scene.gravity.allFinite(), {"/gravity_m_s2"}, "gravity must be finite");
+  refuse(!at_least_0(scene.error), {"/error_m"}, "the error must be a number of at least 0");
   refuse(scene.baseline != Method::pinch && scene.baseline != Method::pinch_no_contact &&
              scene.baseline != Method::cable,
-         "/baseline", "the baseline must be one of the methods");
+         {"/baseline"}, "the baseline must be one of the methods");
   refuse_impossible_view(scene.view);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     refuse_impossible_body(scene, static_cast<int>(b));
   }
   for (std::size_t c = 0; c < scene.cables.size(); ++c) refuse_impossible_cable(scene, c);
+  refuse_slip_on_polygons(scene);
   for (std::size_t w = 0; w < scene.walls.size(); ++w) refuse_impossible_wall(scene, w);
   int bodies = 0;
   for (std::size_t i = 0; i < scene.chains.size(); ++i) {
@@ -338,7 +351,7 @@ void refuse_impossible_figures(const Scene& scene) {
     const std::array<int, 2>& pair = scene.apart[i];
     refuse(!is_in(scene.bodies, pair[0]) || !is_in(scene.bodies, pair[1]) || pair[0] >= pair[1] ||
                (i > 0 && pair <= scene.apart[i - 1]),
-           pointer("apart", i),
+           {"apart", static_cast<int>(i)},
            "pairs of bodies must be in the scene, the lesser index first, and ascend "
            "(keep_apart)");
   }

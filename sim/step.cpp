@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/at.h"
+#include "sim/at_steps.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
 #include "sim/compound.h"
@@ -12,9 +13,7 @@
 #include "sim/detect/span_hits.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/advance.h"
-#include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
-#include "sim/solve/light_bodies.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
@@ -59,28 +58,12 @@ bool all_asleep(const Parts& parts) {
                      [](const Part& part) { return part.asleep; });
 }
 
-/// Velocities of a part's bodies that meet all of its constraints, in its system; whether the
-/// states settled.
-bool solve_part(const Scene& scene, const World& world, Workspace& work, const Part& part,
-                Stopwatch& watch) {
-  PartSystem& s = at(work.systems, part.system);
-  const TimeSpan interval = whole_step(world);
-  steady_light_bodies(world, work.parts, part, interval.kick, s);
-  return solve_with_motors(scene, world, work, part, interval, watch, [&] {
-    if (world.configuration.solver == Solver::direct) {
-      return solve_direct(world, work.parts, part, s, work.solve);
-    }
-    solve_iterative(world, work.parts, part, s, work.solve, work.sweeps);
-    return true;
-  });
-}
-
 void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
   Diagnostics& d = world.diagnostics;
   d.active_set_solves = 0;
   for (Part& part : work.parts.list) {
     if (part.asleep) continue;
-    if (!solve_part(scene, world, work, part, watch)) ++d.fallbacks;
+    if (!solve_at_steps(scene, world, work, part, whole_step(world), watch)) ++d.fallbacks;
     PartSystem& s = at(work.systems, part.system);
     store_solution(work.parts, part, s, work.solve.capstan, whole_step(world).kick, world);
     if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
@@ -158,7 +141,7 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   }
   for (const Part& part : work.parts.list) {
     if (part.asleep) continue;
-    if (!located) solve_part(scene, world, work, part, untimed);
+    if (!located) solve_at_steps(scene, world, work, part, whole_step(world), untimed);
     const PartSystem& s = at(work.systems, part.system);
     const std::span<const int> bodies = bodies_of(work.parts, part);
     for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -83,4 +83,11 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   if (!s.sleeves.empty()) store_rubbing(s, world);
 }
 
+void store_tensions(PartSystem& s, double kick, World& world) {
+  share_among_repeated(s);
+  for (const Row& row : std::span(s.rows).first(index(s.first_sleeve_row))) {
+    at(at(world.cables, row.index).segments, row.item).tension = row.impulse / kick;
+  }
+}
+
 }  // namespace pinchlab

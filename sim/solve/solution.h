@@ -17,4 +17,7 @@ struct PartSystem;
 void store_solution(const Parts& parts, const Part& part, PartSystem& system,
                     const CapstanScratch& capstan, double kick, World& world);
 
+/// Of these the tensions only, of an interval that is not to be.
+void store_tensions(PartSystem& system, double kick, World& world);
+
 }  // namespace pinchlab

@@ -111,8 +111,9 @@ int level_in_sim(const std::string& file) {
   const auto room = of_room.find(room_of(file));
   if (room != of_room.end()) return room->second;
   if (file == "sim/parts.cpp" || unit_of(file) == "sim/diagnostics") return of_room.at("sim/cable");
-  for (const char* above : {"sim/joints", "sim/make_world", "sim/nodes", "sim/promises",
-                            "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
+  for (const char* above :
+       {"sim/at_steps", "sim/first_tensions", "sim/joints", "sim/make_world", "sim/nodes",
+        "sim/promises", "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
     if (unit_of(file) == above) return 6;
   }
   return 0;
