@@ -61,20 +61,28 @@ double speed_given(const World& world, std::span<const int> bodies, const PartSy
 }
 
 /// Lets motors without a limit stall where all else that could give is a cable's stretch, or a body
-/// that it would throw; whether any has changed.
+/// that it would throw; whether any has changed. One whose stalling leaves most of the stretch has
+/// nothing to do with it, and insists.
 bool stall(const World& world, const Parts& parts, const Part& part, PartSystem& s,
            const SolveScratch& set) {
+  constexpr double most = 0.5;
   const std::span<const int> bodies = bodies_of(parts, part);
   bool changed = false;
   for (Motor& motor : s.motors) {
     const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
     if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
-    const bool throws = speed_given(world, bodies, s) > thrown * rim;
-    if (!throws && stretching(s, set) <= contradicting * rim) continue;
-    const bool stalls = motor.state == MotorState::stalls;
-    if (stalls && motor.threw) continue;  // insisting would throw again
-    if (!stalls) motor.threw = throws;
-    motor.state = stalls ? MotorState::insists : MotorState::stalls;
+    const double stretched = stretching(s, set);
+    if (motor.state == MotorState::stalls) {
+      if (motor.threw || stretched <= contradicting * rim || stretched < most * motor.stretched) {
+        continue;  // it has helped, or insisting would throw again
+      }
+      motor.state = MotorState::insists;
+    } else {
+      motor.threw = speed_given(world, bodies, s) > thrown * rim;
+      if (!motor.threw && stretched <= contradicting * rim) continue;
+      motor.stretched = stretched;
+      motor.state = MotorState::stalls;
+    }
     changed = true;
   }
   return changed;

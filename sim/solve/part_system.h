@@ -173,13 +173,14 @@ enum class MotorState : std::int8_t {
 
 /// What turns a driven body: motors.h.
 struct Motor {
-  int place = 0;         // of the body in the part
-  double speed = 0.0;    // rad/s, that it is to turn at
-  double before = 0.0;   // rad/s, before the kick
-  double inertia = 0.0;  // kg m^2
-  double most = 0.0;     // N m s: its limit over the kick, or infinity
-  bool moves = false;    // the body can do more than turn
-  bool threw = false;    // something in this kick, when it held its speed
+  int place = 0;           // of the body in the part
+  double speed = 0.0;      // rad/s, that it is to turn at
+  double before = 0.0;     // rad/s, before the kick
+  double inertia = 0.0;    // kg m^2
+  double most = 0.0;       // N m s: its limit over the kick, or infinity
+  bool moves = false;      // the body can do more than turn
+  bool threw = false;      // something in this kick, when it held its speed
+  double stretched = 0.0;  // m/s, a cable at most, then
   MotorState state = MotorState::holds;
 };
 

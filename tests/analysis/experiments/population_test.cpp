@@ -75,15 +75,14 @@ TEST(Population, NoBodySinksOverAnEnd) {
 }
 
 // Motors that wind in what cannot give: those that had thrown weights when they held their speed
-// did so again, as stalling left the cable stretched. They were 914 m and 78 m from their cables.
-// (The second scene's motor throws a disc of 60 g all the same, at 4 and 16 steps.)
+// did so again, as stalling left the cable stretched, if a thousandth as fast. They were 914 m and
+// 78 m from their cables, and in the other two wound them in by 5 and 1.5 mm.
 TEST(Population, MotorsThatThrowStayStalled) {
-  for (const int seed : {1190, 1229}) {
+  for (const int seed : {11, 1018, 1190, 1229}) {
     for (const int steps : {1, 4, 16}) {
       const Soundness run =
           run_scene(dropped_discs(static_cast<std::uint64_t>(seed)), watched(), steps, 60);
-      EXPECT_LE(run.loose_span, 1e-2) << seed << " at " << steps;
-      if (seed == 1229) continue;
+      EXPECT_LE(run.loose_span, 1e-6) << seed << " at " << steps;
       for (const Vec2& position : run.positions) {
         EXPECT_LT(position.norm(), 100.0) << seed << " at " << steps;
       }
@@ -135,7 +134,7 @@ TEST(Population, GapsAreKept) {
 // and does not throw that. It raised the energy from 4.2 kJ to 3.1 MJ at 4 steps a frame.
 TEST(Population, AMotorThatIsStruckDoesNotThrow) {
   Scene scene = dropped_discs(1229);
-  for (const int steps : {1, 4}) {
+  for (const int steps : {1, 2, 3, 4, 8, 16}) {
     scene.steps_per_frame = steps;
     World world = make_world(scene, watched());
     Workspace work;
@@ -145,7 +144,7 @@ TEST(Population, AMotorThatIsStruckDoesNotThrow) {
       if (i == 0) start = world.diagnostics.energy;
       most = std::max(most, world.diagnostics.energy);
     }
-    EXPECT_LE(most, 1.1 * start) << steps;
+    EXPECT_LE(most, start * (1.0 + 1e-9)) << steps;
   }
 }
 
