@@ -58,6 +58,7 @@ struct Trial {
   bool settled = true;        // every solve
   bool violated = false;      // what it began with, by more than it makes up for
   bool foreseen = false;      // its curvatures were, of a part at least
+  bool curves = false;        // some way, by more than round-off
   bool contradicts = false;   // a correction of the first solution asks for what cannot be
   double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
   double excess = 0.0;        // the same, over what would do

@@ -78,7 +78,7 @@ struct Rim {
 };
 
 /// The free span that arrives at the link of the same index from the link before it.
-struct Segment {
+struct alignas(64) Segment {
   // What every step reads.
   double alpha = 0.0;               // rad, heading(direction), continuous; of pieces: turn_pieces
   double length = 0.0;              // m, distance along the tangent; 0 when pinched
@@ -219,6 +219,7 @@ struct Regularity {
   double length = 0.0;  // s
   int intervals = 0;    // how many, as far as their curvatures are kept
   int unmeasured = 0;   // of the last of them the errors are not known
+  bool curved = false;  // some way in them; else nothing is kept of curvatures, which are 0
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same

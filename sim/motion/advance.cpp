@@ -201,10 +201,12 @@ void note_ways(World& world, Workspace& work, double lag, double length, bool me
   if (!met || !trial.settled || work.neighbourhoods.divided) return;
   world.regularity =
       regularity_after(before, {length, kick, trial.foreseen, trial.local_error, allowed});
-  if (world.regularity.intervals == 0) return;
+  const int known = world.regularity.intervals - 1;
+  const bool curved = known > 0 && before.curved;
+  if (known < 0 || (!curved && !trial.curves)) return;
   for (const int p : work.neighbourhoods.parts.items) {
     const PartSystem& s = at(work.systems, at(work.parts.list, p).system);
-    note_curvatures(s, world.regularity.intervals - 1, world);
+    if (note_curvatures(s, length, known, curved, world)) world.regularity.curved = true;
   }
 }
 

@@ -155,6 +155,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::update_segments);
     // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
     if (round == 1 || t.foreseen) trial.local_error = std::max(trial.local_error, missed);
+    trial.curves = trial.curves || missed > exact_share * s.reach;
     // In so short an interval there is nothing to correct but round-off.
     const bool meets = missed <= exact_share * s.reach || t.length < shortest_corrected * t.repair;
     if (meets && !follows) return true;
@@ -193,6 +194,7 @@ void add(const Trial& one, Trial& all) {
   all.settled = all.settled && one.settled;
   all.violated = all.violated || one.violated;
   all.foreseen = all.foreseen || one.foreseen;
+  all.curves = all.curves || one.curves;
   all.contradicts = all.contradicts || one.contradicts;
   all.missed = std::max(all.missed, one.missed);
   all.excess = std::max(all.excess, one.excess);

@@ -52,17 +52,21 @@ void append(double value, int known, Curvature& differences) {
   }
 }
 
+/// What nobody would correct is round-off (m/s), which must not become speed.
+double least_curvature(const PartSystem& s, double length) {
+  return exact_share * s.reach / length;
+}
+
 }  // namespace
 
 bool is_foreseen(const World& world, const TimeSpan& t) {
   const Regularity& regular = world.regularity;
-  if (!is_same(t.kick, t.length) || !goes_on(regular, t.length)) return false;
+  if (!regular.curved || !is_same(t.kick, t.length) || !goes_on(regular, t.length)) return false;
   return world.configuration.error == 0.0 || regular.unmeasured < most_unmeasured;
 }
 
 void foresee(const World& world, double length, PartSystem& s) {
-  // What nobody would correct is round-off, which must not become speed.
-  const double least = exact_share * s.reach / length;
+  const double least = least_curvature(s, length);
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     if (!row.on || row.idle) continue;
@@ -77,16 +81,23 @@ void foresee(const World& world, double length, PartSystem& s) {
   }
 }
 
-void note_curvatures(const PartSystem& s, int known, World& world) {
+bool note_curvatures(const PartSystem& s, double length, int known, bool curved, World& world) {
+  const double least = least_curvature(s, length);
+  bool any = false;
   for (const Row& row : s.rows) {
     Curvature* differences = curvature_of(world, row);
-    if (differences) append(row.on && !row.idle ? row.curved : 0.0, known, *differences);
+    if (!differences) continue;
+    if (!curved) *differences = {};
+    const bool curves = row.on && !row.idle && std::abs(row.curved) > least;
+    append(curves ? row.curved : 0.0, known, *differences);
+    any = any || *differences != Curvature{};
   }
+  return any;
 }
 
 Regularity regularity_after(const Regularity& before, const IntervalDone& done) {
   if (!is_same(done.kick, done.length)) return {};
-  Regularity after{done.length, 1, most_unmeasured};
+  Regularity after{done.length, 1, most_unmeasured, false};
   if (goes_on(before, done.length)) after.intervals = std::min(before.intervals + 1, order);
   if (done.foreseen) {
     after.unmeasured = std::min(before.unmeasured + 1, most_unmeasured);

@@ -16,7 +16,8 @@
 
 namespace pinchlab {
 
-/// Whether an interval follows on others of its length whose curvatures tell its own. Where steps
+/// Whether an interval follows on others of its length whose curvatures tell its own. Those of
+/// straight ways are nothing to tell by. Where steps
 /// are divided by their error, which only the first correction tells, some in between are not
 /// foreseen.
 bool is_foreseen(const World& world, const TimeSpan& t);
@@ -36,7 +37,8 @@ struct IntervalDone {
 /// World::regularity after an interval that was met, as it was `before`.
 Regularity regularity_after(const Regularity& before, const IntervalDone& done);
 
-/// Notes the curvatures of a part's rows in an interval that `known` like it came before.
-void note_curvatures(const PartSystem& system, int known, World& world);
+/// Notes the curvatures of a part's rows in an interval of `length` (s) that `known` like it came
+/// before, of no curvature at all if not `curved`; whether any is more than 0.
+bool note_curvatures(const PartSystem& system, double length, int known, bool curved, World& world);
 
 }  // namespace pinchlab

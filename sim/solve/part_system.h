@@ -77,7 +77,7 @@ enum class RowKind : std::int8_t {
 /// The two bodies of a row, as places in the part's arrays, and what it sees of their velocities
 /// (x, y, angle). Nothing moves the place after the last body: it stands for the world and for
 /// bodies that do not change.
-struct RowBodies {
+struct alignas(64) RowBodies {
   int a = 0, b = 0;
   Eigen::Vector3d ja = Eigen::Vector3d::Zero(), jb = ja;  // m/s of row a m/s, or rad/s, of body
   double curvature = 0.0;  // m/s, elastic: of the bias, by which C changes otherwise than by J v

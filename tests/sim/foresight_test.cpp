@@ -107,6 +107,20 @@ TEST(Foresight, BeginsAnewWhereSomethingHappens) {
   EXPECT_TRUE(struck);
 }
 
+// Weights on pulleys: lengths change by J v alone, and what is missed is round-off.
+TEST(Foresight, HasNothingToDoOnStraightWays) {
+  for (const bool straight : {true, false}) {
+    const Scene scene = straight ? chain_scene(5) : swinging_scene(5);
+    World world = make_world(scene, Method::pinch);
+    Workspace work;
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      EXPECT_EQ(world.regularity.curved, !straight && world.regularity.intervals > 0) << i;
+    }
+    EXPECT_GT(world.regularity.intervals, 0);
+  }
+}
+
 // Where steps are divided by their errors, which only corrections tell, one in eight is corrected.
 TEST(Foresight, MeasuresErrorsWhereTheyAreAskedFor) {
   Scene scene = swinging_scene(3);

@@ -53,7 +53,8 @@ inline bool same_contact(const Contact& p, const Contact& q) {
 }
 
 inline bool same_regularity(const Regularity& p, const Regularity& q) {
-  return p.length == q.length && p.intervals == q.intervals && p.unmeasured == q.unmeasured;
+  return p.length == q.length && p.intervals == q.intervals && p.unmeasured == q.unmeasured &&
+         p.curved == q.curved;
 }
 
 /// Whether two worlds of one scene are in the same state to the last bit.
