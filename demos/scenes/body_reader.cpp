@@ -94,7 +94,7 @@ void BodyReader::read_rail(Body& body) {
     return;
   }
   const Vec2 axis = vector_of(from_["rail_axis"]);
-  if (axis.norm() < 1e-6) {
+  if (axis.norm() < 1e-6) {  // of no unit: less is a slip of the pen
     problem(place_ + "/rail_axis", "must have a direction: its length is zero or nearly so");
     return;
   }
@@ -106,7 +106,7 @@ void BodyReader::read_rail(Body& body) {
   }
   if (!from_.contains("travel_m")) return;
   const Vec2 travel = vector_of(from_["travel_m"]);
-  if (!(travel[0] <= 0.0 && travel[1] >= 0.0 && travel[1] - travel[0] >= 1e-6)) {
+  if (!(travel[0] <= 0.0 && travel[1] >= 0.0 && travel[1] - travel[0] >= least_length)) {
     problem(
         place_ + "/travel_m",
         "must be [low, high], how far it may go either way from where it starts: low at most 0, "

@@ -12,6 +12,10 @@
 
 namespace pinchlab {
 
+/// m: what is shorter is a slip of the pen, for no radius and no half width of the format is less
+/// (scene.schema.json). So walls and rails are as fine as the smallest scene that it has.
+constexpr double least_length = 1e-6;
+
 inline Vec2 vector_of(const nlohmann::json& value) {
   return {value[0].get<double>(), value[1].get<double>()};
 }

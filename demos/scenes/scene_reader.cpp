@@ -316,7 +316,7 @@ Wall Reader::read_wall(const json& from, const std::string& place) {
   take(from, "to_m", wall.b);
   take(from, "contact_friction", wall.contact_friction);
   take(from, "restitution", wall.restitution);
-  if ((wall.b - wall.a).norm() < 1e-6) {
+  if ((wall.b - wall.a).norm() < least_length) {
     problem(place + "/to_m", "must differ from from_m: the wall's length is zero or nearly so");
   }
   return wall;
@@ -326,10 +326,12 @@ View Reader::read_view(const json& from) {
   View view;
   take(from, "low_m", view.low);
   take(from, "high_m", view.high);
+  // Less is a slip of the pen in most scenes; those that are smaller have "fit", without a limit.
+  constexpr double least_view = 1e-3;  // m
   for (int axis = 0; axis < 2; ++axis) {
-    if (view.high[axis] - view.low[axis] < 1e-3) {
+    if (view.high[axis] - view.low[axis] < least_view) {
       problem(fmt::format("/view/high_m/{}", axis),
-              "must be at least 0.001 above the one in low_m");
+              fmt::format("must be at least {:g} above the one in low_m", least_view));
     }
   }
   return view;

@@ -171,7 +171,6 @@ TEST_P(RandomScene, StaysSound) {
   }
 }
 
-// In one step of 181, counted over seeds 1 to 1000.
 TEST(RandomScenes, FallBackRarely) {
   std::int64_t steps = 0, fallbacks = 0;
   for (int seed = 1; seed <= 300; ++seed) {
