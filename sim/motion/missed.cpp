@@ -27,10 +27,17 @@ bool is_linear(const World& world, const Row& row) {
   return !at(cable.segments, row.item).moved && !cable.fills && cable.rims.empty();
 }
 
+/// J v + bias (m/s), at most, of a row without compliance; where the solver knows, as it knows.
+double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
+  if (!set.direct) return std::abs(row_speed(s, r));
+  return set.unknown_of_row[r] >= 0 ? set.missing : std::abs(s.rows[r].speed);
+}
+
 }  // namespace
 
-double add_missed(const World& world, const CapstanScratch& capstan, const TimeSpan& t,
-                  PartSystem& s, Trial& trial) {
+double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t, PartSystem& s,
+                  Trial& trial) {
+  const CapstanScratch& capstan = set.capstan;
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   const double round_off = exact_share * s.reach / t.length;  // m/s
@@ -48,7 +55,7 @@ double add_missed(const World& world, const CapstanScratch& capstan, const TimeS
       trial.violated = true;
     }
     if (!row.on && group >= 0 && !shares) continue;
-    if (group < 0 && is_linear(world, row) && std::abs(row_speed(s, r)) <= round_off) continue;
+    if (group < 0 && is_linear(world, row) && speed_left(s, set, r) <= round_off) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;

@@ -90,6 +90,7 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   if (!throws && !makes_energy(s, set)) return held_settled;
   for (Row& row : s.rows) row.impulse = 0.0;
   sweep_rows(s, set.capstan);
+  set.direct = false;
   return false;
 }
 

@@ -46,7 +46,8 @@ struct SolveScratch {
   bool froze = false;        // the states did not settle by themselves, or contradict
   bool by_dual = false;      // the last solution is that of solve_dual
   bool repairs = true;       // DualTerms::repairs
-  bool direct = false;       // the last solution is that of a regular symmetric system
+  bool direct = false;       // the last solution is that of a regular symmetric system,
+  double missing = 0.0;      // m/s, whose equations it misses by so much at most
   bool suspicious = false;   // a row may contradict the last solution
   bool smooth = false;       // friction that slides is left out; what sticks for good does
   double step_length = 0.0;  // s, by which round-off of positions becomes speed

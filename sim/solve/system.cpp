@@ -368,6 +368,7 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     suspicious = suspicious || is_suspicious(s, row);
   }
   set.suspicious = suspicious;
+  set.missing = missing;
   return missing <= std::max(rounding, little * first);
 }
 
