@@ -10,6 +10,15 @@
 
 namespace pinchlab {
 
+TimeSpan whole_step(const World& world) {
+  TimeSpan interval;
+  interval.start = world.time();
+  interval.length = interval.repair = world.step_length;
+  interval.lag = world.lag;
+  interval.kick = world.lag + 0.5 * world.step_length;
+  return interval;
+}
+
 bool solve_at_steps(const Scene& scene, const World& world, Workspace& work, const Part& part,
                     const TimeSpan& interval, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A part's solve where events take effect in the step in which they fall (Events::at_steps).
+// A step in one, and a part's solve where events take effect in the step in which they fall
+// (Events::at_steps).
 
 namespace pinchlab {
 
@@ -10,6 +11,10 @@ struct Scene;
 struct TimeSpan;
 struct Workspace;
 struct World;
+
+/// Positions are at the step's start, velocities `lag` before: half a step, or none at time 0, so
+/// that the first kick is half as long. That makes semi-implicit Euler a leapfrog.
+TimeSpan whole_step(const World& world);
 
 /// Velocities of a part's bodies that meet all of its constraints, in its system, whose forces have
 /// been applied; whether the states settled.

@@ -7,6 +7,7 @@
 #include "sim/at_steps.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
 #include "sim/solve/solution.h"
 #include "sim/workspace.h"
@@ -17,15 +18,6 @@ namespace {
 
 /// A first step whose nodes are steadied by other tensions is no error, only worse.
 constexpr int most_trials = 10;
-constexpr int most_changes_of_motors = 8;  // as in solve_with_motors
-
-TimeSpan first_step(const World& world) {
-  TimeSpan t;
-  t.length = t.repair = world.step_length;
-  t.kick = 0.5 * world.step_length;
-  t.clamps = locates_events(world.configuration);
-  return t;
-}
 
 bool are_finite(const PartSystem& s) {
   return std::ranges::all_of(s.velocity, [](const Eigen::Vector3d& v) { return v.allFinite(); });
@@ -36,13 +28,14 @@ bool are_finite(const PartSystem& s) {
 void find_tensions(const Scene& scene, World& world, Workspace& work, const Part& part,
                    PartSystem& s) {
   Stopwatch untimed(nullptr);
-  TimeSpan t = first_step(world);
+  TimeSpan t = whole_step(world);
+  t.clamps = locates_events(world.configuration);
   for (int trial = 0; trial < most_trials; ++trial) {
     apply_forces(scene, world, t, work.parts, part, s);
     if (trial > 0 && !steady_light_bodies(world, work.parts, part, t.kick, s)) return;
     if (locates_events(world.configuration)) {
       t.made_up = t.reach = s.reach;
-      solve_steadily(scene, world, work, part, t, most_changes_of_motors, untimed);
+      solve_steadily(scene, world, work, part, t, most_motor_changes, untimed);
     } else {
       solve_at_steps(scene, world, work, part, t, untimed);
     }

@@ -14,7 +14,6 @@
 #include "sim/diagnostics.h"
 #include "sim/motion/advance.h"
 #include "sim/solve/forces.h"
-#include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solution.h"
 #include "sim/tangent.h"
@@ -23,17 +22,6 @@
 namespace pinchlab {
 
 namespace {
-
-/// Positions are at the step's start, velocities `lag` before: half a step, or none at time 0, so
-/// that the first kick is half as long. That makes semi-implicit Euler a leapfrog.
-TimeSpan whole_step(const World& world) {
-  TimeSpan interval;
-  interval.start = world.time();
-  interval.length = interval.repair = world.step_length;
-  interval.lag = world.lag;
-  interval.kick = world.lag + 0.5 * world.step_length;
-  return interval;
-}
 
 /// Positions, and the material that slides over bodies, with the velocities just found.
 void move_bodies(const Parts& parts, World& world) {

@@ -43,14 +43,13 @@ constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 /// Velocities at the positions' time, with what bears force now.
 void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part,
                    double lag) {
-  constexpr int changes_of_motors = 8;  // as in solve_with_motors
   TimeSpan t;
   t.repair = world.step_length;
   t.kick = t.lag = lag;
   t.reach = at(work.systems, part.system).reach;
   t.held_only = t.clamps = true;
   Stopwatch untimed(nullptr);
-  solve_steadily(scene, world, work, part, t, changes_of_motors, untimed);
+  solve_steadily(scene, world, work, part, t, most_motor_changes, untimed);
 }
 
 /// Brings the velocities to the positions' time.

@@ -175,10 +175,9 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
 /// are those of the interval's start, does not know half of the force that a curved way takes.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
                const Attempt& attempt, Trial& trial, Stopwatch& watch) {
-  constexpr int most_changes = 8;  // as in solve_with_motors
-  constexpr int most_turns = 3;    // each motor to its limit, back, and no third time
+  constexpr int most_turns = 3;  // each motor to its limit, back, and no third time
   PartSystem& s = at(work.systems, part.system);
-  bool met = move_part(scene, world, work, part, t, attempt, most_changes, trial, watch);
+  bool met = move_part(scene, world, work, part, t, attempt, most_motor_changes, trial, watch);
   for (int turn = 0; met && turn < most_turns && change_limited_motors(s); ++turn) {
     put_back(world, work, part);
     s.free_velocity = s.unconstrained;

@@ -43,13 +43,16 @@ bool change_limited_motors(PartSystem& system);
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                    const SolveScratch& scratch);
 
+/// Of what a part's motors do, in one solve. Each has five states (MotorState): eight changes are
+/// more than one goes through, and end a cycle.
+constexpr int most_motor_changes = 8;
+
 /// Makes the rows of a part and solves them by `solve`, again where its motors change what they do;
-/// returns what the last solve did. With `most_changes` of 0 they do what they do. Each has five
-/// states (MotorState): eight changes are more than one goes through, and end a cycle.
+/// returns what the last solve did. With `most_changes` of 0 they do what they do.
 template <typename Solve>
 bool solve_with_motors(const Scene& scene, const World& world, Workspace& work, const Part& part,
                        const TimeSpan& interval, Stopwatch& watch, Solve solve,
-                       int most_changes = 8) {
+                       int most_changes = most_motor_changes) {
   PartSystem& s = at(work.systems, part.system);
   if (!s.motors.empty()) s.unconstrained = s.free_velocity;
   for (int changes = 0;; ++changes) {
