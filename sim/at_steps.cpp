@@ -14,8 +14,8 @@ TimeSpan whole_step(const World& world) {
   TimeSpan interval;
   interval.start = world.time();
   interval.length = interval.repair = world.step_length;
-  interval.lag = world.lag;
-  interval.kick = world.lag + 0.5 * world.step_length;
+  interval.lag = world.step > 0 ? 0.5 * world.step_length : 0.0;
+  interval.kick = interval.lag + 0.5 * world.step_length;
   return interval;
 }
 

@@ -12,7 +12,7 @@ struct TimeSpan;
 struct Workspace;
 struct World;
 
-/// Positions are at the step's start, velocities `lag` before: half a step, or none at time 0, so
+/// Positions are at the step's start, velocities half a step before, or none at time 0, so
 /// that the first kick is half as long. That makes semi-implicit Euler a leapfrog.
 TimeSpan whole_step(const World& world);
 

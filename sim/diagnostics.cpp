@@ -108,6 +108,11 @@ double potential_energy(const Scene& scene, const World& world) {
 
 namespace {
 
+/// The share of what is after a kick, of the velocity at its time.
+double share_after(double lag, double length) {
+  return lag / (lag + 0.5 * length);
+}
+
 double kinetic_energy(const BodyProperties& body, const Vec2& v, double omega) {
   if (body.kind == BodyKind::fixed) return 0.0;
   const double turning = 0.5 * inertia_of(body) * omega * omega;
@@ -124,8 +129,9 @@ double kinetic_energy(const World& world) {
   return energy;
 }
 
-double kinetic_energy(const World& world, const Instant& before, double after, int body) {
+double kinetic_energy(const World& world, const Instant& before, double length, int body) {
   const auto b = index(body);
+  const double after = share_after(before.lag[b], length);
   const Vec2 v = (1.0 - after) * before.velocity[b] + after * world.velocity[b];
   const double omega = (1.0 - after) * before.turning[b] + after * world.angular_velocity[b];
   double energy = 0.0;
@@ -138,9 +144,13 @@ double kinetic_energy(const World& world, const Instant& before, double after, i
 
 namespace {
 
+double lag_of_cable(const World& world, const Instant& before, int cable) {
+  return before.lag[world.bodies.size() + index(cable)];
+}
+
 /// Links may have come and gone since: one of the cable's on the same body stands for the sleeve,
 /// or, where there is none any more, its motion before.
-double kinetic_energy(const World& world, double after, Sleeve sleeve) {
+double kinetic_energy(const World& world, double lag, double length, Sleeve sleeve) {
   const std::vector<Link>& links = at(world.cables, sleeve.cable).links;
   const auto is_it = [&sleeve](const Link& link) {
     return link.body == sleeve.body && link.orientation != 0 && !link.pinch_middle;
@@ -151,33 +161,37 @@ double kinetic_energy(const World& world, double after, Sleeve sleeve) {
         static_cast<int>(std::find_if(links.begin(), links.end(), is_it) - links.begin());
   }
   if (index(sleeve.first) < links.size()) now = velocity_of(world, sleeve);
+  const double after = share_after(lag, length);
   const Eigen::Vector3d v = (1.0 - after) * sleeve.velocity + after * now;
   return 0.5 * v.dot(sleeve.mass * v);
 }
 
 }  // namespace
 
-double kinetic_energy(const World& world, const Instant& before, double after) {
+double kinetic_energy(const World& world, const Instant& before, double length) {
   double energy = 0.0;
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
-    energy += kinetic_energy(world, before, after, b);
+    energy += kinetic_energy(world, before, length, b);
   }
   for (const Sleeve& sleeve : before.sleeves) {
-    energy += kinetic_energy(world, after, sleeve);
+    energy += kinetic_energy(world, lag_of_cable(world, before, sleeve.cable), length, sleeve);
   }
   return energy;
 }
 
-double kinetic_energy_of_sleeves(const World& world, const Instant& before, double after,
+double kinetic_energy_of_sleeves(const World& world, const Instant& before, double length,
                                  int cable) {
   double energy = 0.0;
   for (const Sleeve& sleeve : before.sleeves) {
-    if (sleeve.cable == cable) energy += kinetic_energy(world, after, sleeve);
+    if (sleeve.cable != cable) continue;
+    energy += kinetic_energy(world, lag_of_cable(world, before, cable), length, sleeve);
   }
   return energy;
 }
 
 void note_instant(const World& world, Instant& instant) {
+  instant.lag.clear();
+  for (const Pace& pace : world.pace) instant.lag.push_back(pace.lag);
   instant.velocity = world.velocity;
   instant.turning = world.angular_velocity;
   find_carried(world, instant.carried, instant.sleeves);

@@ -7,8 +7,9 @@
 
 namespace pinchlab {
 
-/// How bodies, and cables with mass, move at one time. By note_instant.
+/// How bodies, and cables with mass, move before a kick. By note_instant.
 struct Instant {
+  std::vector<double> lag;               // s, of World::pace
   std::vector<Vec2> velocity;            // m/s
   std::vector<double> turning;           // rad/s
   std::vector<Eigen::Matrix3d> carried;  // by find_carried
@@ -39,11 +40,11 @@ inline double zero_if_finite(const World& world, int body) {
 double kinetic_energy(const World& world);
 
 /// Kinetic energy (J) at the time of `before`'s positions, from the velocities before and after a
-/// kick: what is between them, by the share `after`, is right to second order. Of all that moves,
-/// of one body, or of a cable's sleeves.
-double kinetic_energy(const World& world, const Instant& before, double after);
-double kinetic_energy(const World& world, const Instant& before, double after, int body);
-double kinetic_energy_of_sleeves(const World& world, const Instant& before, double after,
+/// kick, the latter in the middle of an interval of `length` (s) from there: what is between them
+/// is right to second order. Of all that moves, of one body, or of a cable's sleeves.
+double kinetic_energy(const World& world, const Instant& before, double length);
+double kinetic_energy(const World& world, const Instant& before, double length, int body);
+double kinetic_energy_of_sleeves(const World& world, const Instant& before, double length,
                                  int cable);
 
 /// Stretch, gaps and cable lengths at the present positions.

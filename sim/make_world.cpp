@@ -36,6 +36,7 @@ World bodies_of_scene(const Scene& scene) {
   for (std::vector<Vec2>* list : {&world.position, &world.velocity}) list->reserve(count);
   for (std::vector<double>* list : {&world.angle, &world.angular_velocity}) list->reserve(count);
   world.still_steps.reserve(count);
+  world.pace.resize(count + scene.cables.size());
   for (const Body& body : scene.bodies) {
     world.bodies.push_back(body);
     world.position.push_back(body.position);

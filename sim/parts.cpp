@@ -273,6 +273,38 @@ void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& be
   }
 }
 
+Pace pace_of(const World& world, const Parts& parts, const Part& part) {
+  const std::span<const int> bodies = bodies_of(parts, part);
+  if (!bodies.empty()) return at(world.pace, bodies.front());
+  return world.pace[world.bodies.size() + index(cables_of(parts, part).front())];
+}
+
+void set_pace(World& world, const Parts& parts, const Part& part, const Pace& pace) {
+  for (const int b : bodies_of(parts, part)) at(world.pace, b) = pace;
+  for (const int c : cables_of(parts, part)) world.pace[world.bodies.size() + index(c)] = pace;
+}
+
+void share_paces(const Parts& before, const Parts& parts, World& world) {
+  const auto count = static_cast<int>(world.bodies.size());
+  const auto was_awake = [&](int item) {  // a body, or a cable after them
+    const int part = item < count ? at(before.of_body, item) : at(before.of_cable, item - count);
+    return part >= 0 && !at(before.list, part).asleep;
+  };
+  for (const Part& part : parts.list) {
+    Pace first = pace_of(world, parts, part);
+    bool differ = false, found = false;
+    const auto look_at = [&](int item) {
+      differ = differ || at(world.pace, item) != first;
+      if (found || !was_awake(item)) return;
+      found = true;
+      first.lag = at(world.pace, item).lag;
+    };
+    for (const int b : bodies_of(parts, part)) look_at(b);
+    for (const int c : cables_of(parts, part)) look_at(count + c);
+    if (differ) set_pace(world, parts, part, {.lag = first.lag});
+  }
+}
+
 void note_rest(const Scene& scene, const Parts& parts, const Part& part, World& world) {
   if (!world.configuration.sleep) return;
   const bool still = rests(parts, part, world);

@@ -11,6 +11,7 @@
 
 namespace pinchlab {
 
+struct Pace;
 struct World;
 struct Workspace;
 
@@ -92,6 +93,14 @@ void find_parts(const World& world, Workspace& work);
 /// The same, without systems. `contacts_stand`: they are those of the parts that were found last,
 /// whose lists go to `before` where they are not kept.
 void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& before);
+
+/// That of a part's bodies and cables, of which it has one at least.
+Pace pace_of(const World& world, const Parts& parts, const Part& part);
+void set_pace(World& world, const Parts& parts, const Part& part, const Pace& pace);
+
+/// Gives what has come to be one part one pace; it was in the parts `before`. Velocities of what
+/// was awake are of one time.
+void share_paces(const Parts& before, const Parts& parts, World& world);
 
 /// Whether the body's outline is where it was: it cannot change, or its part is idle.
 inline bool is_still(const Parts& parts, int body) {

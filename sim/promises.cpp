@@ -49,6 +49,14 @@ double energy_of_round_off(const Scene& scene, const World& world) {
   return 0.5 * mass * speed * speed;
 }
 
+/// Whether some bodies' velocities are those of their positions' time.
+bool has_instants(const World& world) {
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    if (!is_static(world.bodies[b]) && world.pace[b].lag == 0.0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Promises::Promises(const Scene& scene, const World& world) {
@@ -59,7 +67,7 @@ Promises::Promises(const Scene& scene, const World& world) {
   if (!watches_energy_) return;
   note_instant(world, before_);
   potential_ = potential_energy(scene, world);
-  const double kinetic = kinetic_energy(world, before_, 0.0);
+  const double kinetic = kinetic_energy(world, before_, world.step_length);
   for (const Body& body : scene.bodies) {
     if (can_move(body)) at_play_ += body.mass * scene.gravity.norm() * body.radius;
   }
@@ -181,21 +189,19 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
   }
 }
 
-// Energy at the step's start: velocities were `lag_` before it and are half an interval after it,
-// and between the two they change evenly. Where the step was divided that half is not known, and
-// the step after it tells.
+// Energy at the step's start: velocities were from before it and are half an interval after it, and
+// between the two they change evenly. Where the step was divided that half is not known, and the
+// step after it tells.
 void Promises::note_energy(const Scene& scene, const World& world) {
-  const double after = lag_ / (lag_ + 0.5 * world.step_length);
-  const double kinetic = kinetic_energy(world, before_, after);
+  const double kinetic = kinetic_energy(world, before_, world.step_length);
   at_play_ = std::max(at_play_, kinetic);
-  const bool whole = world.diagnostics.intervals - intervals_ <= 1 && world.lag > 0.0;
+  const bool whole = world.diagnostics.intervals - intervals_ <= 1 && !has_instants(world);
   if (at_play_ > 0.0 && whole) {
     const double gained = kinetic + potential_ - start_energy_ - round_off_;
     note_value(Promise::energy, gained / at_play_, limits_.energy, world.step, -1, -1);
   }
   potential_ = potential_energy(scene, world);
   note_instant(world, before_);
-  lag_ = world.lag;
   intervals_ = world.diagnostics.intervals;
 }
 

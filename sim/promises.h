@@ -71,7 +71,6 @@ class Promises {
   double at_play_ = 0.0;        // J: the largest kinetic energy so far, or what lifts each body
                                 // by its radius, whichever is more
   double potential_ = 0.0;      // J, at the last step's end
-  double lag_ = 0.0;            // s, that velocities were before that
   Instant before_;              // then
   std::int64_t intervals_ = 0;  // Diagnostics::intervals
 };

@@ -70,13 +70,13 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   solve_parts(scene, world, work, watch);
   if (!check_finite(scene, world)) return StepStatus::failed;
   if (world.configuration.diagnostics) {
-    const double after = world.lag / whole_step(world).kick;
-    world.diagnostics.energy += kinetic_energy(world, work.before, after);
+    world.diagnostics.energy += kinetic_energy(world, work.before, world.step_length);
   }
   watch.lap(Stage::diagnose);
   work.start.position = world.position;
   move_bodies(work.parts, world);
-  world.lag = 0.5 * world.step_length;
+  if (world.step == 0)
+    std::fill(world.pace.begin(), world.pace.end(), Pace{.lag = whole_step(world).kick});
   watch.lap(Stage::move_bodies);
   detect(scene, world, work, times);
   return StepStatus::ok;
@@ -119,8 +119,9 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
   Stopwatch untimed(nullptr);
   if (located) {
     put_together(world, work.parts, work.neighbourhoods);
-    find_present_velocities(scene, world, work.neighbourhoods.parts.items, world.time(), world.lag,
-                            work);
+    for (const int p : work.neighbourhoods.parts.items) {
+      find_present_velocities(scene, world, at(work.parts.list, p), world.time(), work);
+    }
   } else {
     apply_forces(scene, world, whole_step(world), work);
   }

@@ -57,8 +57,8 @@ struct Trial {
   bool met = true;            // lengths and gaps are exact at its end
   bool settled = true;        // every solve
   bool violated = false;      // what it began with, by more than it makes up for
-  bool foreseen = false;      // its curvatures were, of a part at least
-  bool curves = false;        // some way, by more than round-off
+  bool foreseen = false;      // its curvatures were; of one part
+  bool curves = false;        // some way, by more than round-off; of one part
   bool contradicts = false;   // a correction of the first solution asks for what cannot be
   double missed = 0.0;        // by lengths and gaps, over the part's extent, where not met
   double excess = 0.0;        // the same, over what would do
@@ -75,7 +75,7 @@ struct StepStart {
   int changes = 0;  // World::changes
   std::vector<Contact> contacts;
   std::vector<int> still_steps;
-  Regularity regularity;
+  std::vector<Pace> pace;
   Diagnostics diagnostics;
 };
 
@@ -111,14 +111,14 @@ struct Workspace {
   std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
   std::vector<Trial> trials;                     // the last of each part; by try_interval, as
   Trial trial;                                   // the last, of all that were tried
-  std::vector<Happening> events;  // of the interval being tried; by motion/events.cpp
-  std::vector<int> known_events;  // of them, before the trial; by begin_trial
+  std::vector<Happening> events;        // of the interval being tried; by motion/events.cpp
+  std::vector<Happening> tried_events;  // of a step that has just been divided; by move_each
+  std::vector<int> known_events;        // of them, before the trial; by begin_trial
 
   Neighbourhoods neighbourhoods;  // by advance
   StepStart step_start;           // of a step that has been divided
   Instant before;                 // at the start of the step; with diagnostics, by step
   std::vector<double> speeds;     // m/s, of a part's bodies before an impact; by strike_and_hasten
-  std::vector<char> repaired;     // parts, at an interval's end; by settle_end
 };
 
 /// Makes the workspace fit the world, if it was last used for another state: what stands of it is

@@ -91,13 +91,12 @@ struct alignas(64) Segment {
   bool pinched = false;             // between two touching bodies: zero length, never hit-tested
   bool was_pinched = false;         // at the interval's start
   int contact = -1;                 // pressing a transitional pinch, by confirm_pinches; or -1
-  double slope = 0.0;               // m of material in a m of it when the interval began, by
-                                    // lay_down; 0: not known
+  double alpha_before = 0.0;        // rad, alpha when the interval began, like previous_tail
   // What is read where something has moved.
   Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();  // m, of the circles that the
                                                                 // tangent is for
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
-  Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, one step ago
+  Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, when the interval began
   Curvature curvature{};                                            // by note_curvatures
 };
 
@@ -214,12 +213,16 @@ struct Diagnostics {
   std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 
-/// The intervals of one length that came one after another, of all parts together, until now.
-struct Regularity {
-  double length = 0.0;  // s
-  int intervals = 0;    // how many, as far as their curvatures are kept
-  int unmeasured = 0;   // of the last of them the errors are not known
-  bool curved = false;  // some way in them; else nothing is kept of curvatures, which are 0
+/// How a part has come to where it is.
+struct Pace {
+  double lag = 0.0;  // s, by which velocities are behind positions (leapfrog): half of the last
+                     // interval, or none where they have been found for these positions since
+  // Of the intervals of that length that came one after another until now:
+  std::int8_t intervals = 0;   // how many, as far as their curvatures are kept
+  std::int8_t unmeasured = 0;  // of the last of them the errors are not known
+  bool curved = false;         // some way in them; else nothing is kept of curvatures, which are 0
+
+  bool operator==(const Pace&) const = default;
 };
 
 /// Copying a World is cheap: a few arrays, no text but a failure's. A copy goes on to the same
@@ -229,7 +232,6 @@ struct World {
   Configuration configuration;
   double step_length = 0.0;  // s
   std::int64_t step = 0;     // steps done; the time is step * step_length
-  double lag = 0.0;          // s, by which velocities are behind positions (leapfrog), see step.h
 
   std::vector<BodyProperties> bodies;  // by make_world; masses, kinds and seats of what belongs to
                                        // chains whose number of nodes adapts, by adapt_nodes
@@ -237,7 +239,8 @@ struct World {
   std::vector<int> carried;    // bodies that are shapes of others (compound.h), by make_world
   std::vector<Vec2> position;  // m, one a body, at `time()`; by move_bodies
   std::vector<double> angle;   // rad, likewise
-  std::vector<Vec2> velocity;  // m/s, `lag` before `time()`; by store_solution
+  std::vector<Pace> pace;      // one a body, then one a cable: of its part; by finish_interval
+  std::vector<Vec2> velocity;  // m/s, Pace::lag before `time()`; by store_solution
   std::vector<double> angular_velocity;  // rad/s, likewise
   std::vector<CableState> cables;        // geometry by update_segments, links by add_hit_links,
                                          // remove_links and configure_pinches, forces and states by
@@ -251,7 +254,6 @@ struct World {
   std::vector<std::array<int, 2>> passing;  // sorted: a piece, and the body (or -1 - wall) that it
                                             // does not meet;
   std::vector<std::array<int, 2>> passing_at_ends;  // of these those for good, by make_world
-  Regularity regularity;                            // by finish_interval
   int changes = 0;  // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite

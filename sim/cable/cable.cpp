@@ -245,8 +245,7 @@ namespace {
 /// Where a segment that has moved was when the interval begins.
 void begin_segment(Segment& segment) {
   if (!segment.moved) return;
-  segment.previous_tail = segment.tail;
-  segment.previous_head = segment.head;
+  begin_here(segment);
   segment.moved = false;
   segment.was_pinched = segment.pinched;
 }
@@ -292,6 +291,8 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
     all_still = all_still && still;
     if (!(still && still_stands) && (fills || link_centre(world, *from) != segment.tail_centre ||
                                      link_centre(world, *to) != segment.head_centre)) {
+      // A try that is taken back may have turned it by more than half a turn, step by step.
+      if (!begins) segment.alpha = segment.alpha_before;
       update_tangent(world, cable, i);
     }
     moved = moved || segment.moved;

@@ -42,6 +42,13 @@ inline void count_changes(World& world, CableState& cable, int count) {
   cable.changed_at = world.changes;
 }
 
+/// An interval begins with the segment where it is.
+inline void begin_here(Segment& segment) {
+  segment.previous_tail = segment.tail;
+  segment.previous_head = segment.head;
+  segment.alpha_before = segment.alpha;
+}
+
 /// First segment that exists: 1 in an open cable, 0 in a closed one.
 inline std::size_t first_segment(const CableState& cable) {
   return cable.closed ? 0 : 1;

@@ -309,10 +309,7 @@ CableState lay_cable(const Scene& scene, const World& world, double allowed, std
   }
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);
-  for (Segment& segment : cable.segments) {
-    segment.previous_tail = segment.tail;
-    segment.previous_head = segment.head;
-  }
+  for (Segment& segment : cable.segments) begin_here(segment);
   return cable;
 }
 

@@ -71,8 +71,7 @@ void remove_link(World& world, CableState& cable, int link) {
     const Vec2 tail = cable.segments[i].tail, head = cable.segments[i].head;
     update_tangent(world, cable, i);
     if (cable.segments[i].tail != tail || cable.segments[i].head != head) {
-      cable.segments[i].previous_tail = cable.segments[i].tail;
-      cable.segments[i].previous_head = cable.segments[i].head;
+      begin_here(cable.segments[i]);
     }
   }
   update_wraps_and_rest_lengths(world, cable);
@@ -154,10 +153,8 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   update_tangent(world, cable, leaving);
   Segment& first = cable.segments[position];
   Segment& second = cable.segments[leaving];
-  for (Segment* part : {&first, &second}) {
-    part->previous_tail = part->tail;
-    part->previous_head = part->head;
-  }
+  begin_here(first);
+  begin_here(second);
   // Both parts get the same strain: rest lengths in the ratio of the lengths. The material to share
   // is what lies between the neighbours' new tangents: they have turned, by much where the body is
   // near.
@@ -244,8 +241,7 @@ void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> p
   count_changes(world, cable, static_cast<int>(pinches.size()));
   for (const std::size_t s : added) {
     update_tangent(world, cable, s);
-    cable.segments[s].previous_tail = cable.segments[s].tail;
-    cable.segments[s].previous_head = cable.segments[s].head;
+    begin_here(cable.segments[s]);
   }
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);

@@ -16,14 +16,6 @@ namespace pinchlab {
 
 namespace {
 
-double full_width(const World& world) {
-  double width = 0.0;
-  if (world.configuration.method != Method::cable) {
-    for (const CableState& cable : world.cables) width = std::max(width, thickness(cable));
-  }
-  return width;
-}
-
 /// How much nearer two things whose speeds add up to `speed` may come within the next step,
 /// generously.
 double reach(const Scene& scene, const World& world, double speed, double radius) {
@@ -132,6 +124,30 @@ bool is_still(const World& world, const Parts& parts, const PiecePair& pair) {
                      [&](const Link& link) { return link.body < 0 || is_still(parts, link.body); });
 }
 
+/// The gap at which a pair has a contact at most (m).
+double most_gap(const Scene& scene, const World& world, double width, const BodyPair& pair) {
+  const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
+  // Bodies that move together have no speed between them until one is stopped within the step.
+  const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
+  return width + reach(scene, world, speed, std::min(a, b));
+}
+
+double most_gap(const Scene& scene, const World& world, const PiecePair& pair) {
+  const CableState& piece = at(world.cables, pair.cable);
+  const double speed =
+      speed_of_piece(world, piece) + (pair.body >= 0 ? speed_of(world, pair.body) : 0.0);
+  return reach(scene, world, speed, piece.half_width);
+}
+
+/// Of a pair with a body (m).
+double distance_from_piece(const World& world, const PiecePair& pair) {
+  const CableState& piece = at(world.cables, pair.cable);
+  const double distance =
+      distance_from_line(link_centre(world, piece.links[0]), link_centre(world, piece.links[1]),
+                         at(world.position, pair.body));
+  return distance - piece.half_width - at(world.bodies, pair.body).radius;
+}
+
 /// Appends the contacts of pieces of hanging cables; returns how many were kept.
 std::size_t add_contacts_of_pieces(const Scene& scene, World& world, Workspace& work,
                                    const std::vector<Contact>& old) {
@@ -143,24 +159,17 @@ std::size_t add_contacts_of_pieces(const Scene& scene, World& world, Workspace& 
       kept += old_of_pieces.keep(pair.a, pair.b, pair.wall, world.contacts, pair.cable);
       continue;
     }
-    const CableState& piece = at(world.cables, pair.cable);
-    const double speed =
-        speed_of_piece(world, piece) + (pair.body >= 0 ? speed_of(world, pair.body) : 0.0);
-    const double most = reach(scene, world, speed, piece.half_width);
+    const double most = most_gap(scene, world, pair);
     const int node = node_of_piece(world, pair.cable);
     if (pair.body >= 0 && near.separate_bodies(node, pair.body)) {
       double left = way_left(scene, world, near, pair.body);
-      for (const Link& link : piece.links) {
+      for (const Link& link : at(world.cables, pair.cable).links) {
         if (link.body >= 0 && !is_static(at(world.bodies, link.body))) {
           left = std::max(left, way_left(scene, world, near, pair.body) +
                                     way_left(scene, world, near, link.body));
         }
       }
-      const double distance =
-          distance_from_line(link_centre(world, piece.links[0]), link_centre(world, piece.links[1]),
-                             at(world.position, pair.body));
-      const double radii = piece.half_width + at(world.bodies, pair.body).radius;
-      near.crossed = near.crossed || distance - radii <= left;
+      near.crossed = near.crossed || distance_from_piece(world, pair) <= left;
       continue;
     }
     append_at_piece(world, pair.cable, pair.body, pair.wall, most, world.contacts);
@@ -192,6 +201,24 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
 
 }  // namespace
 
+double widest_cable(const World& world) {
+  double width = 0.0;
+  if (world.configuration.method != Method::cable) {
+    for (const CableState& cable : world.cables) width = std::max(width, thickness(cable));
+  }
+  return width;
+}
+
+bool may_touch(const Scene& scene, const World& world, double width, const BodyPair& pair) {
+  const double radii = at(world.bodies, pair.a).radius + at(world.bodies, pair.b).radius;
+  const double distance = (at(world.position, pair.b) - at(world.position, pair.a)).norm();
+  return distance - radii <= most_gap(scene, world, width, pair);
+}
+
+bool may_touch(const Scene& scene, const World& world, const PiecePair& pair) {
+  return distance_from_piece(world, pair) <= most_gap(scene, world, pair);
+}
+
 void find_contacts(const Scene& scene, World& world, Workspace& work) {
   bool& all_kept = work.contacts.contacts_kept;
   std::vector<Contact>& old = work.contacts.old_contacts;
@@ -210,7 +237,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     std::sort(old.begin(), old.end(), comes_before);
   }
   std::size_t kept = 0;
-  const double width = full_width(world);
+  const double width = widest_cable(world);
   Kept old_pairs(old);
   Neighbourhoods& near = work.neighbourhoods;
   for (const BodyPair& pair : broad.body_pairs) {
@@ -218,18 +245,16 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       kept += old_pairs.keep(pair.a, pair.b, -1, world.contacts);
       continue;
     }
-    const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
-    // Bodies that move together have no speed between them until one is stopped within the step.
-    const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
-    const double most = width + reach(scene, world, speed, std::min(a, b));
+    const double radii = at(world.bodies, pair.a).radius + at(world.bodies, pair.b).radius;
     const Vec2 d = at(world.position, pair.b) - at(world.position, pair.a);
     if (near.separate_bodies(pair.a, pair.b)) {
       const double left =
           width + way_left(scene, world, near, pair.a) + way_left(scene, world, near, pair.b);
-      near.crossed = near.crossed || d.norm() - a - b <= left;
+      near.crossed = near.crossed || d.norm() - radii <= left;
       continue;
     }
-    add_contacts(world, pair.a, pair.b, -1, d, a + b, most);
+    const double most = most_gap(scene, world, width, pair);
+    add_contacts(world, pair.a, pair.b, -1, d, radii, most);
   }
   kept += add_contacts_of_walls(scene, world, work, old);
   if (!world.pieces_at.empty()) {

@@ -31,16 +31,21 @@ void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times
   Stopwatch watch(times);
   update_segments(world, work);
   watch.lap(Stage::update_segments);
-  detect_after_moving(scene, world, work, false, times);
+  find_what_may_meet(scene, world, work, false, times);
+  find_what_meets(scene, world, work, times);
 }
 
-void detect_after_moving(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
-                         StageTimes* times) {
+void find_what_may_meet(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
+                        StageTimes* times) {
   Stopwatch watch(times);
   const bool removed = remove_links(world, work);
   watch.lap(Stage::remove_links);
   if (removed || !pairs_stand || work.broad_phase.patched) find_pairs(scene, world, work);
   watch.lap(Stage::broad_phase);
+}
+
+void find_what_meets(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
+  Stopwatch watch(times);
   add_hit_links(world, work);
   watch.lap(Stage::intersect_segments);
   find_contacts(scene, world, work);

@@ -15,9 +15,11 @@ struct Workspace;
 /// Cables, contacts and pinches for the bodies' present positions: the second half of a step.
 void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times = nullptr);
 
-/// The same where the segments are up to date, and the pairs too, unless links come off.
-void detect_after_moving(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
-                         StageTimes* times);
+/// The same in two, where the segments are up to date: takes off links and finds pairs, which may
+/// stand unless links come off; and then what of these meets, and the parts that there are then.
+void find_what_may_meet(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
+                        StageTimes* times);
+void find_what_meets(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
 /// The pairs that may touch or hit.
 void find_pairs(const Scene& scene, const World& world, Workspace& work);

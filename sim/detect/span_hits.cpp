@@ -255,6 +255,16 @@ double span_clearance(const World& world, const Happening& hit) {
   return std::max(clearance, hit.over_end < 0 ? -along : along - segment.length);
 }
 
+bool may_meet(const World& world, const SpanPair& pair) {
+  const CableState& cable = at(world.cables, pair.cable);
+  const Box box = span_box(at(cable.segments, pair.segment));
+  const Vec2& x = at(world.position, pair.body);
+  const double way = world.step_length * at(world.velocity, pair.body).norm();
+  const Vec2 reach = Vec2::Constant(at(world.bodies, pair.body).radius + cable.half_width + way);
+  const Box own{x - reach, x + reach};
+  return overlap(box, own, 0) && overlap(box, own, 1);
+}
+
 void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pairs) {
   for (const SpanPair& pair : pairs) {
     const CableState& cable = at(world.cables, pair.cable);

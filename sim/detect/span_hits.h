@@ -19,6 +19,9 @@ struct Workspace;
 /// was before.
 void add_hit_links(World& world, const Workspace& work);
 
+/// Whether the body is so near to where the span is, or was before, that it may have met it.
+bool may_meet(const World& world, const SpanPair& pair);
+
 /// Hits of these bodies and spans since the interval's start, appended to Workspace::events.
 void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pairs);
 

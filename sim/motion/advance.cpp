@@ -40,38 +40,49 @@ constexpr int most_events = 48;
 // what they are in without end, each change making more, and steps last minutes.
 constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
 
-/// Velocities at the positions' time, with what bears force now.
-void solve_present(const Scene& scene, const World& world, Workspace& work, const Part& part,
-                   double lag) {
-  TimeSpan t;
-  t.repair = world.step_length;
-  t.kick = t.lag = lag;
-  t.reach = at(work.systems, part.system).reach;
-  t.held_only = t.clamps = true;
-  Stopwatch untimed(nullptr);
-  solve_steadily(scene, world, work, part, t, most_motor_changes, untimed);
+/// Brings a part's velocities to the positions' time.
+void catch_up(const Scene& scene, World& world, const Part& part, double time, Workspace& work) {
+  if (pace_of(world, work.parts, part).lag == 0.0) return;
+  for (const int c : contacts_of(work.parts, part)) {
+    if (Contact& contact = at(world.contacts, c); contact.touching) measure(world, contact);
+  }
+  find_present_velocities(scene, world, part, time, work);
+  const PartSystem& s = at(work.systems, part.system);
+  const std::span<const int> bodies = bodies_of(work.parts, part);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
+    at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
+  }
+  carry(world, carried_of(work.parts, part));
+  if (!s.sleeves.empty()) store_rubbing(s, world);
+  set_pace(world, work.parts, part, {});
 }
 
-/// Brings the velocities to the positions' time.
-void catch_up(const Scene& scene, World& world, std::span<const int> parts, double time, double lag,
+void catch_up(const Scene& scene, World& world, std::span<const int> parts, double time,
               Workspace& work) {
-  for (const int p : parts) {
-    for (const int c : contacts_of(work.parts, at(work.parts.list, p))) {
-      if (Contact& contact = at(world.contacts, c); contact.touching) measure(world, contact);
+  for (const int p : parts) catch_up(scene, world, at(work.parts.list, p), time, work);
+}
+
+/// Brings velocities of parts that may come to be one to one time.
+void bring_together(const Scene& scene, World& world, Workspace& work) {
+  Neighbourhoods& near = work.neighbourhoods;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
+    // Those that catch up may have become unlike others, and faster.
+    for (find_unlike(scene, world, work, n); !near.unlike.empty();
+         find_unlike(scene, world, work, n)) {
+      catch_up(scene, world, near.unlike, at(near.list, n).time, work);
     }
   }
-  find_present_velocities(scene, world, parts, time, lag, work);
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    const PartSystem& s = at(work.systems, part.system);
-    const std::span<const int> bodies = bodies_of(work.parts, part);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
-      at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
-    }
-    carry(world, carried_of(work.parts, part));
-    if (!s.sleeves.empty()) store_rubbing(s, world);
-  }
+}
+
+/// Cables, contacts, pinches and parts for where things are now. `pairs_stand` as in detect.h.
+void detect_present(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
+                    StageTimes* times) {
+  find_what_may_meet(scene, world, work, pairs_stand, times);
+  bring_together(scene, world, work);
+  find_what_meets(scene, world, work, times);
+  if (work.parts.divided) share_paces(work.parts_before, work.parts, world);
+  list_parts(work.parts, work.neighbourhoods);
 }
 
 /// Forces of an instant at the positions' time.
@@ -126,36 +137,26 @@ bool has_changed(const World& world, const Parts& parts, const Part& part, int b
 /// them; whether contacts must be found anew for these. Links had come or gone `changes` times
 /// when the interval before was settled.
 bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<const int> parts,
-                double& lag, int changes) {
+                int changes) {
   const Neighbourhoods& near = work.neighbourhoods;
-  work.repaired.resize(work.parts.list.size());
-  bool any = false;
-  double time = 0.0;
+  bool anew = false;
   for (const int p : parts) {
     Part& part = at(work.parts.list, p);
     const Neighbourhood course = course_of(near, work.parts, part);
-    time = course.time;
     const bool violated = course.violated || has_changed(world, work.parts, part, changes) ||
                           is_squeezed(world, work.parts, part);
-    at(work.repaired, p) = false;
     if (!violated && !course.happened) continue;
-    apply_no_forces(scene, world, part, time, work);
-    at(work.repaired, p) = repair(scene, world, work, part);
-    any = any || at(work.repaired, p);
-  }
-  if (any && lag > 0.0) {
-    catch_up(scene, world, parts, time, lag, work);
-    lag = 0.0;
-  }
-  bool hastens = false;
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    const Neighbourhood course = course_of(near, work.parts, part);
-    if (!course.happened && !at(work.repaired, p)) continue;
+    apply_no_forces(scene, world, part, course.time, work);
+    const bool repaired = repair(scene, world, work, part);
+    if (repaired) {
+      catch_up(scene, world, part, course.time, work);
+      anew = true;  // bodies have moved
+    }
+    if (!course.happened && !repaired) continue;
     const bool rebounds = course.events <= most_rebounds;
-    hastens = strike_and_hasten(scene, world, work, part, time, rebounds) || hastens;
+    anew = strike_and_hasten(scene, world, work, part, course.time, rebounds) || anew;
   }
-  return hastens;
+  return anew;
 }
 
 void strike_all(const Scene& scene, World& world, Workspace& work, double time, bool rebounds) {
@@ -171,12 +172,11 @@ void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
                  StageTimes* times) {
   if (wants_other_nodes(scene, world, work)) {
     Neighbourhoods& near = work.neighbourhoods;
-    if (world.lag > 0.0) catch_up(scene, world, near.parts.items, time, world.lag, work);
-    world.lag = 0.0;
+    catch_up(scene, world, near.parts.items, time, work);
+    std::fill(world.pace.begin(), world.pace.end(), Pace{});
     const double before = kinetic_energy(world);
     change_nodes(scene, world, work);
-    detect_after_moving(scene, world, work, false, times);
-    list_parts(work.parts, near);
+    detect_present(scene, world, work, false, times);
     strike_all(scene, world, work, time, false);
     world.diagnostics.node_losses += before - kinetic_energy(world);
   }
@@ -190,23 +190,19 @@ StepStatus fail_by_changes(World& world) {
   return StepStatus::failed;
 }
 
-/// Notes how ways bend in an interval of `length` (s) of all parts, which were `lag` behind before;
-/// `met`: nothing happened in it, and lengths and gaps are exact.
-void note_ways(World& world, Workspace& work, double lag, double length, bool met) {
-  const Trial& trial = work.trial;
-  const double kick = lag + 0.5 * length, allowed = share_of_error * world.configuration.error;
-  const Regularity before = world.regularity;
-  world.regularity = {};
-  if (!met || !trial.settled || work.neighbourhoods.divided) return;
-  world.regularity =
-      regularity_after(before, {length, kick, trial.foreseen, trial.local_error, allowed});
-  const int known = world.regularity.intervals - 1;
+/// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was; `met`:
+/// nothing happened in it, and lengths and gaps are exact. The part's pace.
+Pace note_ways(World& world, const Workspace& work, const Part& part, const Trial& trial,
+               double length, bool met) {
+  const Pace before = pace_of(world, work.parts, part);
+  if (!met || !trial.settled) return {.lag = 0.5 * length};
+  const double allowed = share_of_error * world.configuration.error;
+  Pace after = pace_after(before, {length, trial.foreseen, trial.local_error, allowed});
+  const int known = after.intervals - 1;
   const bool curved = known > 0 && before.curved;
-  if (known < 0 || (!curved && !trial.curves)) return;
-  for (const int p : work.neighbourhoods.parts.items) {
-    const PartSystem& s = at(work.systems, at(work.parts.list, p).system);
-    if (note_curvatures(s, length, known, curved, world)) world.regularity.curved = true;
-  }
+  if (known < 0 || (!curved && !trial.curves)) return after;
+  after.curved = note_curvatures(at(work.systems, part.system), length, known, curved, world);
+  return after;
 }
 
 /// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
@@ -217,15 +213,16 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   Diagnostics& d = world.diagnostics;
   for (const int p : parts) {
     const Part& part = at(work.parts.list, p);
-    if (!part.creeps) continue;
     for (const int c : cables_of(work.parts, part)) {
+      if (!part.creeps) break;
       if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
     }
+    const bool even = met && course.located && work.events.empty();
+    set_pace(world, work.parts, part,
+             note_ways(world, work, part, at(work.trials, p), length, even));
   }
-  note_ways(world, work, course.lag, length, met && course.located && work.events.empty());
   course.time = work.start.time + length;
   course.left = length < course.left ? course.left - length : 0.0;
-  course.lag = 0.5 * length;
   course.moved = true;
   course.happened = !work.events.empty();
   course.violated = !met || work.trial.violated;
@@ -233,24 +230,22 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   if (!course.happened) return;
   ++course.events;
   ++d.events;
-  catch_up(scene, world, parts, course.time, course.lag, work);
-  course.lag = 0.0;
+  catch_up(scene, world, parts, course.time, work);
   change_courses(world, work);
   if (work.neighbourhoods.divided) find_pairs_of_interval(scene, world, work);
 }
 
 /// Kinetic energy (J) of these at the time of their positions before an interval of `length` (s).
-double kinetic_energy(const World& world, const Workspace& work, const Movers& movers,
+double kinetic_energy(const World& world, const Workspace& work, std::span<const int> parts,
                       double length) {
-  const double after = movers.lag / (movers.lag + 0.5 * length);
   double energy = 0.0;
-  for (const int p : movers.parts) {
+  for (const int p : parts) {
     for (const int body : bodies_of(work.parts, at(work.parts.list, p))) {
-      energy += kinetic_energy(world, work.before, after, body);
+      energy += kinetic_energy(world, work.before, length, body);
     }
     if (work.before.sleeves.empty()) continue;
     for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
-      energy += kinetic_energy_of_sleeves(world, work.before, after, c);
+      energy += kinetic_energy_of_sleeves(world, work.before, length, c);
     }
   }
   return energy;
@@ -277,14 +272,37 @@ struct Round {
 
 bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch);
 
+/// Moves a neighbourhood by less than the interval of `length` (s) that was just tried in vain; how
+/// long. `met` as for shorten_interval.
+double shorten(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+               Neighbourhood& course, double length, bool& met, Stopwatch& watch) {
+  constexpr double next_to_nothing = 1e-2;  // halvings for other reasons end at a 32nd
+  const double shorter = shorten_interval(scene, world, work, movers, length, met, watch);
+  course.crept = work.events.empty() && shorter < next_to_nothing * length;
+  return shorter;
+}
+
+/// An interval of neighbourhood `n` is done, the `first` of the step or not; as finish_interval.
+/// Whether all velocities are finite.
+bool end_interval(const Scene& scene, World& world, Workspace& work, int n, double length, bool met,
+                  bool first) {
+  const std::span<const int> parts = parts_of(work.neighbourhoods, n);
+  if (!are_finite(world, work.parts, parts)) return check_finite(scene, world);
+  if (first && world.configuration.diagnostics) {
+    world.diagnostics.energy += kinetic_energy(world, work, parts, length);
+  }
+  finish_interval(scene, world, work, n, length, met);
+  return true;
+}
+
 /// Moves a neighbourhood by an interval, to its next event or to the end of the step; whether all
-/// velocities are finite. `begins` as for try_whole_interval. With `may_divide` its parts are
+/// velocities are finite. With `may_divide` its parts are
 /// divided first where that is not the whole step.
-bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins, const Round& round,
+bool move(const Scene& scene, World& world, Workspace& work, int n, const Round& round,
           Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
   Neighbourhood& course = at(near.list, n);
-  const Movers movers{parts_of(near, n), course.lag, course.crept};
+  const Movers movers{parts_of(near, n), course.crept};
   near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
   // What may be divided into neighbourhoods is tried as a whole.
@@ -293,73 +311,68 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, bool begins,
   if (!round.may_divide) {
     length = length_to_try(world, work, movers.parts, length, course.located);
   }
-  constexpr double next_to_nothing = 1e-2;  // halvings for other reasons end at a 32nd
-  bool met = true, crept = false;
+  bool met = true;
+  course.crept = false;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
     if (near.divided) find_pairs_of_interval(scene, world, work);
-  } else if (!try_whole_interval(scene, world, work, movers, length, begins, watch)) {
+  } else if (!try_whole_interval(scene, world, work, movers, length, watch)) {
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
-    const double tried = length;
-    length = shorten_interval(scene, world, work, movers, length, met, watch);
-    crept = work.events.empty() && length < next_to_nothing * tried;
+    length = shorten(scene, world, work, movers, course, length, met, watch);
   }
-  course.crept = crept;
-  if (!are_finite(world, work.parts, movers.parts)) return check_finite(scene, world);
-  if (round.first && world.configuration.diagnostics) {
-    world.diagnostics.energy += kinetic_energy(world, work, movers, length);
-  }
-  finish_interval(scene, world, work, n, length, met);
-  return true;
+  return end_interval(scene, world, work, n, length, met, round.first);
 }
 
 /// Moves every neighbourhood that has not come to the end of the step by an interval, while all
 /// others wait. Whether all velocities are finite.
-bool move_one_by_one(const Scene& scene, World& world, Workspace& work, bool begins,
-                     const Round& round, Stopwatch& watch) {
+bool move_one_by_one(const Scene& scene, World& world, Workspace& work, const Round& round,
+                     Stopwatch& watch) {
   const Neighbourhoods& near = work.neighbourhoods;
   for (int n = 0; index(n) < near.list.size(); ++n) {
     if (at(near.list, n).left == 0.0) continue;
     set_waiting(work.parts, parts_of(near, n), false);
-    if (!move(scene, world, work, n, begins, round, watch)) return false;
+    if (!move(scene, world, work, n, round, watch)) return false;
     set_waiting(work.parts, parts_of(near, n), true);
   }
   return true;
 }
 
 /// A step that has just been divided, as something happens in it: neighbourhoods in which nothing
-/// does have come to its end, others begin it anew.
+/// does have come to its end, others go on as if they had been tried alone.
 bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
+  Diagnostics& d = world.diagnostics;
   keep_start(world, work);
-  const int count = static_cast<int>(near.list.size());
   for (const Happening& event : work.events) {
-    const int part = event.part >= 0 ? event.part : at(work.parts.of_cable, event.cable);
-    at(near.list, number_of(near, work.parts, at(work.parts.list, part))).happened = true;
-    if (event.kind == EventKind::hit && near.separate_from_cable(event.body, event.cable)) {
-      near.crossed = true;
-    }
+    const bool hits = event.kind == EventKind::hit;
+    near.crossed = near.crossed || (hits && near.separate_from_cable(event.body, event.cable));
   }
-  for (int n = 0; n < count; ++n) {
+  list_events(work, near);
+  work.tried_events.swap(work.events);
+  d.fallbacks = work.start.fallbacks;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
     Neighbourhood& course = at(near.list, n);
-    const Trial trial = trial_of(work, parts_of(near, n));
-    course.happened = course.happened || !is_sound(world, trial, course.left);
-    if (course.happened) go_back(world, work, parts_of(near, n));
-  }
-  work.events.clear();
-  for (int n = 0; n < count; ++n) {
-    Neighbourhood& course = at(near.list, n);
-    if (course.happened) continue;
-    work.trial = trial_of(work, parts_of(near, n));
-    if (!work.trial.settled) ++world.diagnostics.fallbacks;
-    if (world.configuration.diagnostics) {
-      world.diagnostics.energy +=
-          kinetic_energy(world, work, {parts_of(near, n), course.lag}, course.left);
-    }
+    if (course.left == 0.0) continue;
+    const Movers movers{parts_of(near, n)};
+    const auto events =
+        slice(near.events.items, at(near.events.begin, n), at(near.events.begin, n + 1));
+    work.events.clear();
+    for (const int e : events) work.events.push_back(at(work.tried_events, e));
+    work.trial = trial_of(work, movers.parts);
+    work.start.fallbacks = d.fallbacks;
+    if (!work.trial.settled) ++d.fallbacks;
+    near.moving = movers.parts;
     course.located = true;
-    finish_interval(scene, world, work, n, course.left, true);
+    double length = course.left;
+    bool met = true;
+    set_waiting(work.parts, movers.parts, false);
+    if (!events.empty() || !is_sound(world, work.trial, length)) {
+      length = shorten(scene, world, work, movers, course, length, met, watch);
+    }
+    if (!end_interval(scene, world, work, n, length, met, true)) return false;
+    set_waiting(work.parts, movers.parts, true);
   }
-  return move_one_by_one(scene, world, work, false, {true, false}, watch);
+  return true;
 }
 
 /// The next round: every neighbourhood that has not come to the end of the step moves by an
@@ -372,29 +385,15 @@ bool move_all(const Scene& scene, World& world, Workspace& work, const Round& ro
   for (Neighbourhood& course : near.list) {
     course.moved = course.happened = course.violated = false;
   }
-  if (near.list.size() == 1) return move(scene, world, work, 0, true, round, watch);
+  if (near.list.size() == 1) return move(scene, world, work, 0, round, watch);
   find_pairs(scene, world, work);  // links have come and gone since
   for (Part& part : work.parts.list) part.waits = true;
-  return move_one_by_one(scene, world, work, true, round, watch);
+  return move_one_by_one(scene, world, work, round, watch);
 }
 
 bool is_left(const Neighbourhoods& near) {
   return std::any_of(near.list.begin(), near.list.end(),
                      [](const Neighbourhood& course) { return course.left > 0.0; });
-}
-
-/// Neighbourhoods that have come to the end of a step by intervals of different lengths get
-/// velocities of one time, so that they may have contacts.
-void reunite(const Scene& scene, World& world, Workspace& work) {
-  Neighbourhoods& near = work.neighbourhoods;
-  for (int n = 0; index(n) < near.list.size(); ++n) {
-    Neighbourhood& course = at(near.list, n);
-    if (course.lag > 0.0) {
-      catch_up(scene, world, parts_of(near, n), course.time, course.lag, work);
-    }
-    course.lag = 0.0;
-  }
-  near.divided = false;
 }
 
 /// What follows an interval: cables, contacts and pinches for where things are now, and velocities
@@ -412,43 +411,44 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
     }
   }
   if (near.divided) {
-    if (!is_left(near)) reunite(scene, world, work);
+    near.divided = is_left(near);
     list_parts(work.parts, near);
   }
-  detect_after_moving(scene, world, work, pairs_stand, times);
+  detect_present(scene, world, work, pairs_stand, times);
   Stopwatch watch(times);
-  list_parts(work.parts, near);
   empty_pinches(world, work.parts);
   const int now = world.changes;
-  bool hastens = false;
-  if (!near.divided) {
-    hastens = settle_end(scene, world, work, near.parts.items, near.list.front().lag, changes);
-  }
+  bool anew = false;
+  if (!near.divided) anew = settle_end(scene, world, work, near.parts.items, changes);
   for (int n = 0; near.divided && index(n) < near.list.size(); ++n) {
     Neighbourhood& course = at(near.list, n);
     if (!course.moved) continue;
-    hastens = settle_end(scene, world, work, parts_of(near, n), course.lag, changes) || hastens;
+    anew = settle_end(scene, world, work, parts_of(near, n), changes) || anew;
   }
   watch.lap(Stage::solve);
-  if (!hastens) return now;
-  detect_after_moving(scene, world, work, false, times);
-  list_parts(work.parts, near);
+  if (!anew) return now;
+  detect_present(scene, world, work, false, times);
   return world.changes;
 }
 
 }  // namespace
 
-void find_present_velocities(const Scene& scene, const World& world, std::span<const int> parts,
-                             double time, double lag, Workspace& work) {
+void find_present_velocities(const Scene& scene, const World& world, const Part& part, double time,
+                             Workspace& work) {
+  PartSystem& s = at(work.systems, part.system);
   TimeSpan instant;
   instant.start = time;
-  instant.kick = instant.lag = lag;
+  instant.kick = instant.lag = pace_of(world, work.parts, part).lag;
   instant.held_only = true;
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    apply_forces(scene, world, instant, work.parts, part, at(work.systems, part.system));
-  }
-  for (const int p : parts) solve_present(scene, world, work, at(work.parts.list, p), lag);
+  apply_forces(scene, world, instant, work.parts, part, s);
+  // With what bears force now.
+  TimeSpan t;
+  t.repair = world.step_length;
+  t.kick = t.lag = instant.lag;
+  t.reach = s.reach;
+  t.held_only = t.clamps = true;
+  Stopwatch untimed(nullptr);
+  solve_steadily(scene, world, work, part, t, most_motor_changes, untimed);
 }
 
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
@@ -477,7 +477,6 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     take_back(world, work);
     changes = world.changes;
   }
-  world.lag = near.list.front().lag;
   if (!scene.chains.empty()) {
     adapt_nodes(scene, world, work, world.time() + world.step_length, times);
   }

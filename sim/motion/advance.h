@@ -17,7 +17,9 @@
 // Where nodes of hanging cables swing faster than a step can follow, it is divided as well
 // (cable/waves.h), and where a span vanishes (vanishing.h).
 //
-// Parts that cannot meet within the step are divided each by its own events (neighbourhoods.h).
+// Parts that cannot meet within the step are divided each by its own events (neighbourhoods.h), and
+// each part has its own pace: velocities of two are brought to one time only where they may become
+// one.
 //
 // After so many events in a step nothing rebounds any more, so that a body that chatters comes to
 // rest (Diagnostics::clusters); after twice as many the rest of the step is met at once, by
@@ -26,22 +28,21 @@
 // What no interval has put right, as where a constraint has no gradient, is repaired in the
 // positions alone: a repair never becomes velocity.
 
-#include <span>
-
 #include "sim/stages.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
+struct Part;
 struct Workspace;
 
 /// Moves the world on by world.step_length, all but World::step, which is the caller's.
 /// StepStatus::failed: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
 
-/// Velocities of these parts' bodies at the time of their positions (`time`), `lag` after those
-/// that the world has, in their systems.
-void find_present_velocities(const Scene& scene, const World& world, std::span<const int> parts,
-                             double time, double lag, Workspace& work);
+/// Velocities of a part's bodies at the time of their positions (`time`), Pace::lag after those
+/// that the world has, in its system.
+void find_present_velocities(const Scene& scene, const World& world, const Part& part, double time,
+                             Workspace& work);
 
 }  // namespace pinchlab

@@ -192,8 +192,6 @@ void add(const Trial& one, Trial& all) {
   all.met = all.met && one.met;
   all.settled = all.settled && one.settled;
   all.violated = all.violated || one.violated;
-  all.foreseen = all.foreseen || one.foreseen;
-  all.curves = all.curves || one.curves;
   all.contradicts = all.contradicts || one.contradicts;
   all.missed = std::max(all.missed, one.missed);
   all.excess = std::max(all.excess, one.excess);
@@ -202,32 +200,48 @@ void add(const Trial& one, Trial& all) {
   all.wave = std::max(all.wave, one.wave);
 }
 
-/// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
-void try_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                  const Attempt& attempt, Stopwatch& watch) {
+/// Tries an interval of one part.
+Trial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
+               const Attempt& attempt, Stopwatch& watch) {
+  PartSystem& s = at(work.systems, part.system);
+  const Pace pace = pace_of(world, work.parts, part);
   TimeSpan t;
   t.length = attempt.length;
   t.repair = world.step_length;
-  t.lag = movers.lag;
+  t.lag = pace.lag;
   t.clamps = true;
-  t.kick = movers.lag + 0.5 * t.length;
+  t.kick = pace.lag + 0.5 * t.length;
   t.start = work.start.time;
+  apply_forces(scene, world, t, work.parts, part, s);
+  watch.lap(Stage::apply_forces);
+  t.made_up = s.reach;
+  t.foreseen =
+      attempt.foresees && s.carried.empty() && is_foreseen(pace, world.configuration.error, t);
+  t.reach = attempt.locates ? s.reach : infinity;
+  Trial trial;
+  trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
+  trial.foreseen = t.foreseen;
+  return trial;
+}
+
+/// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
+void try_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+                  const Attempt& attempt, Stopwatch& watch) {
   work.trial = Trial{};
   work.trials.resize(work.parts.list.size());
   begin_trial(work);
   for (const int p : movers.parts) {
     Part& part = at(work.parts.list, p);
-    PartSystem& s = at(work.systems, part.system);
-    Trial& trial = at(work.trials, p) = Trial{};
-    apply_forces(scene, world, t, work.parts, part, s);
-    watch.lap(Stage::apply_forces);
-    t.made_up = s.reach;
-    t.foreseen = attempt.foresees && s.carried.empty() && is_foreseen(world, t);
-    t.reach = attempt.locates ? s.reach : infinity;
+    Trial& trial = at(work.trials, p);
     const double longest =
         attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;
-    trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
-    trial.foreseen = t.foreseen;
+    const std::int64_t fallbacks = world.diagnostics.fallbacks;
+    trial = try_part(scene, world, work, part, attempt, watch);
+    if (trial.foreseen && !trial.met) {
+      put_back(world, work, part);
+      world.diagnostics.fallbacks = fallbacks;
+      trial = try_part(scene, world, work, part, {attempt.length}, watch);
+    }
     trial.longest = longest;
     trial.wave = wave_on(world, work.parts, part);
     add(trial, work.trial);
@@ -426,13 +440,9 @@ double length_to_try(const World& world, const Workspace& work, std::span<const 
 }
 
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                        double length, bool begins, Stopwatch& watch) {
-  const Attempt attempt{.length = length, .begins = begins, .foresees = true};
+                        double length, Stopwatch& watch) {
+  const Attempt attempt{.length = length, .begins = true, .foresees = true};
   try_interval(scene, world, work, movers, attempt, watch);
-  if (!work.trial.met && work.trial.foreseen) {
-    work.events.clear();
-    try_again(scene, world, work, movers, {length}, watch);
-  }
   return is_sound(world, work.trial, length) && work.events.empty();
 }
 

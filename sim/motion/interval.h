@@ -18,10 +18,9 @@ struct Workspace;
 /// they ask for (analysis/results/convergence.md).
 constexpr double share_of_error = 4e-5;
 
-/// What moves together by one interval: some parts, whose velocities are `lag` (s) behind.
+/// What moves together by one interval: some parts.
 struct Movers {
   std::span<const int> parts;
-  double lag;
   bool crept = false;  // Neighbourhood::crept
 };
 
@@ -29,10 +28,10 @@ struct Movers {
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
 /// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact, the error
-/// is what the scene allows and the interval no longer than it may be, so that this is it.
-/// `begins`: it is the first try since begin_interval.
+/// is what the scene allows and the interval no longer than it may be, so that this is it. The first
+/// try since begin_interval.
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                        double length, bool begins, Stopwatch& watch);
+                        double length, Stopwatch& watch);
 
 /// Moves them, where a whole interval of `length` has just been tried in vain, by the longest in
 /// which nothing happens but at its end; what happens there is in Workspace::events. Returns its

@@ -2,10 +2,13 @@
 #include "sim/motion/neighbourhoods.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/detect/contacts.h"
+#include "sim/detect/span_hits.h"
 #include "sim/lines.h"
 #include "sim/motion/interval.h"
 #include "sim/trees.h"
@@ -80,24 +83,30 @@ void join_at_spans(const Scene& scene, const World& world, const Workspace& work
   }
 }
 
-/// Joins what presses on a static body with the parts of all cables that run over it.
-void join_at_static_bodies(const World& world, const Parts& parts, Neighbourhoods& near) {
-  near.over.assign(world.bodies.size(), -1);
-  for (const Contact& contact : world.contacts) {
-    if (contact.b < 0) continue;
-    const int first = at(parts.of_body, contact.a), second = at(parts.of_body, contact.b);
-    if ((first < 0) == (second < 0)) continue;
-    int& over = at(near.over, first < 0 ? contact.a : contact.b);
-    const int part = std::max(first, second);
-    if (over >= 0) join(near.root, over, part);
-    over = part;
-  }
+/// Of two that touch, one static: notes the other in Neighbourhoods::over, joined with those that
+/// touched it before.
+void note_over(const Parts& parts, int a, int b, Neighbourhoods& near) {
+  const int first = at(parts.of_body, a), second = at(parts.of_body, b);
+  if ((first < 0) == (second < 0)) return;
+  int& over = at(near.over, first < 0 ? a : b);
+  const int part = std::max(first, second);
+  if (over >= 0) join(near.root, over, part);
+  over = part;
+}
+
+/// Joins what was so noted with the parts of all cables that run over the static body.
+void join_cables_over(const World& world, const Parts& parts, Neighbourhoods& near) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     for (const Link& link : world.cables[c].links) {
       if (link.body < 0 || link.orientation == 0 || at(near.over, link.body) < 0) continue;
       join(near.root, at(near.over, link.body), parts.of_cable[c]);
     }
   }
+}
+
+void separate_all(const Parts& parts, std::vector<int>& root) {
+  root.resize(parts.list.size());
+  std::iota(root.begin(), root.end(), 0);
 }
 
 /// Numbers the neighbourhoods, in `over` by their roots; how many there are.
@@ -109,6 +118,36 @@ int number_trees(const Parts& parts, Neighbourhoods& near) {
     if (number < 0) number = count++;
   }
   return count;
+}
+
+/// Joins the parts, each within its neighbourhood, that may come to be one by the pairs that there
+/// are.
+void join_by_pairs(const Scene& scene, const World& world, const Workspace& work,
+                   Neighbourhoods& near) {
+  const Parts& parts = work.parts;
+  const BroadPhase& broad = work.broad_phase;
+  separate_all(parts, near.root);
+  const auto join_parts = [&](int p, int q) {
+    if (p < 0 || q < 0 || p == q) return;
+    const Part &one = at(parts.list, p), &other = at(parts.list, q);
+    if (number_of(near, parts, one) == number_of(near, parts, other)) join(near.root, p, q);
+  };
+  near.over.assign(world.bodies.size(), -1);
+  const double width = widest_cable(world);
+  for (const BodyPair& pair : broad.body_pairs) {
+    if (!may_touch(scene, world, width, pair)) continue;
+    join_parts(at(parts.of_body, pair.a), at(parts.of_body, pair.b));
+    note_over(parts, pair.a, pair.b, near);
+  }
+  for (const PiecePair& pair : broad.piece_pairs) {
+    if (pair.body < 0 || !may_touch(scene, world, pair)) continue;
+    join_parts(at(parts.of_cable, pair.cable), at(parts.of_body, pair.body));
+  }
+  for (const SpanPair& pair : broad.span_pairs) {
+    if (!may_meet(world, pair)) continue;
+    join_parts(at(parts.of_cable, pair.cable), at(parts.of_body, pair.body));
+  }
+  join_cables_over(world, parts, near);
 }
 
 }  // namespace
@@ -137,7 +176,7 @@ void keep_start(const World& world, Workspace& work) {
   kept.changes = world.changes;
   kept.contacts = world.contacts;
   kept.still_steps = world.still_steps;
-  kept.regularity = world.regularity;
+  kept.pace = world.pace;
   kept.diagnostics = world.diagnostics;
 }
 
@@ -147,7 +186,7 @@ void take_back(World& world, Workspace& work) {
   world.changes = kept.changes;
   world.contacts = kept.contacts;
   world.still_steps = kept.still_steps;
-  world.regularity = kept.regularity;
+  world.pace = kept.pace;
   world.diagnostics = kept.diagnostics;
   Workspace fresh;
   fresh.start = kept.start;
@@ -171,7 +210,7 @@ void put_together(const World& world, Parts& parts, Neighbourhoods& near) {
   near.of_body.clear();
   near.of_cable.clear();
   near.divided = near.crossed = false;
-  near.list.assign(1, {world.step_length, world.lag, world.time()});
+  near.list.assign(1, {world.step_length, world.time()});
   list_parts(parts, near);
 }
 
@@ -179,9 +218,12 @@ bool divide(const Scene& scene, const World& world, Workspace& work) {
   Neighbourhoods& near = work.neighbourhoods;
   Parts& parts = work.parts;
   if (near.parts.items.size() < 2) return false;
-  near.root.resize(parts.list.size());
-  std::iota(near.root.begin(), near.root.end(), 0);
-  join_at_static_bodies(world, parts, near);
+  separate_all(parts, near.root);
+  near.over.assign(world.bodies.size(), -1);
+  for (const Contact& contact : world.contacts) {
+    if (contact.b >= 0) note_over(parts, contact.a, contact.b, near);
+  }
+  join_cables_over(world, parts, near);
   join_at_spans(scene, world, work, near);
   const int count = number_trees(parts, near);
   if (count < 2) return false;
@@ -199,6 +241,41 @@ bool divide(const Scene& scene, const World& world, Workspace& work) {
     if (parts_of(near, n).empty()) at(near.list, n).left = 0.0;  // asleep
   }
   return true;
+}
+
+void find_unlike(const Scene& scene, const World& world, Workspace& work, int number) {
+  Neighbourhoods& near = work.neighbourhoods;
+  near.unlike.clear();
+  const std::span<const int> own = parts_of(near, number);
+  const auto lag_of = [&](int p) { return pace_of(world, work.parts, at(work.parts.list, p)).lag; };
+  const auto differs = [&](int p) { return lag_of(p) != lag_of(own.front()); };
+  if (std::none_of(own.begin(), own.end(), differs)) return;
+  join_by_pairs(scene, world, work, near);
+  // Of each tree its first part, or that its parts differ.
+  constexpr int differ = -2;
+  near.over.assign(work.parts.list.size(), -1);
+  for (const int p : own) {
+    int& first = at(near.over, find_root(near.root, p));
+    if (first == -1) first = p;
+    if (first != differ && lag_of(p) != lag_of(first)) first = differ;
+  }
+  std::copy_if(own.begin(), own.end(), std::back_inserter(near.unlike),
+               [&](int p) { return at(near.over, find_root(near.root, p)) == differ; });
+}
+
+void list_events(const Workspace& work, Neighbourhoods& near) {
+  Lists<int>& lists = near.events;
+  const auto number = [&](const Happening& event) {
+    const int part = event.part >= 0 ? event.part : at(work.parts.of_cable, event.cable);
+    return number_of(near, work.parts, at(work.parts.list, part));
+  };
+  lists.begin.assign(near.list.size() + 1, 0);
+  for (const Happening& event : work.events) ++at(lists.begin, number(event));
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.items.resize(work.events.size());
+  for (int e = static_cast<int>(work.events.size()) - 1; e >= 0; --e) {
+    at(lists.items, --at(lists.begin, number(at(work.events, e)))) = e;
+  }
 }
 
 void list_parts(Parts& parts, Neighbourhoods& near) {
@@ -241,7 +318,6 @@ Neighbourhood course_of(const Neighbourhoods& near, const Parts& parts, const Pa
   Neighbourhood all;
   const auto add = [&all, &near](int number) {
     const Neighbourhood& one = at(near.list, number);
-    all.lag = std::max(all.lag, one.lag);
     all.time = std::max(all.time, one.time);
     all.events = std::max(all.events, one.events);
     all.happened = all.happened || one.happened;

@@ -25,7 +25,6 @@ struct Workspace;
 
 struct Neighbourhood {
   double left = 0.0;      // s, of the step
-  double lag = 0.0;       // s, by which its velocities are behind its positions
   double time = 0.0;      // s, that it has come to
   int events = 0;         // of this step, and intervals that could not be met
   bool moved = false;     // in this round
@@ -49,7 +48,9 @@ struct Neighbourhoods {
   std::vector<int> of_body, of_cable;  // -1: a static body. Empty where there is only one
   bool divided = false;                // there are several, at different times
   bool crossed = false;                // two have come together after all
-  // Storage of divide().
+  Lists<int> events;                   // of Workspace::events, of each; by list_events
+  std::vector<int> unlike;             // parts; by find_unlike
+  // Storage of divide() and find_unlike().
   std::vector<int> root, over;  // of each part's tree; a part whose cable runs over the body, or -1
   std::vector<Reach> reaches;   // by where they begin along x
 
@@ -62,9 +63,11 @@ struct Neighbourhoods {
 void put_together(const World& world, Parts& parts, Neighbourhoods& near);
 
 /// Divides the parts by what they may reach from where Workspace::start has them; whether there are
-/// several neighbourhoods then. All have as much of the step before them, and lag, as they had
-/// together.
+/// several neighbourhoods then. All have as much of the step before them as they had together.
 bool divide(const Scene& scene, const World& world, Workspace& work);
+
+/// Lists the events of a step that has just been divided by neighbourhood: Neighbourhoods::events.
+void list_events(const Workspace& work, Neighbourhoods& near);
 
 /// Lists the awake parts by neighbourhood anew. Of a divided step those wait whose neighbourhood
 /// has not moved in this round.
@@ -76,6 +79,10 @@ void keep_start(const World& world, Workspace& work);
 
 /// Goes back there, with all parts together.
 void take_back(World& world, Workspace& work);
+
+/// Finds the parts of a neighbourhood that are so near to others, whose velocities are of another
+/// time, that they may come to be one part, by the pairs that there are: Neighbourhoods::unlike.
+void find_unlike(const Scene& scene, const World& world, Workspace& work, int number);
 
 /// The neighbourhood that a part is in.
 int number_of(const Neighbourhoods& near, const Parts& parts, const Part& part);

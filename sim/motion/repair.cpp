@@ -18,9 +18,10 @@ namespace pinchlab {
 
 namespace {
 
-// Where directions turn little, a repair leaves the square of what it found, so that few do; the
-// rest is for ways that are halved. What a 64th of a way makes no better, the way is wrong for.
-constexpr int most_repairs = 8, most_halvings = 6;
+// Where directions turn little, a repair leaves the square of what it found, so that few do. Where
+// a cable is as straight as it can be and hardly gives, ways are long: so many go three radii of a
+// body. What a 64th of a way makes no better, the way is wrong for.
+constexpr int most_repairs = 64, most_halvings = 6;
 
 /// The most that a part's constraints are violated by (m).
 struct Violation {

@@ -25,9 +25,9 @@ bool is_same(double p, double q) {
   return std::abs(p - q) <= rounding * q;
 }
 
-/// Whether an interval of that length (s) is one more of those before.
-bool goes_on(const Regularity& regular, double length) {
-  return regular.intervals > 0 && is_same(regular.length, length);
+/// Whether the interval before was as long as this one (s).
+bool is_even(const Pace& before, double length) {
+  return is_same(before.lag, 0.5 * length);
 }
 
 /// Of a World, const or not, a row's own curvature; or null where its condition is linear. What
@@ -59,10 +59,9 @@ double least_curvature(const PartSystem& s, double length) {
 
 }  // namespace
 
-bool is_foreseen(const World& world, const TimeSpan& t) {
-  const Regularity& regular = world.regularity;
-  if (!regular.curved || !is_same(t.kick, t.length) || !goes_on(regular, t.length)) return false;
-  return world.configuration.error == 0.0 || regular.unmeasured < most_unmeasured;
+bool is_foreseen(const Pace& pace, double error, const TimeSpan& t) {
+  if (!pace.curved || pace.intervals == 0 || !is_even(pace, t.length)) return false;
+  return error == 0.0 || pace.unmeasured < most_unmeasured;
 }
 
 void foresee(const World& world, double length, PartSystem& s) {
@@ -95,14 +94,17 @@ bool note_curvatures(const PartSystem& s, double length, int known, bool curved,
   return any;
 }
 
-Regularity regularity_after(const Regularity& before, const IntervalDone& done) {
-  if (!is_same(done.kick, done.length)) return {};
-  Regularity after{done.length, 1, most_unmeasured, false};
-  if (goes_on(before, done.length)) after.intervals = std::min(before.intervals + 1, order);
+Pace pace_after(const Pace& before, const IntervalDone& done) {
+  Pace after{.lag = 0.5 * done.length};
+  if (!is_even(before, done.length)) return after;
+  const auto one_more = [](int number, int most) {
+    return static_cast<std::int8_t>(std::min(number + 1, most));
+  };
+  after.intervals = one_more(before.intervals, order);
   if (done.foreseen) {
-    after.unmeasured = std::min(before.unmeasured + 1, most_unmeasured);
-  } else if (done.local_error <= safe_share * done.allowed) {
-    after.unmeasured = 0;
+    after.unmeasured = one_more(before.unmeasured, most_unmeasured);
+  } else if (done.local_error > safe_share * done.allowed) {
+    after.unmeasured = most_unmeasured;
   }
   return after;
 }

@@ -16,26 +16,25 @@
 
 namespace pinchlab {
 
-/// Whether an interval follows on others of its length whose curvatures tell its own. Those of
-/// straight ways are nothing to tell by. Where steps
-/// are divided by their error, which only the first correction tells, some in between are not
-/// foreseen.
-bool is_foreseen(const World& world, const TimeSpan& t);
+/// Whether an interval of a part follows on others of its length whose curvatures tell its own.
+/// Those of straight ways are nothing to tell by. Where steps are divided by their `error` (m; 0:
+/// they are not), which only the first correction tells, some in between are not foreseen.
+bool is_foreseen(const Pace& pace, double error, const TimeSpan& t);
 
 /// Adds the curvatures that are foreseen for an interval of `length` (s) to the biases of rows that
 /// bear force.
 void foresee(const World& world, double length, PartSystem& system);
 
-/// What an interval of all parts came to.
+/// What an interval of a part came to.
 struct IntervalDone {
-  double length = 0.0, kick = 0.0;  // s
+  double length = 0.0;  // s
   bool foreseen = false;
   double local_error = 0.0;  // m, of what was not foreseen; see Trial
   double allowed = 0.0;      // m, of that; 0: steps are not divided by their error
 };
 
-/// World::regularity after an interval that was met, as it was `before`.
-Regularity regularity_after(const Regularity& before, const IntervalDone& done);
+/// A part's pace after an interval that was met, as it was `before`; but for Pace::curved.
+Pace pace_after(const Pace& before, const IntervalDone& done);
 
 /// Notes the curvatures of a part's rows in an interval of `length` (s) that `known` like it came
 /// before, of no curvature at all if not `curved`; whether any is more than 0.

@@ -26,7 +26,7 @@ Scene pendulum() {
 
 /// Leaves nothing to foresee the next step by.
 void forget(World& world) {
-  world.regularity = {};
+  for (Pace& pace : world.pace) pace = {.lag = pace.lag};
 }
 
 /// By how much the curvature of its cable is another than foreseen (m/s), at most from 1 to 1.5 s.
@@ -101,8 +101,7 @@ TEST(Foresight, BeginsAnewWhereSomethingHappens) {
     struck = struck || (happened && world.step > 10);
     const int most = static_cast<int>(Curvature{}.size());
     // After an event the velocities are those of an instant: two steps until kicks are equal.
-    EXPECT_LE(world.regularity.intervals, std::clamp<std::int64_t>(steps - 1, 0, most))
-        << world.step;
+    EXPECT_LE(world.pace[0].intervals, std::clamp<std::int64_t>(steps - 1, 0, most)) << world.step;
   }
   EXPECT_TRUE(struck);
 }
@@ -115,9 +114,9 @@ TEST(Foresight, HasNothingToDoOnStraightWays) {
     Workspace work;
     for (int i = 0; i < 20; ++i) {
       ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-      EXPECT_EQ(world.regularity.curved, !straight && world.regularity.intervals > 0) << i;
+      EXPECT_EQ(world.pace[0].curved, !straight && world.pace[0].intervals > 0) << i;
     }
-    EXPECT_GT(world.regularity.intervals, 0);
+    EXPECT_GT(world.pace[0].intervals, 0);
   }
 }
 
@@ -130,8 +129,8 @@ TEST(Foresight, MeasuresErrorsWhereTheyAreAskedFor) {
   bool foresaw = false;
   for (int i = 0; i < 200; ++i) {
     ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-    EXPECT_LE(world.regularity.unmeasured, 7);
-    foresaw = foresaw || world.regularity.unmeasured == 6;
+    EXPECT_LE(world.pace[0].unmeasured, 7);
+    foresaw = foresaw || world.pace[0].unmeasured == 6;
   }
   EXPECT_TRUE(foresaw);
 }

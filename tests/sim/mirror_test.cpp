@@ -22,7 +22,8 @@ Vec2 mirror(const Vec2& v) {
 /// The angle of a cable that goes round nothing counts turns for nobody.
 void forget_idle_angles(World& world) {
   for (CableState& cable : world.cables) {
-    if (cable.links.size() == 2 && !cable.closed) cable.segments[1].alpha = 0.0;
+    if (cable.links.size() != 2 || cable.closed) continue;
+    cable.segments[1].alpha = cable.segments[1].alpha_before = 0.0;
   }
 }
 
@@ -36,6 +37,7 @@ void mirror(CableState& cable) {
   }
   for (Segment& s : cable.segments) {
     s.alpha = -s.alpha;
+    s.alpha_before = -s.alpha_before;
     for (Vec2* v : {&s.direction, &s.tail, &s.head, &s.previous_tail, &s.previous_head,
                     &s.tail_centre, &s.head_centre}) {
       *v = mirror(*v);

@@ -38,8 +38,8 @@ inline bool same_segment(const Segment& p, const Segment& q) {
          p.moved == q.moved && p.slack == q.slack && p.pinched == q.pinched &&
          p.was_pinched == q.was_pinched && p.contact == q.contact &&
          p.previous_tail == q.previous_tail && p.previous_head == q.previous_head &&
-         p.tail_centre == q.tail_centre && p.head_centre == q.head_centre && p.slope == q.slope &&
-         p.curvature == q.curvature;
+         p.tail_centre == q.tail_centre && p.head_centre == q.head_centre &&
+         p.alpha_before == q.alpha_before && p.curvature == q.curvature;
 }
 
 inline bool same_contact(const Contact& p, const Contact& q) {
@@ -52,11 +52,6 @@ inline bool same_contact(const Contact& p, const Contact& q) {
          p.tangent_force == q.tangent_force && p.curvature == q.curvature;
 }
 
-inline bool same_regularity(const Regularity& p, const Regularity& q) {
-  return p.length == q.length && p.intervals == q.intervals && p.unmeasured == q.unmeasured &&
-         p.curved == q.curved;
-}
-
 /// Whether two worlds of one scene are in the same state to the last bit.
 inline bool same_state(const World& a, const World& b) {
   const auto equal = [](const auto& p, const auto& q, auto same) {
@@ -66,11 +61,11 @@ inline bool same_state(const World& a, const World& b) {
     return p.mass == q.mass && p.kind == q.kind && p.seat == q.seat;
   };
   return a.step == b.step && equal(a.bodies, b.bodies, same_body) &&
-         a.step_length == b.step_length && a.lag == b.lag && a.position == b.position &&
+         a.step_length == b.step_length && a.pace == b.pace && a.position == b.position &&
          a.angle == b.angle && a.velocity == b.velocity &&
          a.angular_velocity == b.angular_velocity && a.still_steps == b.still_steps &&
-         same_regularity(a.regularity, b.regularity) && a.changes == b.changes &&
-         a.passing == b.passing && a.passing_at_ends == b.passing_at_ends &&
+         a.changes == b.changes && a.passing == b.passing &&
+         a.passing_at_ends == b.passing_at_ends &&
          equal(a.pieces_at, b.pieces_at,
                [](const PiecesAtNode& p, const PiecesAtNode& q) {
                  return p.before == q.before && p.after == q.after;

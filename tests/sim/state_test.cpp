@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "demos/scenes/library.h"
+#include "sim/cable/cable.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
@@ -64,6 +67,30 @@ TEST(State, AStepThatIsTakenBackLeavesNothing) {
       ASSERT_EQ(step(scene, straight, straight_work), StepStatus::ok);
       ASSERT_TRUE(same_state(straight, tried)) << "seed " << seed << ", step " << i;
     }
+  }
+}
+
+// A try moves a body round another, by a third of a turn at a time, and is taken back: the span
+// that joins them, and what lies on the pulley, are as they were.
+TEST(State, WhatIsTakenBackHasNotTurned) {
+  Scene scene;
+  scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 0.0, 0.0, 0.3, 1.0));
+  scene.bodies.push_back(body("load", BodyKind::free, 0.35, -2.0, 0.1, 1.0));
+  scene.cables.push_back(cable(at(-1.0, -1.0), {{0, -1, 0}}, on(1)));
+  World world = make_world(scene, Method::pinch);
+  run(scene, world, 1);
+  const std::vector<CableState> cables = world.cables;
+  const Vec2 start = world.position[1];
+  for (int k = 1; k <= 4; ++k) {
+    const double angle = 2.0 * k * M_PI / 3.0;
+    world.position[1] = start.norm() * Vec2(std::cos(angle), std::sin(angle));
+    update_cable(world, world.cables[0], k == 1, true);
+  }
+  world.position[1] = start;
+  update_cable(world, world.cables[0], false, true);
+  for (std::size_t i = 1; i < cables[0].links.size(); ++i) {
+    EXPECT_EQ(world.cables[0].segments[i].alpha, cables[0].segments[i].alpha) << i;
+    EXPECT_EQ(world.cables[0].links[i].wrap, cables[0].links[i].wrap) << i;
   }
 }
 
