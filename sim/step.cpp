@@ -11,6 +11,7 @@
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/advance.h"
+#include "sim/motion/catch_up.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/solution.h"
 #include "sim/tangent.h"

@@ -7,12 +7,11 @@
 #include <cstdint>
 
 #include "base/at.h"
-#include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
-#include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/adapt_nodes.h"
+#include "sim/motion/catch_up.h"
 #include "sim/motion/clearance.h"
 #include "sim/motion/events.h"
 #include "sim/motion/impact.h"
@@ -20,10 +19,6 @@
 #include "sim/motion/repair.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/foresight.h"
-#include "sim/solve/motors.h"
-#include "sim/solve/passive.h"
-#include "sim/solve/rows.h"
-#include "sim/solve/rubbing.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -39,41 +34,6 @@ constexpr int most_events = 48;
 // Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round
 // what they are in without end, each change making more, and steps last minutes.
 constexpr std::int64_t most_changes = 500, most_changes_a_body = 10;
-
-/// Brings a part's velocities to the positions' time.
-void catch_up(const Scene& scene, World& world, const Part& part, double time, Workspace& work) {
-  if (pace_of(world, work.parts, part).lag == 0.0) return;
-  for (const int c : contacts_of(work.parts, part)) {
-    if (Contact& contact = at(world.contacts, c); contact.touching) measure(world, contact);
-  }
-  find_present_velocities(scene, world, part, time, work);
-  const PartSystem& s = at(work.systems, part.system);
-  const std::span<const int> bodies = bodies_of(work.parts, part);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
-    at(world.angular_velocity, bodies[i]) = s.velocity[i].z();
-  }
-  carry(world, carried_of(work.parts, part));
-  if (!s.sleeves.empty()) store_rubbing(s, world);
-  set_pace(world, work.parts, part, {});
-}
-
-void catch_up(const Scene& scene, World& world, std::span<const int> parts, double time,
-              Workspace& work) {
-  for (const int p : parts) catch_up(scene, world, at(work.parts.list, p), time, work);
-}
-
-/// Brings velocities of parts that may come to be one to one time.
-void bring_together(const Scene& scene, World& world, Workspace& work) {
-  Neighbourhoods& near = work.neighbourhoods;
-  for (int n = 0; index(n) < near.list.size(); ++n) {
-    // Those that catch up may have become unlike others, and faster.
-    for (find_unlike(scene, world, work, n); !near.unlike.empty();
-         find_unlike(scene, world, work, n)) {
-      catch_up(scene, world, near.unlike, at(near.list, n).time, work);
-    }
-  }
-}
 
 /// Cables, contacts, pinches and parts for where things are now. `pairs_stand` as in detect.h.
 void detect_present(const Scene& scene, World& world, Workspace& work, bool pairs_stand,
@@ -396,6 +356,18 @@ bool is_left(const Neighbourhoods& near) {
                      [](const Neighbourhood& course) { return course.left > 0.0; });
 }
 
+/// Settles the ends of the intervals of this round; as settle_end.
+bool settle_ends(const Scene& scene, World& world, Workspace& work, int changes) {
+  const Neighbourhoods& near = work.neighbourhoods;
+  if (!near.divided) return settle_end(scene, world, work, near.parts.items, changes);
+  bool anew = false;
+  for (int n = 0; index(n) < near.list.size(); ++n) {
+    if (!at(near.list, n).moved) continue;
+    anew = settle_end(scene, world, work, parts_of(near, n), changes) || anew;
+  }
+  return anew;
+}
+
 /// What follows an interval: cables, contacts and pinches for where things are now, and velocities
 /// that fit them. Returns how many times links have come or gone by then; they had `changes` times.
 int settle(const Scene& scene, World& world, Workspace& work, int changes, StageTimes* times) {
@@ -417,39 +389,20 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
   detect_present(scene, world, work, pairs_stand, times);
   Stopwatch watch(times);
   empty_pinches(world, work.parts);
-  const int now = world.changes;
-  bool anew = false;
-  if (!near.divided) anew = settle_end(scene, world, work, near.parts.items, changes);
-  for (int n = 0; near.divided && index(n) < near.list.size(); ++n) {
-    Neighbourhood& course = at(near.list, n);
-    if (!course.moved) continue;
-    anew = settle_end(scene, world, work, parts_of(near, n), changes) || anew;
+  // What has been moved, or thrown, may meet cables, and these need room.
+  constexpr int most_times = 3;
+  for (int k = 0; k < most_times && settle_ends(scene, world, work, changes); ++k) {
+    watch.lap(Stage::solve);
+    changes = world.changes;
+    detect_present(scene, world, work, false, times);
+    watch = Stopwatch(times);
+    for (Neighbourhood& course : near.list) course.happened = course.violated = false;
   }
   watch.lap(Stage::solve);
-  if (!anew) return now;
-  detect_present(scene, world, work, false, times);
   return world.changes;
 }
 
 }  // namespace
-
-void find_present_velocities(const Scene& scene, const World& world, const Part& part, double time,
-                             Workspace& work) {
-  PartSystem& s = at(work.systems, part.system);
-  TimeSpan instant;
-  instant.start = time;
-  instant.kick = instant.lag = pace_of(world, work.parts, part).lag;
-  instant.held_only = true;
-  apply_forces(scene, world, instant, work.parts, part, s);
-  // With what bears force now.
-  TimeSpan t;
-  t.repair = world.step_length;
-  t.kick = t.lag = instant.lag;
-  t.reach = s.reach;
-  t.held_only = t.clamps = true;
-  Stopwatch untimed(nullptr);
-  solve_steadily(scene, world, work, part, t, most_motor_changes, untimed);
-}
 
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);

@@ -33,16 +33,10 @@
 
 namespace pinchlab {
 
-struct Part;
 struct Workspace;
 
 /// Moves the world on by world.step_length, all but World::step, which is the caller's.
 /// StepStatus::failed: as step().
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times);
-
-/// Velocities of a part's bodies at the time of their positions (`time`), Pace::lag after those
-/// that the world has, in its system.
-void find_present_velocities(const Scene& scene, const World& world, const Part& part, double time,
-                             Workspace& work);
 
 }  // namespace pinchlab

@@ -28,8 +28,8 @@ struct Movers {
 void begin_interval(const World& world, Workspace& work, const Movers& movers, double time);
 
 /// Moves them by `length` (s); whether nothing happens then, lengths and gaps are exact, the error
-/// is what the scene allows and the interval no longer than it may be, so that this is it. The first
-/// try since begin_interval.
+/// is what the scene allows and the interval no longer than it may be, so that this is it. To be
+/// the first try since begin_interval.
 bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, Stopwatch& watch);
 
