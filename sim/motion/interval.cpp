@@ -155,13 +155,13 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::update_segments);
     // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
     if (round == 1 || t.foreseen) trial.local_error = std::max(trial.local_error, missed);
-    trial.curves = trial.curves || missed > exact_share * s.reach;
+    trial.curves = trial.curves || missed > s.tolerance();
     // In so short an interval there is nothing to correct but round-off.
-    const bool meets = missed <= exact_share * s.reach || t.length < shortest_corrected * t.repair;
+    const bool meets = missed <= s.tolerance() || t.length < shortest_corrected * t.repair;
     if (meets && !follows) return true;
     // Where states flip it may get worse for a round.
     trial.missed = std::max(trial.missed, missed / s.extent);
-    trial.excess = std::max(trial.excess, missed / (exact_share * s.reach));
+    trial.excess = std::max(trial.excess, missed / s.tolerance());
     trial.contradicts = trial.contradicts || (round > 0 && !settled);
     if (round == attempt.most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
       return false;

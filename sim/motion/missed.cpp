@@ -40,7 +40,7 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
   const CapstanScratch& capstan = set.capstan;
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
-  const double round_off = exact_share * s.reach / t.length;  // m/s
+  const double round_off = s.tolerance() / t.length;    // m/s
   double most = 0.0;
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];

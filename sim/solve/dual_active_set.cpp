@@ -317,7 +317,7 @@ bool solve_dual(PartSystem& s, DualScratch& d, const DualTerms& terms, double& m
   };
   const double all = leave_out(infinity);
   if (!solve(s, d, terms.tolerance, missed)) return false;
-  const double little = exact_share * s.reach / d.step_length;
+  const double little = s.tolerance() / d.step_length;
   if (!terms.repairs || all <= little) {
     missed = std::max(missed, all);
   } else {

@@ -54,7 +54,7 @@ void append(double value, int known, Curvature& differences) {
 
 /// What nobody would correct is round-off (m/s), which must not become speed.
 double least_curvature(const PartSystem& s, double length) {
-  return exact_share * s.reach / length;
+  return s.tolerance() / length;
 }
 
 }  // namespace

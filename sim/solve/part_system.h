@@ -221,9 +221,6 @@ struct RowsMade {
 /// right to a tenth of it, and round-off of positions is some 1e-16.
 constexpr double within_reach = 1e-11;
 
-/// Of a part's reach: what lengths and gaps may miss at an interval's end.
-constexpr double exact_share = 0.1;
-
 struct PartSystem {
   // Bodies of the part in its order, and the world after them; by apply_forces (forces.cpp).
   std::vector<Mobility> mobility;              // changed by steady_light_bodies and drive
@@ -294,6 +291,9 @@ struct PartSystem {
                               // that may slide. By note_wraps
 
   int ground() const { return static_cast<int>(mobility.size()) - 1; }
+
+  /// What lengths and gaps may miss at an interval's end (m).
+  double tolerance() const { return 0.1 * reach; }
 };
 
 inline bool is_friction(const Row& row) {
