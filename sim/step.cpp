@@ -76,8 +76,9 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   watch.lap(Stage::diagnose);
   work.start.position = world.position;
   move_bodies(work.parts, world);
-  if (world.step == 0)
-    std::fill(world.pace.begin(), world.pace.end(), Pace{.lag = whole_step(world).kick});
+  if (world.step == 0) {  // from now on velocities are half a step behind
+    std::fill(world.pace.begin(), world.pace.end(), Pace{.lag = 0.5 * world.step_length});
+  }
   watch.lap(Stage::move_bodies);
   detect(scene, world, work, times);
   return StepStatus::ok;

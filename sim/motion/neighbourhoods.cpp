@@ -109,6 +109,22 @@ void separate_all(const Parts& parts, std::vector<int>& root) {
   std::iota(root.begin(), root.end(), 0);
 }
 
+/// Lists the items 0 .. items - 1 by their number(item), below `count`, in their order; those of -1
+/// in none.
+template <class NumberOf>
+void list_by_number(std::size_t count, std::size_t items, NumberOf number, Lists<int>& lists) {
+  lists.begin.assign(count + 1, 0);
+  const int end = static_cast<int>(items);
+  for (int i = 0; i < end; ++i) {
+    if (const int n = number(i); n >= 0) ++at(lists.begin, n);
+  }
+  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
+  lists.items.resize(index(lists.begin.back()));
+  for (int i = end - 1; i >= 0; --i) {
+    if (const int n = number(i); n >= 0) at(lists.items, --at(lists.begin, n)) = i;
+  }
+}
+
 /// Numbers the neighbourhoods, in `over` by their roots; how many there are.
 int number_trees(const Parts& parts, Neighbourhoods& near) {
   near.over.assign(parts.list.size(), -1);
@@ -264,22 +280,15 @@ void find_unlike(const Scene& scene, const World& world, Workspace& work, int nu
 }
 
 void list_events(const Workspace& work, Neighbourhoods& near) {
-  Lists<int>& lists = near.events;
-  const auto number = [&](const Happening& event) {
+  const auto number = [&](int e) {
+    const Happening& event = at(work.events, e);
     const int part = event.part >= 0 ? event.part : at(work.parts.of_cable, event.cable);
     return number_of(near, work.parts, at(work.parts.list, part));
   };
-  lists.begin.assign(near.list.size() + 1, 0);
-  for (const Happening& event : work.events) ++at(lists.begin, number(event));
-  std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
-  lists.items.resize(work.events.size());
-  for (int e = static_cast<int>(work.events.size()) - 1; e >= 0; --e) {
-    at(lists.items, --at(lists.begin, number(at(work.events, e)))) = e;
-  }
+  list_by_number(near.list.size(), work.events.size(), number, near.events);
 }
 
 void list_parts(Parts& parts, Neighbourhoods& near) {
-  std::vector<int>& begin = near.parts.begin;
   if (near.list.size() == 1) {
     near.parts.items.clear();
     for (int p = 0; index(p) < parts.list.size(); ++p) {
@@ -287,25 +296,18 @@ void list_parts(Parts& parts, Neighbourhoods& near) {
       part.waits = near.divided && !near.list.front().moved;
       if (!part.asleep) near.parts.items.push_back(p);
     }
-    begin.assign({0, static_cast<int>(near.parts.items.size())});
+    near.parts.begin.assign({0, static_cast<int>(near.parts.items.size())});
     near.moving = near.parts.items;
     return;
   }
-  begin.assign(near.list.size() + 1, 0);
   for (Part& part : parts.list) {
-    const int n = number_of(near, parts, part);
-    if (!part.asleep) ++at(begin, n + 1);
-    part.waits = near.divided && !at(near.list, n).moved;
+    part.waits = near.divided && !at(near.list, number_of(near, parts, part)).moved;
   }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  near.parts.items.resize(index(begin.back()));
-  for (int p = static_cast<int>(parts.list.size()) - 1; p >= 0; --p) {
+  const auto number = [&](int p) {
     const Part& part = at(parts.list, p);
-    if (!part.asleep) at(near.parts.items, --at(begin, number_of(near, parts, part) + 1)) = p;
-  }
-  // Each begin has become that of the list before.
-  std::rotate(begin.begin(), begin.begin() + 1, begin.end());
-  begin.back() = static_cast<int>(near.parts.items.size());
+    return part.asleep ? -1 : number_of(near, parts, part);
+  };
+  list_by_number(near.list.size(), parts.list.size(), number, near.parts);
   near.moving = near.parts.items;
 }
 
