@@ -71,8 +71,11 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
     // Without tension no segment of a group is held to its length.
     const bool bears = row.on && !(shares && row.impulse == 0.0);
     if (!bears) missed = std::min(missed, 0.0);
-    row.bias += missed / t.length;
-    row.curved += missed / t.length;
+    double curvature = missed / t.length;
+    // Of a row that bears no force the way itself has gained J v + bias, which has bent back.
+    if (!bears && missed < 0.0 && group < 0) curvature -= std::max(row_speed(s, r), 0.0);
+    row.bias += curvature;
+    row.curved += curvature;
     most = std::max(most, std::abs(missed));
   }
   return most;

@@ -121,6 +121,28 @@ TEST(Events, ImpactsKeepMomentumAndEnergy) {
   EXPECT_EQ(world.diagnostics.events, 1);
 }
 
+// A bob that is let go inward more slowly than its way bends back outward is on its cable all the
+// time. At the start the cable bears nothing, and J v is above 0.
+TEST(Events, AWayThatBendsBackIsHeldWithoutDividingTheStep) {
+  for (const int steps : {1, 4, 16}) {
+    for (const double inward : {0.2, 0.6, 0.8, 0.95}) {  // of what the way bends outward by
+      Scene scene;
+      scene.gravity = Vec2::Zero();
+      scene.steps_per_frame = steps;
+      scene.bodies.push_back(body("bob", BodyKind::free, 1.0, 0.0, 0.1, 1.0));
+      const double v = 2.0, h = 1.0 / (60.0 * steps);
+      scene.bodies[0].velocity = {-inward * 0.5 * h * v * v, v};
+      scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0)));
+      World world = make_world(scene, measured());
+      world.cables[0].segments[1].slack = true;
+      Workspace work;
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+      EXPECT_EQ(world.diagnostics.intervals, 1) << steps << " " << inward;
+      EXPECT_NEAR(world.position[0].norm(), 1.0, 1e-11);
+    }
+  }
+}
+
 TEST(Events, AreLocatedByTheDirectSolverOnExactLengths) {
   Configuration exact;
   EXPECT_TRUE(locates_events(exact));
