@@ -11,6 +11,7 @@
 #include "sim/cable/lay.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/sleeve.h"
+#include "sim/cable/strung.h"
 #include "sim/compound.h"
 #include "sim/detect/contacts.h"
 #include "sim/detect/detect.h"
@@ -110,6 +111,23 @@ void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
   }
 }
 
+/// Strings nodes on cables with mass that run over bodies; whether there are any. What follows
+/// spans to their ends without events (Events::at_steps) has such cables straight.
+bool string_cables(const Scene& scene, World& world) {
+  if (!locates_events(world.configuration)) return false;
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const Cable& given = scene.cables[c];
+    if (given.first_node < 0) continue;
+    world.strung.push_back(static_cast<int>(c));
+    CableState& cable = world.cables[c];
+    refuse_crowded_nodes(given, cable, c);
+    cable.first_node = given.first_node;
+    cable.nodes = given.nodes;
+    string_nodes(world, cable, scene.gravity);
+  }
+  return !world.strung.empty();
+}
+
 }  // namespace
 
 World make_world(const Scene& scene, Configuration configuration) {
@@ -155,6 +173,11 @@ World make_world(const Scene& scene, Configuration configuration) {
     world.contacts.clear();
     work = {};  // nothing is known of the new contacts
     detect(scene, world, work);
+  }
+  if (string_cables(scene, world)) {
+    work = {};  // nothing is known of nodes
+    detect(scene, world, work);
+    refuse_hanging_into_others(scene, world, work.broad_phase);
   }
   begin_slip(scene, world);
   find_first_tensions(scene, world, work);

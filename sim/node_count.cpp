@@ -185,7 +185,8 @@ double hanging_tension(const Scene& scene, const Cable& cable) {
   const Vec2 d = place_of(scene, cable.end) - place_of(scene, cable.start);
   const Vec2 weight = cable.mass_per_metre * length * scene.gravity;
   if (!(cable.slack > 0.0)) return weight.norm();
-  const Hanging chain = hang(std::vector<Vec2>(pieces - 1, weight / pieces), length / pieces, d);
+  const Hanging chain = hang(std::vector<Vec2>(pieces - 1, weight / pieces),
+                             std::vector<double>(pieces, length / pieces), {}, {d});
   return chain.tension + 0.5 * weight.norm() / pieces;  // half of a piece hangs at either end
 }
 

@@ -207,7 +207,7 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
     std::vector<Vec2> weights;
     weights.reserve(masses.size());
     for (const double mass : masses) weights.push_back(mass * gravity);
-    directions = hang(weights, piece, d).directions;
+    directions = hang(weights, std::vector<double>(index(pieces), piece), {}, {d}).directions;
   }
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), pieces - 1,
                   static_cast<int>(scene.cables.size()), pieces - 1};
@@ -232,10 +232,31 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
   return made;
 }
 
+/// Nodes for a cable that runs over bodies: they have the mass of what they have of it, which is
+/// none at the start, and are on the rims until make_world strings them.
+NodedCable add_strung_nodes(Scene& scene, std::size_t c) {
+  constexpr double next_to_nothing = 1e-9;  // of the cable's mass along its half width
+  Cable& cable = scene.cables[c];
+  NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), cable.nodes, 0, 0};
+  cable.first_node = made.first_body;
+  const Cable whole = cable;
+  for (int k = 0; k < whole.nodes; ++k) {
+    Body node = node_of(whole, k + 1, Vec2::Zero(),
+                        next_to_nothing * whole.mass_per_metre * whole.half_width);
+    node.kind = BodyKind::fixed;
+    node.outlined = false;
+    scene.bodies.push_back(node);
+  }
+  return made;
+}
+
 }  // namespace
 
 std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    if (becomes_strung(scene.cables[c])) made.push_back(add_strung_nodes(scene, c));
+  }
   if (std::ranges::none_of(scene.cables, becomes_nodes)) return made;
   refuse_impossible_courses(scene);
   const std::size_t count = scene.cables.size();

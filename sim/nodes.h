@@ -22,6 +22,12 @@ inline bool becomes_nodes(const Cable& cable) {
   return cable.mass_per_metre > 0.0 && cable.wraps.empty();
 }
 
+/// Whether spread_nodes gives it nodes that are strung on it where it is free (cable/strung.h).
+inline bool becomes_strung(const Cable& cable) {
+  return cable.mass_per_metre > 0.0 && !cable.wraps.empty() && cable.nodes > 0 &&
+         cable.first_node < 0;
+}
+
 /// Replaces every cable of the scene that has a mass, and runs over no bodies, by n nodes and n + 1
 /// massless pieces of equal length l between them: node i has the mass (l_(i-1) + l_i) / 2 times
 /// that of a metre, and those next to an end on a body that can move have the end's half piece too.

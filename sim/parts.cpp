@@ -131,7 +131,7 @@ int number_parts(const World& world, Parts& parts) {
 void describe(const World& world, Parts& parts, Part& part) {
   for (const int c : cables_of(parts, part)) {
     part.dormant = part.dormant || is_dormant(at(world.cables, c));
-    part.has_nodes = part.has_nodes || at(world.cables, c).piece;
+    part.has_nodes = part.has_nodes || at(world.cables, c).piece || at(world.cables, c).nodes > 0;
     part.creeps = part.creeps || !at(world.cables, c).rims.empty();
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
     part.has_sleeves = part.has_sleeves || has_sleeves(world, at(world.cables, c));

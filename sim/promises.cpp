@@ -144,7 +144,7 @@ double sag_of(const Segment& span, double tension, double weight_of_metre) {
 void Promises::note_sag(const Scene& scene, const World& world) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     const CableState& cable = world.cables[c];
-    if (!is_massed(cable)) continue;
+    if (!is_massed(cable) || cable.nodes > 0) continue;
     double sag = 0.0;
     for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
       const Segment& span = cable.segments[i];
@@ -258,7 +258,7 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
       case Promise::straight:
         what = fmt::format(
             "cable '{}', whose spans have mass and are straight, would have hung by {} of one's "
-            "length (limit {})",
+            "length (limit {}); with nodes it does",
             at(scene.cables, w.item).name, percent(w.value), percent(limits_.sag));
         break;
       default:

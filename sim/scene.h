@@ -126,7 +126,9 @@ struct Cable {
   /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes
   /// a chain of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;
-  int nodes = 0;  ///< of such a chain; 0: as spread_nodes chooses
+  int nodes = 0;  ///< of such a chain; 0: as spread_nodes chooses. Of one that runs over bodies, of
+                  ///< all of it; 0: it is straight between them
+  int first_node = -1;  ///< of one that runs over bodies: all others follow. By spread_nodes
   /// m, of such a chain: how far from straight it may be between two nodes, whose number adapts; 0:
   /// it is fixed.
   double node_tolerance = 0.0;

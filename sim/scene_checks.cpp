@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/strung.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
@@ -147,6 +148,55 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
                       "to the cable's wraps or move it",
                       body.name, in_mm(overlap),
                       name_of_body(scene, cable.links[segment_number].body)));
+    }
+  }
+}
+
+void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size_t number) {
+  const double width = 2.0 * cable.half_width;
+  const double piece = cable.length / (given.closed ? given.nodes : given.nodes + 1);
+  if (piece > width) return;
+  const int most = static_cast<int>(std::ceil(cable.length / width)) - (given.closed ? 1 : 2);
+  throw SceneError(pointer("cables", number) + "/nodes",
+                   fmt::format("pieces of {} between nodes are no longer than the cable is wide; "
+                               "at most {} nodes fit",
+                               in_mm(piece), std::max(most, 0)));
+}
+
+void refuse_hanging_into_others(const Scene& scene, const World& world, const BroadPhase& broad) {
+  const double allowed = overlap_allowed(scene);
+  const auto refuse = [&scene](int cable, const std::string& what, double depth) {
+    throw SceneError(pointer("cables", index(cable)),
+                     fmt::format("as it hangs at the start the cable runs through {} ({} deep); "
+                                 "give it another slack, or move that",
+                                 what, in_mm(depth)));
+  };
+  for (const int c : world.strung) {
+    const CableState& cable = at(world.cables, c);
+    const auto is_node = [&cable](int body) {
+      return body >= cable.first_node && body < cable.first_node + cable.nodes;
+    };
+    for (const Contact& contact : world.contacts) {
+      if (!is_node(contact.a) && !is_node(contact.b)) continue;
+      const int other = is_node(contact.a) ? contact.b : contact.a;
+      if (contact.gap >= -allowed) continue;
+      refuse(c, other >= 0 ? name_of_body(scene, other) : fmt::format("wall {}", contact.wall),
+             -contact.gap);
+    }
+    for (const SpanPair& pair : broad.span_pairs) {
+      const Link& head = at(cable.links, pair.segment);
+      const Link& tail = at(cable.links, previous_link(cable, pair.segment));
+      if (pair.cable != c || !is_strung(cable, head) || !is_strung(cable, tail)) continue;
+      if (is_within_end(world, cable, head, pair.body)) continue;
+      if (is_within_end(world, cable, tail, pair.body)) continue;
+      const Segment& segment = at(cable.segments, pair.segment);
+      const Vec2& x = at(world.position, pair.body);
+      const BodyProperties& body = at(world.bodies, pair.body);
+      const double distance =
+          is_polygon(body) ? distance_to(corners_of(world, pair.body), segment.tail, segment.head)
+                           : distance_from_line(segment.tail, segment.head, x);
+      const double overlap = rim_radius(body) + cable.half_width - distance;
+      if (overlap > allowed) refuse(c, name_of_body(scene, pair.body), overlap);
     }
   }
 }

@@ -32,6 +32,12 @@ void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& b
 /// Spans that run through bodies.
 void refuse_cables_through_bodies(const Scene& scene, const World& world, const BroadPhase& broad);
 
+/// More nodes than a cable of that length has room for.
+void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size_t number);
+
+/// Cables with mass and nodes that hang into what they do not run over.
+void refuse_hanging_into_others(const Scene& scene, const World& world, const BroadPhase& broad);
+
 /// Contacts nearer than the cable between them is wide.
 void refuse_squeezed_wraps(const Scene& scene, const World& world);
 

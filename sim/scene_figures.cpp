@@ -162,9 +162,11 @@ bool is_straight(const Cable& cable) {
 void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
   refuse(cable.bending_stiffness != 0.0, place,
          "a cable that bends needs its nodes (spread_nodes)");
-  refuse(cable.nodes != 0 || cable.node_tolerance != 0.0, place,
-         "nodes and their tolerance are of a cable with mass that runs over no body, and has "
-         "become them (spread_nodes)");
+  refuse(cable.nodes != 0 && cable.first_node < 0, place,
+         "nodes are of a cable with mass that has got them (spread_nodes)");
+  refuse(cable.node_tolerance != 0.0, place,
+         "a node tolerance is of a cable with mass that runs over no body, and has become nodes "
+         "(spread_nodes)");
   refuse(!at_least_0(cable.contact_friction), place,
          "the contact friction must be a number of at least 0");
   refuse(!at_least_0(cable.linear_drag), place, "drag must be a number of at least 0");

@@ -136,6 +136,7 @@ struct alignas(64) CableState {
   double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
   // Of any:
+  int first_node = -1, nodes = 0;  // bodies, of one with mass that runs over bodies: strung.h
   double grip = 1.0;  // factor on the friction of its pinches
   double bend = 0.0;  // N m a rad, between it and `bends_with`
 };
@@ -254,6 +255,7 @@ struct World {
   std::vector<std::array<int, 2>> passing;  // sorted: a piece, and the body (or -1 - wall) that it
                                             // does not meet;
   std::vector<std::array<int, 2>> passing_at_ends;  // of these those for good, by make_world
+  std::vector<int> strung;  // cables with mass that run over bodies and have nodes; by make_world
   int changes = 0;  // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite

@@ -238,10 +238,12 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
                  "linear_drag_per_s"},
                 "a cable without mass_per_metre_kg");
   } else if (from.contains("wraps")) {
-    refuse_keys(from, place,
-                {"nodes", "node_tolerance_m", "bending_stiffness_n_m2", "contact_friction",
-                 "linear_drag_per_s", "creep"},
+    refuse_keys(from, place, {"node_tolerance_m", "bending_stiffness_n_m2", "creep"},
                 "a cable with mass_per_metre_kg that runs over bodies");
+    if (!from.contains("nodes")) {
+      refuse_keys(from, place, {"contact_friction", "linear_drag_per_s"},
+                  "a cable with mass_per_metre_kg that runs over bodies and has no nodes");
+    }
   } else {
     refuse_keys(from, place, {"squeeze", "grip", "creep"}, "a cable with mass_per_metre_kg");
   }
@@ -375,6 +377,7 @@ void Reader::spread(SceneContent& to) {
   for (std::size_t c = 0; c < to.scene.cables.size(); ++c) {
     const Cable& cable = to.scene.cables[c];
     if (becomes_nodes(cable)) nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
+    if (becomes_strung(cable)) nodes += cable.nodes;
     if (nodes <= most_nodes) continue;
     problem(
         fmt::format("/cables/{}", c),

@@ -6,7 +6,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
-#include "sim/cable/mass.h"
+#include "sim/cable/joins.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 

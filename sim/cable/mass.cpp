@@ -1,42 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/cable/mass.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/links.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
 
-namespace {
-
 using Eigen::Vector3d;
-
-/// Velocity of a place of a body (m/s).
-Vec2 at_place(const Vector3d& velocity, const Vec2& z) {
-  return velocity.head<2>() + velocity.z() * z;
-}
-
-/// What a force on a place of a body is to it (N, N, N m).
-Vector3d on_body(const Vec2& force, const Vec2& z) {
-  return {force.x(), force.y(), z.dot(force)};
-}
 
 int mover_or_world(const World& world, const Link& link) {
   return link.body >= 0 ? mover_of(world, link.body) : static_cast<int>(world.bodies.size());
 }
+
+namespace {
 
 /// Of the link's circle, from the centre of what it moves with (m).
 Vec2 centre_of(const World& world, const Link& link) {
   if (link.body < 0) return link.offset;
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
+
+}  // namespace
 
 MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   const Link& from = at(cable.links, previous_link(cable, static_cast<int>(i)));
@@ -58,6 +48,8 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.density = cable.density;
   return span;
 }
+
+namespace {
 
 /// On the circle z = left(c) + p e, with e turning from where the cable comes to where it goes.
 MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
@@ -84,22 +76,14 @@ double turning_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v
   return across.dot(d) / span.distance;
 }
 
-void add(Eigen::Matrix3d& to, double mass, const Vec2& first, double second) {
-  to(0, 0) += mass;
-  to(1, 1) += mass;
-  to.topRightCorner<2, 1>() += first;
-  to.bottomLeftCorner<1, 2>() += first.transpose();
-  to(2, 2) += second;
-}
-
 void add(std::span<Eigen::Matrix3d> to, const MassedSpan& span) {
   const double mass = end_mass(span);
-  add(at(to, span.a), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
-  add(at(to, span.b), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
+  add_moments(at(to, span.a), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
+  add_moments(at(to, span.b), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
 }
 
 void add(std::span<Eigen::Matrix3d> to, const MassedArc& arc) {
-  add(at(to, arc.body), arc.mass, arc.first, arc.second);
+  add_moments(at(to, arc.body), arc.mass, arc.first, arc.second);
 }
 
 /// kg/s, of either end's mass, by what rims that turn give and take.
@@ -148,8 +132,6 @@ void add_flow_forces(const MassedSpan& span, const Vector3d& v_a, const Vector3d
   }
 }
 
-using Ways = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
-
 void add_way(const Vector3d& way, Ways& ways) {
   ways.conservativeResize(3, ways.cols() + 1);
   ways.rightCols<1>() = way;
@@ -165,7 +147,8 @@ void add_ways_of_centre(const BodyProperties& body, Ways& ways) {
   }
 }
 
-/// What the body can do: move, move along its rail, turn.
+}  // namespace
+
 Ways ways_of(const BodyProperties& body) {
   Ways ways(3, 0);
   add_ways_of_centre(body, ways);
@@ -175,87 +158,13 @@ Ways ways_of(const BodyProperties& body) {
   return ways;
 }
 
+namespace {
+
 Eigen::Matrix3d inverse_on(const Ways& ways, const Eigen::Matrix3d& matrix) {
   if (ways.cols() == 0) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> there =
       ways.transpose() * matrix * ways;
   return ways * there.inverse() * ways.transpose();
-}
-
-/// Changes the body's velocity as if a mass with velocity u had joined it at z, where its own mass,
-/// `carried` with it, already has that mass.
-void take_up(World& world, int body, const Eigen::Matrix3d& carried, double mass, const Vec2& z,
-             const Vec2& u) {
-  const BodyProperties& properties = at(world.bodies, body);
-  Eigen::Matrix3d all = carried;
-  add(all, properties.mass, Vec2::Zero(), inertia_of(properties));
-  Vec2& v = at(world.velocity, body);
-  double& omega = at(world.angular_velocity, body);
-  const Vec2 own = v + omega * z;
-  const Vector3d change = inverse_for(properties, all) * on_body(mass * (u - own), z);
-  v += change.head<2>();
-  omega += change.z();
-}
-
-/// Changes velocities as take_up does, where the mass has joined sleeve `at_sleeve` of the body
-/// (-1: the body itself) and all of `sleeves` are counted with what is on theirs.
-void take_up(World& world, int body, const Eigen::Matrix3d& carried,
-             const std::vector<Sleeve>& sleeves, int at_sleeve, double mass, const Vec2& z,
-             const Vec2& u) {
-  std::vector<int> on_body;
-  for (std::size_t k = 0; k < sleeves.size(); ++k) {
-    if (sleeves[k].body == body) on_body.push_back(static_cast<int>(k));
-  }
-  const BodyProperties& properties = at(world.bodies, body);
-  if (on_body.empty()) {
-    if (is_mobile(properties)) take_up(world, body, carried, mass, z, u);
-    return;
-  }
-  // Of the velocities (x, y, angle; angles of sleeves) those that what holds the body leaves free.
-  const auto count = static_cast<Eigen::Index>(3 + on_body.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
-  Eigen::Matrix3d own = carried;
-  add(own, properties.mass, Vec2::Zero(), inertia_of(properties));
-  all.topLeftCorner<3, 3>() = own;
-  Eigen::MatrixXd place = Eigen::MatrixXd::Zero(2, count);
-  place.leftCols<2>().setIdentity();
-  if (at_sleeve < 0) place.col(2) = z;
-  for (std::size_t k = 0; k < on_body.size(); ++k) {
-    const Eigen::Matrix3d& m = at(sleeves, on_body[k]).mass;
-    const auto turning = static_cast<Eigen::Index>(3 + k);
-    all.topLeftCorner<2, 2>() += m.topLeftCorner<2, 2>();
-    all.block<2, 1>(0, turning) += m.topRightCorner<2, 1>();
-    all.block<1, 2>(turning, 0) += m.bottomLeftCorner<1, 2>();
-    all(turning, turning) += m(2, 2);
-    if (on_body[k] == at_sleeve) place.col(turning) = z;
-  }
-  const auto body_ways = ways_of(properties);
-  Eigen::MatrixXd ways = Eigen::MatrixXd::Zero(count, body_ways.cols() + count - 3);
-  ways.topLeftCorner(3, body_ways.cols()) = body_ways;
-  ways.bottomRightCorner(count - 3, count - 3).setIdentity();
-  Vec2& v = at(world.velocity, body);
-  double& omega = at(world.angular_velocity, body);
-  const double turning = at_sleeve < 0 ? omega : at(sleeves, at_sleeve).velocity.z();
-  const Eigen::VectorXd impulse = place.transpose() * (mass * (u - v - turning * z));
-  const Eigen::MatrixXd there = ways.transpose() * all * ways;
-  const Eigen::VectorXd change = ways * there.ldlt().solve(ways.transpose() * impulse);
-  v += change.head<2>();
-  omega += change.z();
-  for (std::size_t k = 0; k < on_body.size(); ++k) {
-    const Sleeve& sleeve = at(sleeves, on_body[k]);
-    CableState& cable = at(world.cables, sleeve.cable);
-    const Link& link = at(cable.links, sleeve.first);
-    const double faster = change(static_cast<Eigen::Index>(3 + k)) - change.z();
-    set_slip(cable, sleeve, link.slip, link.slip_speed + faster * link.signed_radius());
-  }
-}
-
-/// Of the place z of what lies at a link of the cable.
-Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z) {
-  const int body = mover_or_world(world, at(cable.links, link));
-  if (index(body) == world.bodies.size()) return Vec2::Zero();
-  const auto number = static_cast<int>(&cable - world.cables.data());
-  return at(world.velocity, body) + turning_at(world, number, link) * z;
 }
 
 }  // namespace
@@ -305,12 +214,12 @@ void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
         const MassedSpan span = span_of(world, cable, i);
         const double mass = end_mass(span);
         const int before = previous_link(cable, link);
-        add(mass_at(span.a, before), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
-        add(mass_at(span.b, link), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
+        add_moments(mass_at(span.a, before), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
+        add_moments(mass_at(span.b, link), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
       }
       if (cable.links[i].orientation == 0) continue;
       const MassedArc arc = arc_of(world, cable, i);
-      add(mass_at(arc.body, link), arc.mass, arc.first, arc.second);
+      add_moments(mass_at(arc.body, link), arc.mass, arc.first, arc.second);
     }
     for (std::size_t k = first; k < sleeves.size(); ++k) {
       sleeves[k].mass += least_mass(world, sleeves[k], sleeves[k].mass);
@@ -363,6 +272,25 @@ void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double fac
   }
 }
 
+Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z) {
+  const int body = mover_or_world(world, at(cable.links, link));
+  if (index(body) == world.bodies.size()) return Vec2::Zero();
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  return at(world.velocity, body) + turning_at(world, number, link) * z;
+}
+
+Flow flow_at(const World& world, const CableState& cable, std::size_t segment, bool at_head) {
+  const int head = static_cast<int>(segment);
+  const int number = at_head ? head : previous_link(cable, head);
+  const MassedSpan span = span_of(world, cable, segment);
+  const Link& link = at(cable.links, number);
+  if (link.body < 0) return {};
+  const auto of = static_cast<int>(&cable - world.cables.data());
+  const double along = link.signed_radius() * turning_at(world, of, number);
+  const Vec2 u = velocity_at(world, cable, number, at_head ? span.z_b : span.z_a);
+  return {u - along * span.direction, along};
+}
+
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Vector3d> velocities) {
   Vector3d f_a = Vector3d::Zero(), f_b = f_a;
   add_flow_forces(span, at(velocities, span.a), at(velocities, span.b), f_a, f_b);
@@ -393,64 +321,6 @@ Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matr
   add_ways_of_centre(body, ways);
   add_way(Vector3d::UnitZ(), ways);
   return inverse_on(ways, matrix);
-}
-
-void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
-               int orientation) {
-  if (!is_massed(cable)) {
-    insert_link(world, cable, segment, body, corner, orientation);
-    return;
-  }
-  const int number = static_cast<int>(&cable - world.cables.data());
-  const MassedSpan before = span_of(world, cable, segment);
-  const int head = static_cast<int>(segment);
-  const Vec2 u_a = velocity_at(world, cable, previous_link(cable, head), before.z_a);
-  const Vec2 u_b = velocity_at(world, cable, head, before.z_b);
-  const std::size_t position = segment == 0 ? cable.links.size() : segment;
-  insert_link(world, cable, segment, body, corner, orientation);
-  const int mover = mover_of(world, body);
-  std::vector<Eigen::Matrix3d> carried;
-  std::vector<Sleeve> sleeves;
-  find_carried(world, carried, sleeves);
-  const int sleeve = sleeve_at(world, sleeves, number, static_cast<int>(position));
-  if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
-  const MassedSpan first = span_of(world, cable, position);
-  const MassedSpan second = span_of(world, cable, segment == 0 ? 0 : position + 1);
-  const double both = first.material + second.material;
-  if (!(both > 0.0)) return;
-  // Each neighbour has given up its share of the part that it is no longer at.
-  const Vec2 u = (second.material * u_a + first.material * u_b) / both;
-  take_up(world, mover, at(carried, mover), sleeves, sleeve, 0.5 * cable.density * both, first.z_b,
-          u);
-}
-
-void leave_body(World& world, CableState& cable, int link) {
-  if (!is_massed(cable)) {
-    remove_link(world, cable, link);
-    return;
-  }
-  const int number = static_cast<int>(&cable - world.cables.data());
-  const MassedSpan first = span_of(world, cable, index(link));
-  const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
-  const Vec2 u = velocity_at(world, cable, link, first.z_b);
-  const auto links = static_cast<int>(cable.links.size());
-  remove_link(world, cable, link);
-  const auto left_over = static_cast<int>(cable.links.size());
-  const bool merged = left_over + 2 == links;  // its neighbours have become one
-  const bool first_gone = merged && link == links - 1;
-  const int after = link % left_over;
-  const int before = first_gone ? left_over - 1 : previous_link(cable, after);
-  std::vector<Eigen::Matrix3d> carried;
-  std::vector<Sleeve> sleeves;
-  find_carried(world, carried, sleeves);
-  const auto give = [&](int to, int at_link, const Vec2& z, double material) {
-    if (index(to) == world.bodies.size()) return;
-    const int sleeve = sleeve_at(world, sleeves, number, at_link);
-    take_up(world, to, at(carried, to), sleeves, sleeve, 0.5 * cable.density * material, z, u);
-  };
-  give(first.a, before, first.z_a, second.material);
-  if (!sleeves.empty()) find_carried(world, carried, sleeves);  // with new velocities
-  give(second.b, merged ? before : after, second.z_b, first.material);
 }
 
 }  // namespace pinchlab

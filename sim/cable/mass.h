@@ -98,11 +98,43 @@ Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& m
 /// The same on what a sleeve on the body can do: it turns whatever holds the body.
 Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix);
 
-/// insert_link and remove_link of a cable that may have mass: a body that it meets, or its sleeve
-/// there, and those that it is left to, take up the momentum of their new share, which they and no
-/// others bear.
-void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
-               int orientation);
-void leave_body(World& world, CableState& cable, int link);
+/// Velocity of a place z = left(x), x off a body's centre (m/s), and what a force or an impulse
+/// there is to the body.
+inline Vec2 at_place(const Eigen::Vector3d& velocity, const Vec2& z) {
+  return velocity.head<2>() + velocity.z() * z;
+}
+inline Eigen::Vector3d on_body(const Vec2& force, const Vec2& z) {
+  return {force.x(), force.y(), z.dot(force)};
+}
+
+/// Adds a mass (kg) with its first and second moment of z (kg m, kg m^2) to such a matrix.
+inline void add_moments(Eigen::Matrix3d& to, double mass, const Vec2& first, double second) {
+  to(0, 0) += mass;
+  to(1, 1) += mass;
+  to.topRightCorner<2, 1>() += first;
+  to.bottomLeftCorner<1, 2>() += first.transpose();
+  to(2, 2) += second;
+}
+
+/// What moves a link: a body, or the number of bodies for the world.
+int mover_or_world(const World& world, const Link& link);
+
+/// A segment, by bodies and not by sleeves.
+MassedSpan span_of(const World& world, const CableState& cable, std::size_t segment);
+
+/// What the body can do: move, move along its rail, turn. One a column.
+using Ways = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
+Ways ways_of(const BodyProperties& body);
+
+/// Of the place z of what lies at a link of the cable (m/s).
+Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z);
+
+/// How the material at an end of a segment moves (m/s): with what holds the link's circle, and
+/// along the cable by the circle's turning.
+struct Flow {
+  Vec2 carried = Vec2::Zero();
+  double along = 0.0;
+};
+Flow flow_at(const World& world, const CableState& cable, std::size_t segment, bool at_head);
 
 }  // namespace pinchlab

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/strung.h"
 
 namespace pinchlab {
 
@@ -21,6 +22,14 @@ constexpr double shortest = 1e-3;  // of a step: an interval for waves
 }  // namespace
 
 double wave_of(const World& world, const CableState& cable) {
+  if (cable.nodes > 0) {
+    double fastest = 0.0;
+    for (int i = 0; index(i) < cable.links.size(); ++i) {
+      if (is_strung(cable, at(cable.links, i)))
+        fastest = std::max(fastest, wave_at_node(world, cable, i));
+    }
+    return fastest;
+  }
   if (!cable.piece || cable.pieces == 0) return 0.0;
   const Segment& s = cable.segments[1];
   double lightest = infinity;

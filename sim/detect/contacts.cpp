@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/strung.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
 #include "sim/pieces.h"
@@ -88,6 +89,12 @@ void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double ra
   contact.normal = distance > 0.0 ? Vec2(d / distance) : somewhere;
   contact.gap = distance - radii;
   world.contacts.push_back(contact);
+}
+
+/// Whether one of them is a node beside the other along its cable.
+bool lies_beside(const World& world, const BodyPair& pair) {
+  if (at(world.bodies, pair.a).node) return lies_beside(world, pair.a, pair.b);
+  return at(world.bodies, pair.b).node && lies_beside(world, pair.b, pair.a);
 }
 
 /// Appends the contacts of bodies and walls; returns how many were kept.
@@ -254,6 +261,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       continue;
     }
     const double most = most_gap(scene, world, width, pair);
+    if (!world.strung.empty() && d.norm() - radii <= most && lies_beside(world, pair)) continue;
     add_contacts(world, pair.a, pair.b, -1, d, radii, most);
   }
   kept += add_contacts_of_walls(scene, world, work, old);

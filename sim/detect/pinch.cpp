@@ -8,8 +8,8 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/joins.h"
 #include "sim/cable/links.h"
-#include "sim/cable/mass.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"

@@ -5,7 +5,8 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/mass.h"
+#include "sim/cable/joins.h"
+#include "sim/cable/strung.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -228,6 +229,13 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   return first;
 }
 
+/// Whether one of its nodes is, at an end of the cable that the body holds.
+bool is_within_end(const World& world, const CableState& cable, const Link& from, const Link& to,
+                   int body) {
+  return (is_strung(cable, from) && is_within_end(world, cable, from, body)) ||
+         (is_strung(cable, to) && is_within_end(world, cable, to, body));
+}
+
 /// Whether the span can be hit by the body at all, now that one of them has moved.
 bool may_hit(const World& world, const Workspace& work, const SpanPair& pair, std::size_t s) {
   const CableState& cable = at(world.cables, pair.cable);
@@ -236,6 +244,7 @@ bool may_hit(const World& world, const Workspace& work, const SpanPair& pair, st
   if (!moved && is_still(work.parts, body)) return false;
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
   const Link &to = cable.links[s], &from = at(cable.links, tail);
+  if (cable.nodes > 0 && is_within_end(world, cable, from, to, body)) return false;
   return !holds_span(world, cable, to, body) && !holds_span(world, cable, from, body) &&
          !is_side(from, to);
 }

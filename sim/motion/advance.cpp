@@ -8,6 +8,7 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/strung.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/adapt_nodes.h"
@@ -141,6 +142,34 @@ void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
     world.diagnostics.node_losses += before - kinetic_energy(world);
   }
   follow_chains(scene, world, work);
+}
+
+/// Puts nodes of cables that run over bodies back where rims have given them off, and carries along
+/// those on rims.
+void give_off(const Scene& scene, World& world, Workspace& work, double time, StageTimes* times) {
+  const int changes = world.changes;
+  double before = 0.0;
+  for (const int c : world.strung) {
+    CableState& cable = at(world.cables, c);
+    if (is_idle(work.parts, index(c)) || !has_given_off(world, cable)) continue;
+    if (world.changes == changes) before = kinetic_energy(world);
+    catch_up(scene, world, at(work.parts.list, at(work.parts.of_cable, c)), time, work);
+    give_off_nodes(world, cable);
+  }
+  for (const int c : world.strung) {
+    if (!is_idle(work.parts, index(c))) carry_wound_nodes(world, at(world.cables, c));
+  }
+  if (world.changes == changes) return;
+  world.diagnostics.node_changes += world.changes - changes;
+  work.broad_phase.boxes.clear();  // for bodies with other outlines
+  detect_present(scene, world, work, false, times);
+  for (const int p : work.neighbourhoods.parts.items) {
+    const Part& part = at(work.parts.list, p);
+    if (!has_changed(world, work.parts, part, changes)) continue;
+    apply_no_forces(scene, world, part, time, work);
+    strike(scene, world, work, part, false);
+  }
+  world.diagnostics.node_losses += before - kinetic_energy(world);
 }
 
 StepStatus fail_by_changes(World& world) {
@@ -432,6 +461,9 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   }
   if (!scene.chains.empty()) {
     adapt_nodes(scene, world, work, world.time() + world.step_length, times);
+  }
+  if (!world.strung.empty()) {
+    give_off(scene, world, work, world.time() + world.step_length, times);
   }
   const bool clusters =
       std::any_of(near.list.begin(), near.list.end(),

@@ -7,8 +7,9 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/joins.h"
 #include "sim/cable/links.h"
-#include "sim/cable/mass.h"
+#include "sim/cable/strung.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/span_hits.h"
 #include "sim/motion/clearance.h"
@@ -110,13 +111,17 @@ void find_gone_links(const World& world, Workspace& work, int number) {
   key.reach = s.reach;
   for (const int c : cables_of(work.parts, part)) {
     const CableState& cable = at(world.cables, c);
-    if (!cable.unwound && work.events.empty()) continue;
+    if (!cable.unwound && cable.nodes == 0 && work.events.empty()) continue;
     key.cable = c;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
       const Link& link = at(cable.links, i);
+      key.item = i;
+      if (is_strung(cable, link)) {
+        measure(work, key, left_until_taken_in(cable, i), 0.5 * s.reach);
+        continue;
+      }
       if (link.orientation == 0 || link.pinch_middle) continue;
       if (needed(cable, index(i))) continue;
-      key.item = i;
       measure(work, key, link.wrap * link.radius, 0.5 * s.reach);
     }
   }
@@ -162,7 +167,10 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable < 0 || event.clearance > event.reach) continue;
     CableState& cable = at(world.cables, event.cable);
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
-    if (event.kind == EventKind::link_gone) {
+    if (event.kind == EventKind::link_gone && is_strung(cable, at(cable.links, event.item))) {
+      take_in_node(world, cable, event.item);
+      work.broad_phase.boxes.clear();  // for bodies with other outlines
+    } else if (event.kind == EventKind::link_gone) {
       const Link& link = at(cable.links, event.item);
       note_release(work, {event.cable, link.body, link.orientation});
       leave_body(world, cable, event.item);

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/strung.h"
 #include "sim/cable/waves.h"
 #include "sim/compound.h"
 #include "sim/parts.h"
@@ -88,10 +89,10 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
 
 /// Mobilities as they are without spans.
 void restore(const World& world, std::span<const int> bodies, double kick, PartSystem& system) {
+  const bool are_new = !system.carried.empty();  // where cables have mass, with each kick
   for (std::size_t i = 0; i < bodies.size() && !system.span_masses.empty(); ++i) {
     SpanMass& span = system.span_masses[i];
-    const bool loaded = !system.carried.empty() && system.carried[i](0, 0) > 0.0;
-    if (span.steadied && !loaded) {  // of loaded ones they are new with each kick
+    if (span.steadied && !are_new) {
       system.mobility[i] = mobility_of(at(world.bodies, bodies[i]), kick);
       system.mobility_changed = true;
     }
@@ -119,6 +120,7 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
       const double wave = wave_of(world, cable);
       const bool divided = is_divided_for(world, wave), lost = is_lost(world, wave);
       const auto note = [&](const Link& end, const Link& other) {
+        if (is_strung(cable, end)) return;  // intervals follow it
         const bool followed = divided && is_node(world, end);
         if (followed && !lost) return;
         any =

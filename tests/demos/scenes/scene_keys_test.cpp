@@ -198,10 +198,15 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
     return error_of(scene.dump());
   };
   EXPECT_EQ(error("{}"), "no error");
-  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}]})"),
-            "s.json: /cables/0/nodes: has no effect on a cable with mass_per_metre_kg that runs "
-            "over bodies; "
-            "leave it out");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}]})"), "no error");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}], "nodes": null,
+                      "linear_drag_per_s": 1})"),
+            "s.json: /cables/0/linear_drag_per_s: has no effect on a cable with mass_per_metre_kg "
+            "that runs over bodies and has no nodes; leave it out");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}],
+                      "node_tolerance_m": 0.01})"),
+            "s.json: /cables/0/node_tolerance_m: has no effect on a cable with mass_per_metre_kg "
+            "that runs over bodies; leave it out");
   EXPECT_EQ(error(R"({"nodes": 1000})"),
             "s.json: /cables/0/nodes: pieces of 4.5 mm between nodes are no longer than the cable "
             "is wide; at most "

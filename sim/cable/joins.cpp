@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/joins.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/links.h"
+#include "sim/cable/mass.h"
+#include "sim/cable/sleeve.h"
+#include "sim/compound.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Velocities of a body, or of its sleeve `at_sleeve` (-1: the body itself).
+Vector3d motion_of(const World& world, int body, const std::vector<Sleeve>& sleeves,
+                   int at_sleeve) {
+  const Vec2& v = at(world.velocity, body);
+  const double turning =
+      at_sleeve < 0 ? at(world.angular_velocity, body) : at(sleeves, at_sleeve).velocity.z();
+  return {v.x(), v.y(), turning};
+}
+
+/// Gives the body, or its sleeve, an impulse (N s, N s, N m s), which it takes up with what it
+/// carries, and with all of its sleeves and what is on theirs.
+void push(World& world, int body, const Eigen::Matrix3d& carried,
+          const std::vector<Sleeve>& sleeves, int at_sleeve, const Vector3d& impulse) {
+  std::vector<int> on_body;
+  for (std::size_t k = 0; k < sleeves.size(); ++k) {
+    if (sleeves[k].body == body) on_body.push_back(static_cast<int>(k));
+  }
+  const BodyProperties& properties = at(world.bodies, body);
+  Eigen::Matrix3d own = carried;
+  add_moments(own, properties.mass, Vec2::Zero(), inertia_of(properties));
+  Vec2& v = at(world.velocity, body);
+  double& omega = at(world.angular_velocity, body);
+  if (on_body.empty()) {
+    if (!is_mobile(properties)) return;
+    const Vector3d change = inverse_for(properties, own) * impulse;
+    v += change.head<2>();
+    omega += change.z();
+    return;
+  }
+  // Of the velocities (x, y, angle; angles of sleeves) those that what holds the body leaves free.
+  const auto count = static_cast<Eigen::Index>(3 + on_body.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd given = Eigen::VectorXd::Zero(count);
+  all.topLeftCorner<3, 3>() = own;
+  given.head<2>() = impulse.head<2>();
+  if (at_sleeve < 0) given(2) = impulse.z();
+  for (std::size_t k = 0; k < on_body.size(); ++k) {
+    const Eigen::Matrix3d& m = at(sleeves, on_body[k]).mass;
+    const auto turning = static_cast<Eigen::Index>(3 + k);
+    all.topLeftCorner<2, 2>() += m.topLeftCorner<2, 2>();
+    all.block<2, 1>(0, turning) += m.topRightCorner<2, 1>();
+    all.block<1, 2>(turning, 0) += m.bottomLeftCorner<1, 2>();
+    all(turning, turning) += m(2, 2);
+    if (on_body[k] == at_sleeve) given(turning) = impulse.z();
+  }
+  const auto body_ways = ways_of(properties);
+  Eigen::MatrixXd ways = Eigen::MatrixXd::Zero(count, body_ways.cols() + count - 3);
+  ways.topLeftCorner(3, body_ways.cols()) = body_ways;
+  ways.bottomRightCorner(count - 3, count - 3).setIdentity();
+  const Eigen::MatrixXd there = ways.transpose() * all * ways;
+  const Eigen::VectorXd change = ways * there.ldlt().solve(ways.transpose() * given);
+  v += change.head<2>();
+  omega += change.z();
+  for (std::size_t k = 0; k < on_body.size(); ++k) {
+    const Sleeve& sleeve = at(sleeves, on_body[k]);
+    CableState& cable = at(world.cables, sleeve.cable);
+    const Link& link = at(cable.links, sleeve.first);
+    const double faster = change(static_cast<Eigen::Index>(3 + k)) - change.z();
+    set_slip(cable, sleeve, link.slip, link.slip_speed + faster * link.signed_radius());
+  }
+}
+
+/// Changes velocities as if a mass with velocity u had joined the body, or its sleeve, at z, where
+/// `carried` and the sleeves have that mass already.
+void take_up(World& world, int body, const Eigen::Matrix3d& carried,
+             const std::vector<Sleeve>& sleeves, int at_sleeve, double mass, const Vec2& z,
+             const Vec2& u) {
+  const Vec2 own = at_place(motion_of(world, body, sleeves, at_sleeve), z);
+  push(world, body, carried, sleeves, at_sleeve, on_body(mass * (u - own), z));
+}
+
+}  // namespace
+
+void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
+               int orientation) {
+  if (!is_massed(cable)) {
+    insert_link(world, cable, segment, body, corner, orientation);
+    return;
+  }
+  const int number = static_cast<int>(&cable - world.cables.data());
+  const MassedSpan before = span_of(world, cable, segment);
+  const int head = static_cast<int>(segment);
+  const Vec2 u_a = velocity_at(world, cable, previous_link(cable, head), before.z_a);
+  const Vec2 u_b = velocity_at(world, cable, head, before.z_b);
+  const std::size_t position = segment == 0 ? cable.links.size() : segment;
+  insert_link(world, cable, segment, body, corner, orientation);
+  const int mover = mover_of(world, body);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const int sleeve = sleeve_at(world, sleeves, number, static_cast<int>(position));
+  if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
+  const MassedSpan first = span_of(world, cable, position);
+  const MassedSpan second = span_of(world, cable, segment == 0 ? 0 : position + 1);
+  const double both = first.material + second.material;
+  if (!(both > 0.0)) return;
+  // Each neighbour has given up its share of the part that it is no longer at.
+  const Vec2 u = (second.material * u_a + first.material * u_b) / both;
+  take_up(world, mover, at(carried, mover), sleeves, sleeve, 0.5 * cable.density * both, first.z_b,
+          u);
+}
+
+void leave_body(World& world, CableState& cable, int link) {
+  if (!is_massed(cable)) {
+    remove_link(world, cable, link);
+    return;
+  }
+  const int number = static_cast<int>(&cable - world.cables.data());
+  const MassedSpan first = span_of(world, cable, index(link));
+  const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
+  const Vec2 u = velocity_at(world, cable, link, first.z_b);
+  const auto links = static_cast<int>(cable.links.size());
+  remove_link(world, cable, link);
+  const auto left_over = static_cast<int>(cable.links.size());
+  const bool merged = left_over + 2 == links;  // its neighbours have become one
+  const bool first_gone = merged && link == links - 1;
+  const int after = link % left_over;
+  const int before = first_gone ? left_over - 1 : previous_link(cable, after);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const auto give = [&](int to, int at_link, const Vec2& z, double material) {
+    if (index(to) == world.bodies.size()) return;
+    const int sleeve = sleeve_at(world, sleeves, number, at_link);
+    take_up(world, to, at(carried, to), sleeves, sleeve, 0.5 * cable.density * material, z, u);
+  };
+  give(first.a, before, first.z_a, second.material);
+  if (!sleeves.empty()) find_carried(world, carried, sleeves);  // with new velocities
+  give(second.b, merged ? before : after, second.z_b, first.material);
+}
+
+void leave_node(World& world, CableState& cable, int link) {
+  // What one of the two neighbours has of the cable, before and after.
+  struct Share {
+    int body = 0, sleeve = -1;
+    bool is_head = false;   // of the span that closes up
+    double joins = 0.0;     // kg, half of the other span
+    Vec2 z = Vec2::Zero();  // where that joins it
+    Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), after = before;
+    Vector3d velocity = Vector3d::Zero(), impulse = velocity;
+    double gained() const { return after(0, 0) - before(0, 0); }
+  };
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  const int node = at(cable.links, link).body;
+  const Vec2 x = at(world.position, node), u = at(world.velocity, node);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const auto mass_of = [&](const Share& share) {
+    return share.sleeve < 0 ? at(carried, share.body) : at(sleeves, share.sleeve).mass;
+  };
+  const double node_mass = at(carried, node)(0, 0);
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  std::vector<Share> shares;
+  for (const int beside : {before, after}) {
+    const Segment& other = at(cable.segments, beside == before ? after : link);
+    Share share;
+    share.joins = 0.5 * cable.density * std::max(other.rest_length, 0.0);
+    share.body = mover_or_world(world, at(cable.links, beside));
+    share.sleeve = sleeve_at(world, sleeves, number, beside);
+    share.is_head = beside == after;
+    if (index(share.body) == world.bodies.size()) continue;
+    if (!shares.empty() && shares[0].body == share.body && shares[0].sleeve == share.sleeve) {
+      shares[0].joins += share.joins;
+      continue;
+    }
+    share.before = mass_of(share);
+    share.velocity = motion_of(world, share.body, sleeves, share.sleeve);
+    shares.push_back(share);
+  }
+  const std::size_t links = cable.links.size();
+  remove_link(world, cable, link);
+  find_carried(world, carried, sleeves);
+  const bool merged = cable.links.size() + 2 == links;  // the neighbours have become one
+  const MassedSpan closed = span_of(world, cable, index(link) % cable.links.size());
+  for (Share& share : shares) {
+    share.after = mass_of(share);
+    share.z = merged          ? left(Vec2(x - at(world.position, share.body)))
+              : share.is_head ? closed.z_b
+                              : closed.z_a;
+  }
+  // What a rim gives off as the cable straightens goes to the other neighbour, as it moves.
+  double passed = node_mass;
+  Vec2 momentum = node_mass * u;
+  for (const Share& share : shares) {
+    if (share.gained() >= 0.0) continue;
+    passed -= share.gained();
+    momentum -= share.gained() * at_place(share.velocity, share.z);
+  }
+  double energy = 0.5 * node_mass * u.squaredNorm();  // J, more than afterwards
+  for (Share& share : shares) {
+    const Vec2 joined =
+        share.gained() < 0.0 ? at_place(share.velocity, share.z) : Vec2(momentum / passed);
+    share.impulse =
+        (share.before - share.after) * share.velocity + on_body(share.gained() * joined, share.z);
+    const BodyProperties& properties = at(world.bodies, share.body);
+    Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
+    add_moments(own, properties.mass, Vec2::Zero(), inertia_of(properties));
+    const Vector3d now =
+        share.velocity + inverse_for(properties, own + share.after) * share.impulse;
+    energy += 0.5 * share.velocity.dot((own + share.before) * share.velocity);
+    energy -= 0.5 * now.dot((own + share.after) * now);
+  }
+  for (const Share& share : shares) {
+    const bool keeps = energy >= 0.0 && share.sleeve < 0;
+    const Vector3d joins = on_body(share.joins * (u - at_place(share.velocity, share.z)), share.z);
+    push(world, share.body, at(carried, share.body), sleeves, share.sleeve,
+         keeps ? share.impulse : joins);
+    if (!sleeves.empty()) find_carried(world, carried, sleeves);  // with new velocities
+  }
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/strung.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/joins.h"
+#include "sim/cable/links.h"
+#include "sim/cable/mass.h"
+#include "sim/compound.h"
+#include "sim/hanging.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+// Of the distance of nodes: the header has the reasons.
+constexpr double taken_in = 1e-2;
+constexpr double given_off = 0.25;
+
+/// m of material between two nodes.
+double spacing(const CableState& cable) {
+  return cable.length / (cable.closed ? cable.nodes : cable.nodes + 1);
+}
+
+/// Of the material at that share (0..1) of the way between two ends, where the cable has this
+/// direction (m/s).
+Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Vec2& direction) {
+  return (1.0 - share) * tail.carried + share * head.carried +
+         ((1.0 - share) * tail.along + share * head.along) * direction;
+}
+
+/// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts
+/// it.
+void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
+  const int tail = previous_link(cable, static_cast<int>(segment));
+  const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
+  Segment& old = cable.segments[segment];
+  const double share = (material - begins) / old.rest_length;
+  at(world.position, body) = old.tail + share * (old.head - old.tail);
+  at(world.velocity, body) =
+      velocity_between(flow_at(world, cable, segment, false), flow_at(world, cable, segment, true),
+                       share, old.direction);
+  at(world.angular_velocity, body) = 0.0;
+  at(world.still_steps, body) = 0;
+  BodyProperties& properties = at(world.bodies, body);
+  properties.kind = BodyKind::free;
+  properties.outlined = true;
+
+  // As in insert_link: what closes a loop gets it last.
+  const bool seam = segment == 0;
+  const std::size_t position = seam ? cable.links.size() : segment;
+  Link link;
+  link.body = body;
+  link.material = material;
+  Segment arriving = old;
+  if (seam) arriving.alpha = old.alpha + cable.turning;
+  const auto place = static_cast<std::ptrdiff_t>(position);
+  cable.links.insert(cable.links.begin() + place, link);
+  cable.segments.insert(cable.segments.begin() + place, arriving);
+  for (const std::size_t part : {position, seam ? 0 : position + 1}) {
+    update_tangent(world, cable, part);
+    begin_here(cable.segments[part]);
+  }
+  count_changes(world, cable, 1);
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+/// Numbers of nodes, counted on round a loop.
+struct Numbers {
+  long first = 0, last = -1;
+};
+
+/// m, of node k: (k + 1) l in an open cable, (k + 1/2) l in a loop, in any of its rounds.
+double place_of_node(const CableState& cable, long k) {
+  return spacing(cable) * (static_cast<double>(k) + (cable.closed ? 0.5 : 1.0));
+}
+
+/// Those from one material coordinate (m) to another.
+Numbers nodes_within(const CableState& cable, double from, double to) {
+  const double first = place_of_node(cable, 0), l = spacing(cable);
+  const Numbers on{static_cast<long>(std::ceil((from - first) / l)),
+                   static_cast<long>(std::floor((to - first) / l))};
+  if (cable.closed) return on;
+  return {std::max(on.first, 0L), std::min(on.last, static_cast<long>(cable.nodes) - 1)};
+}
+
+/// The body that node k is.
+int body_of_node(const CableState& cable, long k) {
+  const long nodes = cable.nodes;
+  return cable.first_node + static_cast<int>(((k % nodes) + nodes) % nodes);
+}
+
+/// Those on a segment that are at least `margin` (m of material) away from its ends.
+Numbers nodes_on(const World& world, const CableState& cable, std::size_t segment, double margin) {
+  const Segment& span = cable.segments[segment];
+  if (span.pinched || !(span.rest_length > 2.0 * margin)) return {};
+  const int tail = previous_link(cable, static_cast<int>(segment));
+  const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
+  return nodes_within(cable, begins + margin, begins + span.rest_length - margin);
+}
+
+void string_all(World& world, CableState& cable, double margin) {
+  for (std::size_t segment = cable.segments.size(); segment-- > first_segment(cable);) {
+    const Numbers on = nodes_on(world, cable, segment, margin);
+    // From the last on: then each is put into what is left before it.
+    std::size_t s = segment;
+    for (long k = on.last; k >= on.first; --k) {
+      const std::size_t position = s == 0 ? cable.links.size() : s;
+      put_in(world, cable, s, body_of_node(cable, k), place_of_node(cable, k));
+      s = position;
+    }
+  }
+}
+
+/// Turns all that follows a node by so many whole turns, and what it rolls on with it: nothing
+/// changes but how turns are counted.
+void count_turns_off(CableState& cable, int link, double turns) {
+  const double angle = 2.0 * std::numbers::pi * turns;
+  for (std::size_t i = index(link) + 1; i < cable.links.size(); ++i) {
+    cable.segments[i].alpha -= angle;
+    cable.segments[i].alpha_before -= angle;
+    cable.links[i].material += cable.links[i].signed_radius() * angle;
+  }
+  if (cable.closed) cable.turning -= angle;
+}
+
+/// What is free of a cable between two links that are no nodes: its segments.
+std::vector<std::size_t> spans_from(const CableState& cable, int link) {
+  std::vector<std::size_t> spans;
+  for (int next = next_link(cable, link); next >= 0; next = next_link(cable, next)) {
+    spans.push_back(index(next));
+    if (!is_strung(cable, at(cable.links, next))) break;
+  }
+  return spans;
+}
+
+HangingEnd end_of(const World& world, const CableState& cable, int link, std::size_t segment) {
+  const Link& held = at(cable.links, link);
+  return {link_centre(world, held), held.signed_radius(), cable.segments[segment].direction};
+}
+
+/// Hangs pieces of these lengths (m) between two ends. What the nodes beside these weigh follows
+/// from how much of the pieces lies on rims then: found by turns.
+Hanging hang(const CableState& cable, const std::vector<double>& lengths, const HangingEnd& tail,
+             const HangingEnd& head, const Vec2& gravity) {
+  std::vector<double> now = lengths;
+  for (double last_change = infinity;;) {
+    std::vector<Vec2> weights;
+    for (std::size_t k = 0; k + 1 < now.size(); ++k) {
+      weights.push_back(0.5 * cable.density * (now[k] + now[k + 1]) * gravity);
+    }
+    Hanging hanging = hang(weights, lengths, tail, head);
+    const double change = std::max(std::abs(hanging.lengths.front() - now.front()),
+                                   std::abs(hanging.lengths.back() - now.back()));
+    if (!(change < 0.5 * last_change)) return hanging;  // by round-off alone, or no better
+    last_change = change;
+    now.front() = std::max(hanging.lengths.front(), 0.0);
+    now.back() = std::max(hanging.lengths.back(), 0.0);
+  }
+}
+
+/// Where a piece of that length (m) and direction begins at a rolling link, with `leaves`, or else
+/// ends there: takes its node in that is to lie on the rim, or the link off that it lifts the cable
+/// from. Whether it has.
+bool give_way(World& world, CableState& cable, int link, bool leaves, double length,
+              const Vec2& direction) {
+  const Link& rim = at(cable.links, link);
+  if (rim.orientation == 0) return false;
+  const int segment = leaves ? next_link(cable, link) : link;
+  const Vec2& before = at(cable.segments, segment).direction;
+  const double turned = std::atan2(cross(before, direction), before.dot(direction));
+  if (rim.wrap + (leaves ? 1 : -1) * rim.orientation * turned < 0.0 &&
+      !needed(cable, index(link))) {
+    remove_link(world, cable, link);
+    return true;
+  }
+  if (length > taken_in * spacing(cable)) return false;
+  take_in_node(world, cable, leaves ? segment : previous_link(cable, link));
+  return true;
+}
+
+/// Hangs what is free after a link, up to the next that is no node, with the motion that its ends
+/// give it; or does first what it asks of these ends. Whether it has done that.
+bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
+  const std::vector<std::size_t> spans = spans_from(cable, link);
+  if (spans.size() < 2) return false;
+  const std::size_t first = spans.front(), last = spans.back();
+  std::vector<double> lengths;
+  for (const std::size_t s : spans) lengths.push_back(cable.segments[s].rest_length);
+  const Vec2 d = cable.segments[last].head - cable.segments[first].tail;
+  const double free = std::accumulate(lengths.begin(), lengths.end(), 0.0);
+  if (free - d.norm() <= material_rounding(cable)) return false;
+  const Hanging hanging = hang(cable, lengths, end_of(world, cable, link, first),
+                               end_of(world, cable, static_cast<int>(last), last), gravity);
+  if (give_way(world, cable, link, true, hanging.lengths.front(), hanging.directions.front()))
+    return true;
+  if (give_way(world, cable, static_cast<int>(last), false, hanging.lengths.back(),
+               hanging.directions.back()))
+    return true;
+  const Flow tail = flow_at(world, cable, first, false), head = flow_at(world, cable, last, true);
+  Vec2 place = hanging.tail;
+  double passed = 0.0;
+  for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
+    place += hanging.lengths[k] * hanging.directions[k];
+    passed += lengths[k];
+    const Vec2 along = (hanging.directions[k] + hanging.directions[k + 1]).normalized();
+    const int node = cable.links[spans[k]].body;
+    at(world.position, node) = place;
+    at(world.velocity, node) = velocity_between(tail, head, passed / free, along);
+  }
+  for (const std::size_t s : spans) {
+    update_tangent(world, cable, s);
+    begin_here(cable.segments[s]);
+  }
+  update_wraps_and_rest_lengths(world, cable);
+  return false;
+}
+
+}  // namespace
+
+void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
+  // Without gravity it is at rest in any shape.
+  const Vec2 g = gravity.norm() > 0.0 ? gravity : Vec2(0.0, -1.0);
+  string_all(world, cable, taken_in * spacing(cable));
+  // What hangs lays nodes on rims and takes others off; mostly few.
+  bool changed = true;
+  for (int turn = 0; changed && turn < 4 * cable.nodes; ++turn) {
+    changed = false;
+    for (int i = 0; !changed && index(i) < cable.links.size(); ++i) {
+      if (!is_strung(cable, at(cable.links, i))) changed = hang_free(world, cable, i, g);
+    }
+    if (changed || !has_given_off(world, cable)) continue;
+    give_off_nodes(world, cable);
+    changed = true;
+  }
+  carry_wound_nodes(world, cable);
+}
+
+bool has_given_off(const World& world, const CableState& cable) {
+  const double margin = given_off * spacing(cable);
+  for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+    const Numbers on = nodes_on(world, cable, s, margin);
+    if (on.first <= on.last) return true;
+  }
+  return false;
+}
+
+void give_off_nodes(World& world, CableState& cable) {
+  string_all(world, cable, given_off * spacing(cable));
+}
+
+bool is_within_end(const World& world, const CableState& cable, const Link& node, int body) {
+  if (cable.closed) return false;
+  const BodyProperties& outline = at(world.bodies, body);
+  const auto reaches = [&](const Link& end, double left) {
+    return end.body >= 0 && mover_of(world, end.body) == mover_of(world, body) &&
+           left <= end.offset.norm() + outline.radius + outline.seat.norm() + cable.half_width;
+  };
+  return reaches(cable.links.front(), node.material) ||
+         reaches(cable.links.back(), cable.length - node.material);
+}
+
+bool lies_beside(const World& world, int node, int body) {
+  const auto holds_node = [&world, node](int c) {
+    const CableState& cable = at(world.cables, c);
+    return cable.first_node <= node && node < cable.first_node + cable.nodes;
+  };
+  const auto found = std::find_if(world.strung.begin(), world.strung.end(), holds_node);
+  if (found == world.strung.end()) return false;
+  const CableState& cable = at(world.cables, *found);
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    if (at(cable.links, i).body != node) continue;
+    for (const int beside : {previous_link(cable, i), next_link(cable, i)}) {
+      if (beside >= 0 && at(cable.links, beside).body == body) return true;
+    }
+    return is_within_end(world, cable, at(cable.links, i), body);
+  }
+  return false;
+}
+
+void carry_wound_nodes(World& world, const CableState& cable) {
+  const auto is_wound = [&world](int body) { return !at(world.bodies, body).outlined; };
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    const Link& link = cable.links[i];
+    const double angle = body_angle(world, link);
+    const double leaves = head_material(cable, i, angle);
+    if (link.orientation != 0) {
+      const double meets = tail_material(cable, i, angle), alpha = cable.segments[i].alpha;
+      const Numbers on = nodes_within(cable, meets, leaves);
+      for (long k = on.first; k <= on.last; ++k) {
+        const int node = body_of_node(cable, k);
+        const double turned_by = (place_of_node(cable, k) - meets) / link.signed_radius();
+        const Vec2 e = turned(Vec2(0.0, 1.0), alpha + turned_by);
+        if (!is_wound(node)) continue;
+        at(world.position, node) = tangent_point(link_centre(world, link), link.signed_radius(), e);
+      }
+    }
+    const int next = next_link(cable, static_cast<int>(i));
+    if (next < 0) continue;
+    const Segment& span = at(cable.segments, next);
+    const Numbers on = nodes_within(cable, leaves, leaves + span.rest_length);
+    for (long k = on.first; k <= on.last; ++k) {
+      const int node = body_of_node(cable, k);
+      const double share = (place_of_node(cable, k) - leaves) / span.rest_length;
+      if (!is_wound(node) || !(span.rest_length > 0.0)) continue;
+      at(world.position, node) = span.tail + share * (span.head - span.tail);
+    }
+  }
+}
+
+double left_until_taken_in(const CableState& cable, int link) {
+  double least = infinity;
+  const auto look = [&](int segment, int beyond) {
+    if (at(cable.links, beyond).orientation == 0) return;
+    const Segment& span = at(cable.segments, segment);
+    least = std::min({least, span.rest_length, span.length});
+  };
+  look(link, previous_link(cable, link));
+  const int after = next_link(cable, link);
+  look(after, after);
+  return least - taken_in * spacing(cable);
+}
+
+void take_in_node(World& world, CableState& cable, int link) {
+  const int body = at(cable.links, link).body;
+  const double bend = alpha_head(cable, index(link)) - at(cable.segments, link).alpha;
+  const double turns = std::round(bend / (2.0 * std::numbers::pi));
+  if (turns != 0.0) count_turns_off(cable, link, turns);
+  leave_node(world, cable, link);
+  BodyProperties& properties = at(world.bodies, body);
+  properties.kind = BodyKind::fixed;
+  properties.outlined = false;
+  at(world.velocity, body) = Vec2::Zero();
+}
+
+double wave_at_node(const World& world, const CableState& cable, int link) {
+  const int after = next_link(cable, link);
+  double material = 0.0, stiffness = 0.0, turning = 0.0;  // m, N/m, rad/s
+  const auto add = [&](int segment, int beyond) {
+    const Segment& span = at(cable.segments, segment);
+    material += std::max(span.rest_length, 0.0);
+    const double neighbours = is_strung(cable, at(cable.links, beyond)) ? 2.0 : 1.0;
+    if (span.tension > 0.0) stiffness += neighbours * span.tension / span.length;
+    if (at(cable.links, beyond).orientation == 0) return;
+    const Vec2 apart =
+        velocity_of(world, at(cable.links, link)) - velocity_of(world, at(cable.links, beyond));
+    turning = std::max(turning, std::abs(cross(span.direction, apart)) / span.length);
+  };
+  add(link, previous_link(cable, link));
+  add(after, after);
+  return std::max(stiffness / (0.5 * cable.density * material), turning * turning);
+}
+
+}  // namespace pinchlab

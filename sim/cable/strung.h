@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Nodes that are strung on a cable with mass which runs over bodies, so that it hangs between them.
+//
+// Between two bodies such a cable is a chain of straight spans from node to node, each of them a
+// span with mass like any other (mass.h): half of its mass moves with either end. A node is a link
+// of its cable, of radius 0, on a body of its own that has no mass but the cable's. It is a place
+// of the material, l = (length of the cable) / (nodes + 1) after the one before, and stays there.
+// Where that place comes to lie on a rim, the rim takes the node in; where the rim gives the
+// material off again, the node comes back.
+//
+// Taken in. A node with d of cable left to a rim swings faster and faster as d falls, with
+// omega^2 = T / m d under the tension T, for which intervals are divided (waves.h); over all of d
+// that is 2 sqrt(T l / m) / v radians, v the speed at which it comes: no more than twice what a
+// node in the middle of the cable swings by meanwhile. A node that nothing pulls may also come down
+// on the rim with cable to spare. So a node is taken in where of its cable, or of the straight line
+// to the rim, a hundredth of l is left: an event, like others located in time. Its neighbour's span
+// then leaves the rim where it is a tangent, by the angle a = W / T (W the node's weight) away. For
+// this the node rises by R a^2 / 2 + a d to that tangent, and T R a^3 / 6 + T d a^2 / 2 is lost as
+// it is pulled tight: of second order in l. Momentum is kept (joins.h), energy falls.
+//     Given off. Where a rim has given off l / 4 beyond a node's place, it comes back there, on a
+// straight span, where halves of spans' masses at either end have the weight that they have with
+// it. It moves as its place of the span did: momentum is kept, energy lost, none is made.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// Whether a link is a node of its cable.
+inline bool is_strung(const CableState& cable, const Link& link) {
+  return link.body >= cable.first_node && link.body < cable.first_node + cable.nodes;
+}
+
+/// Strings a cable's nodes on its spans as the cable lies at the start, and hangs those that have
+/// slack as they hang at rest (hanging.h).
+void string_nodes(World& world, CableState& cable, const Vec2& gravity);
+
+/// Whether rims have given off nodes; and puts these back.
+bool has_given_off(const World& world, const CableState& cable);
+void give_off_nodes(World& world, CableState& cable);
+
+/// Places the nodes that have been taken in where their material is, on rims, for tables and
+/// pictures: nothing else asks where they are.
+void carry_wound_nodes(World& world, const CableState& cable);
+
+/// Whether a node has no more cable to an end that the body holds than the body reaches. Neither it
+/// nor the spans beside it touch that body.
+bool is_within_end(const World& world, const CableState& cable, const Link& node, int body);
+
+/// Whether it is beside a body along its cable, which lies on that body then, or within such an
+/// end. They do not touch.
+bool lies_beside(const World& world, int node, int body);
+
+/// What is left between a node and a rim beside it until the rim takes it in (m); infinity: there
+/// is none.
+double left_until_taken_in(const CableState& cable, int link);
+
+/// Takes a node in.
+void take_in_node(World& world, CableState& cable, int link);
+
+/// omega^2 of waves.h (1/s^2), at most: of a node with its neighbours, under the tensions beside
+/// it, and of the turning of its spans that end on rims.
+double wave_at_node(const World& world, const CableState& cable, int link);
+
+}  // namespace pinchlab

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cables with mass that run over bodies and hang between them: nodes that rims take in and give
+// off.
+
+#include "sim/cable/strung.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
+#include "sim/cable/sleeve.h"
+#include "sim/make_world.h"
+#include "sim/mirror.h"
+#include "sim/nodes.h"
+#include "sim/scene_error.h"
+#include "tests/sim/course.h"
+#include "tests/sim/random_scene.h"
+#include "tests/sim/same_state.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+using std::numbers::pi;
+
+Scene with_nodes(Scene scene, int nodes) {
+  scene.cables[0].nodes = nodes;
+  spread_nodes(scene);
+  return scene;
+}
+
+int live_nodes(const World& world) {
+  const CableState& cable = world.cables[0];
+  return static_cast<int>(
+      std::count_if(cable.links.begin(), cable.links.end(),
+                    [&cable](const Link& link) { return is_strung(cable, link); }));
+}
+
+constexpr double reach = 2.0, drum_radius = 0.3, half_width = 0.02;  // m
+
+/// A rope between two drums that stand, 2 `reach` apart, to whose rims it is fastened.
+Scene between_drums(double slack, int nodes, int steps) {
+  Scene scene;
+  scene.steps_per_frame = steps;
+  const double rim = drum_radius + half_width;
+  for (int i = 0; i < 2; ++i) {
+    const double side = i == 0 ? -1.0 : 1.0;
+    scene.bodies.push_back(
+        body(i == 0 ? "left" : "right", BodyKind::fixed, side * reach, 0.0, drum_radius));
+  }
+  scene.cables.push_back(cable(Attachment{0, {-rim, 0.0}}, {{0, -1, 0}, {1, -1, 0}},
+                               Attachment{1, {rim, 0.0}}, half_width));
+  scene.cables[0].slack = slack;
+  scene.cables[0].mass_per_metre = 1.5;
+  return with_nodes(scene, nodes);
+}
+
+double lowest(const World& world, double from, double to) {
+  double y = infinity;
+  const CableState& cable = world.cables[0];
+  for (const Link& link : cable.links) {
+    if (!is_strung(cable, link)) continue;
+    const double x = world.position[static_cast<std::size_t>(link.body)].x();
+    if (x < from || x > to) continue;
+    y = std::min(y, world.position[static_cast<std::size_t>(link.body)].y());
+  }
+  return y;
+}
+
+/// The lowest point of a catenary that leaves two discs as their tangent, of half the length
+/// `reach` + slack / 2 less what lies on a disc, and its tension there over the weight of a metre.
+struct Catenary {
+  double low, a;
+};
+Catenary catenary(double slack) {
+  // With the slope tan f at its ends: x = reach - R sin f, a sinh(x / a) = a tan f = length - R f.
+  const double rim = drum_radius + half_width;
+  double below = 1e-6, above = 1.5;
+  const auto excess = [&](double f) {
+    const double x = reach - rim * std::sin(f), a = x / std::asinh(std::tan(f));
+    return a * std::tan(f) - (reach + 0.5 * slack - rim * f);
+  };
+  for (int k = 0; k < 200; ++k) {
+    const double f = 0.5 * (below + above);
+    (excess(f) < 0.0 ? below : above) = f;
+  }
+  const double f = below, a = (reach - rim * std::sin(f)) / std::asinh(std::tan(f));
+  return {rim * std::cos(f) - a * (std::cosh(std::asinh(std::tan(f))) - 1.0), a};
+}
+
+TEST(Strung, HangsAtRestAsACatenaryThatLeavesDrums) {
+  for (const double slack : {0.05, 0.4}) {
+    for (const int nodes : {19, 39, 79}) {
+      Scene scene = between_drums(slack, nodes, 4);
+      World world = make_world(scene, measured());
+      const Catenary exact = catenary(slack);
+      // A node in the middle is lower than the curve, a level piece higher: by l^2 / 8 a at most.
+      const double l = world.cables[0].length / (nodes + 1), most = l * l / (8.0 * exact.a);
+      EXPECT_NEAR(lowest(world, -1.0, 1.0), exact.low, 2.0 * most) << slack << " " << nodes;
+      const std::vector<Vec2> start = world.position;
+      run(scene, world, 240);
+      double moved = 0.0;
+      for (std::size_t b = 0; b < start.size(); ++b) {
+        moved = std::max(moved, (world.position[b] - start[b]).norm());
+      }
+      EXPECT_LT(moved, 1e-9) << slack << " " << nodes;
+      double tension = infinity;
+      for (const Segment& span : world.cables[0].segments) {
+        if (span.length > 0.0) tension = std::min(tension, span.tension);
+      }
+      const double now = std::abs(tension / (1.5 * g * exact.a) - 1.0);
+      EXPECT_LT(now, 0.8 / (nodes * nodes)) << slack << " " << nodes;
+    }
+  }
+}
+
+/// A belt on two drums that turn at `speed` (m/s along their rims).
+Scene belt(double speed, int nodes, int steps) {
+  Scene scene;
+  scene.steps_per_frame = steps;
+  for (int i = 0; i < 2; ++i) {
+    scene.bodies.push_back(body(i == 0 ? "left" : "right", BodyKind::fixed_axle,
+                                i == 0 ? -1.5 : 1.5, 0.0, drum_radius, 1.0));
+    scene.bodies.back().driven_angular_velocity = speed / (drum_radius + half_width);
+  }
+  Cable loop = cable({}, {{0, 1, 0}, {1, 1, 0}}, {}, half_width);
+  loop.closed = true;
+  loop.slack = 0.3;
+  loop.mass_per_metre = 1.0;
+  scene.cables.push_back(loop);
+  return with_nodes(scene, nodes);
+}
+
+// A chain that runs along itself keeps its shape, at any speed: T grows by rho v^2 (Routh 1892, *A
+// treatise on the dynamics of a system of rigid bodies*, II, 597). Here it comes off one drum and
+// goes on to the other.
+TEST(Strung, ABeltHangsTheSameHoweverFastItRuns) {
+  const auto tension_below = [](const World& world) {
+    const std::vector<Segment>& spans = world.cables[0].segments;
+    return std::min_element(spans.begin(), spans.end(),
+                            [](const Segment& p, const Segment& q) {
+                              return (p.tail + p.head).y() < (q.tail + q.head).y();
+                            })
+        ->tension;
+  };
+  const Scene at_rest = belt(0.0, 60, 4);
+  World still = make_world(at_rest, measured());
+  run(at_rest, still, 1);
+  const double low = lowest(still, -0.2, 0.2), tension = tension_below(still);
+  for (const double speed : {1.0, 4.0}) {
+    const Scene scene = belt(speed, 60, 4);
+    World world = make_world(scene, measured());
+    run(scene, world, 480);
+    // More than once round, and every node that has come off is on again.
+    EXPECT_GT(world.diagnostics.node_changes, speed * 2.0 / world.cables[0].length * 60.0);
+    EXPECT_NEAR(lowest(world, -0.2, 0.2), low, 5e-3) << speed;
+    EXPECT_NEAR(tension_below(world) - tension, speed * speed, 1.5) << speed;
+    EXPECT_LT(world.diagnostics.cable_length_error, 1e-11);
+  }
+}
+
+/// Two weights on a rope over two pulleys, which sags between them.
+Scene two_weights(int nodes, int steps) {
+  Scene scene;
+  scene.steps_per_frame = steps;
+  for (int i = 0; i < 2; ++i) {
+    scene.bodies.push_back(body(i == 0 ? "light" : "heavy", BodyKind::free, i == 0 ? -2.32 : 2.32,
+                                -1.5, 0.15, 6.0 + i));
+  }
+  for (int i = 0; i < 2; ++i) {
+    scene.bodies.push_back(body(i == 0 ? "left" : "right", BodyKind::fixed_axle,
+                                i == 0 ? -2.0 : 2.0, 0.0, drum_radius, 1.0));
+  }
+  scene.cables.push_back(cable(Attachment{0, {0.0, 0.12}}, {{2, -1, 0}, {3, -1, 0}},
+                               Attachment{1, {0.0, 0.12}}, half_width));
+  scene.cables[0].mass_per_metre = 1.5;
+  return with_nodes(scene, nodes);
+}
+
+double height_after(int nodes, int steps) {
+  const Scene scene = two_weights(nodes, steps);
+  World world = make_world(scene, measured());
+  run(scene, world, 90 * steps);
+  return world.position[0].y();
+}
+
+TEST(Strung, ConvergesWithStepsAndWithNodes) {
+  const double fine = height_after(40, 64);
+  for (const int steps : {1, 2, 4, 8, 16}) {
+    EXPECT_NEAR(height_after(40, steps), fine, 2e-5) << steps;
+  }
+  const double finest = height_after(180, 4);
+  EXPECT_NEAR(height_after(10, 4), finest, 2.5e-3);
+  EXPECT_NEAR(height_after(20, 4), finest, 8e-4);
+  EXPECT_NEAR(height_after(60, 4), finest, 1e-4);
+}
+
+// The hoist goes up and down again: what the pulleys have taken in they give off, and energy is
+// lost, but none is made.
+TEST(Strung, WhatRimsTakeInTheyGiveOffAgain) {
+  Scene scene = two_weights(40, 4);
+  World world = make_world(scene, measured());
+  const int at_start = live_nodes(world);
+  Workspace work;
+  double start = 0.0, gained = 0.0;
+  int fewest = at_start, changes = 0;
+  for (int i = 0; i < 60 * 4 * 2; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    if (i == 0) start = world.diagnostics.energy;
+    gained = std::max(gained, world.diagnostics.energy - start);
+    EXPECT_LT(world.diagnostics.cable_length_error, 1e-12);
+    EXPECT_LT(world.diagnostics.largest_stretch, 1e-6 * half_width);
+    fewest = std::min(fewest, live_nodes(world));
+    changes = static_cast<int>(world.diagnostics.node_changes);
+  }
+  EXPECT_GE(changes, 10);
+  EXPECT_GE(fewest, at_start - 4);
+  EXPECT_LT(gained, 1e-3);
+  EXPECT_EQ(world.diagnostics.fallbacks, 0);
+}
+
+/// In free flight: two bodies that a slack belt joins, and a third that runs into it.
+TEST(Strung, KeepsMomentum) {
+  double least = infinity;
+  for (const int steps : {4, 16, 64}) {
+    Scene scene;
+    scene.steps_per_frame = steps;
+    scene.gravity = Vec2::Zero();
+    scene.bodies.push_back(body("first", BodyKind::free, -0.6, 0.0, 0.2, 1.0));
+    scene.bodies.push_back(body("second", BodyKind::free, 0.6, 0.1, 0.25, 2.0));
+    scene.bodies.push_back(body("third", BodyKind::free, 0.0, 0.5, 0.1, 0.5));
+    scene.bodies[0].angular_velocity = 2.0;
+    scene.bodies[1].velocity = {0.4, 0.3};
+    scene.bodies[2].velocity = {0.2, -3.0};
+    Cable loop = cable({}, {{0, 1, 0}, {1, 1, 0}}, {}, 0.01);
+    loop.closed = true;
+    loop.mass_per_metre = 0.9;
+    scene.cables.push_back(loop);
+    scene = with_nodes(scene, 20);
+    World world = make_world(scene, measured());
+    Workspace work;
+    const auto momentum = [&] {
+      const Velocities now = velocities_now(scene, world, work);
+      std::vector<Eigen::Matrix3d> carried;
+      std::vector<Sleeve> sleeves;
+      find_carried(world, carried, sleeves);
+      Vec2 sum = Vec2::Zero();
+      for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+        const Eigen::Vector3d v(now.linear[b].x(), now.linear[b].y(), now.angular[b]);
+        sum += world.bodies[b].mass * v.head<2>() + (carried[b] * v).head<2>();
+      }
+      return sum;
+    };
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    const Vec2 first = momentum();
+    double most = 0.0;
+    for (int i = 0; i < 15 * steps; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      most = std::max(most, (momentum() - first).norm());
+    }
+    EXPECT_GT(world.diagnostics.node_changes, 0);
+    EXPECT_LT(most, 2e-2) << steps;
+    least = std::min(least, most);
+  }
+  EXPECT_LT(least, 2e-3);
+}
+
+// What hangs may have turned by whole turns about a node: then what follows has turned as often,
+// and when the node goes nothing that lies on a body may change by that.
+TEST(Strung, WholeTurnsAboutANodeWindNothingUp) {
+  const Scene scene = two_weights(40, 4);
+  World world = make_world(scene, measured());
+  CableState& rope = world.cables[0];
+  int node = 0;
+  while (rope.links[static_cast<std::size_t>(node)].body != 2) ++node;
+  ++node;  // the first on the free span
+  World turned = world;
+  CableState& other = turned.cables[0];
+  for (std::size_t i = static_cast<std::size_t>(node) + 1; i < other.links.size(); ++i) {
+    other.segments[i].alpha += 2.0 * pi;
+    other.links[i].material -= other.links[i].signed_radius() * 2.0 * pi;
+  }
+  update_wraps_and_rest_lengths(turned, other);
+  take_in_node(world, rope, node);
+  take_in_node(turned, other, node);
+  ASSERT_EQ(rope.links.size(), other.links.size());
+  for (std::size_t i = 0; i < rope.links.size(); ++i) {
+    EXPECT_NEAR(rope.links[i].wrap, other.links[i].wrap, 1e-12);
+    EXPECT_NEAR(rope.segments[i].rest_length, other.segments[i].rest_length, 1e-12);
+  }
+}
+
+// What the energy rises by is the swing of leapfrog's, and what nodes gain that are taken in where
+// a slack rope is bent much (strung.h). A rope that whips over a pulley on which it hardly lies may
+// be too long for a step.
+TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
+  int ran = 0, stretched = 0;
+  for (unsigned seed = 0; seed < 80; ++seed) {
+    for (const int steps : {1, 4, 16}) {
+      Scene scene = seed % 2 == 0 ? falling_on_rope(seed) : slipping_rope(seed);
+      if (scene.cables[0].axial_stiffness < infinity) continue;
+      scene.steps_per_frame = steps;
+      scene = with_nodes(scene, 12 + static_cast<int>(seed) % 20);
+      const Course course = run_measured(scene, 1.2);
+      const double w = scene.cables[0].half_width;
+      EXPECT_LE(course.gained, 5e-3 * course.at_play) << seed << ", " << steps;
+      EXPECT_LE(course.gap, 1e-6 * w) << seed << ", " << steps;
+      if (course.stretch > 1e-6 * w) ++stretched;
+      EXPECT_LE(course.stretch, w) << seed << ", " << steps;
+      ++ran;
+    }
+  }
+  EXPECT_GT(ran, 120);
+  EXPECT_LE(stretched, 1);
+}
+
+TEST(RandomStrung, AClearedWorkspaceChangesNoBit) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    const Scene scene = seed % 2 == 0 ? falling_on_rope(seed) : slipping_rope(seed);
+    EXPECT_TRUE(is_all_state(with_nodes(scene, 20), Method::pinch, 200)) << seed;
+  }
+}
+
+// Events that take effect at the steps follow no node to a rim: there the rope is straight.
+TEST(Strung, IsStraightWhereEventsAreAtTheSteps) {
+  const Scene scene = two_weights(40, 4);
+  World world = make_world(scene, Method::cable);
+  EXPECT_EQ(live_nodes(world), 0);
+  run(scene, world, 60);
+  Scene straight = scene;
+  straight.cables[0].nodes = 0;
+  World other = make_world(straight, Method::cable);
+  run(straight, other, 60);
+  EXPECT_EQ(world.position[0], other.position[0]);
+}
+
+TEST(Strung, RefusesWhatItCannotHang) {
+  const auto refusal = [](auto change) -> std::string {
+    Scene scene = between_drums(0.4, 40, 4);
+    change(scene);
+    try {
+      make_world(scene, Method::pinch);
+    } catch (const SceneError& error) {
+      return error.place + ": " + error.message;
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal([](Scene&) {}), "");
+  EXPECT_NE(refusal([](Scene& s) {
+              s.bodies.push_back(body("in the way", BodyKind::fixed, 0.0, -0.4, 0.1));
+            }).find("as it hangs at the start the cable runs through body 'in the way'"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Scene& s) {
+              s.walls.push_back({Vec2(-3.0, -0.4), Vec2(3.0, -0.4), 0.5, 0.0});
+            }).find("as it hangs at the start the cable runs through wall 0"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
