@@ -209,8 +209,8 @@ struct Diagnostics {
       0;  // parts of steps (Events::located: steps) whose active set did not settle
   std::int64_t events = 0;        // located since the start
   std::int64_t intervals = 0;     // into which steps have been divided, since the start
-  std::int64_t node_changes = 0;  // of cables whose number of nodes adapts, since the start
-  double node_losses = 0.0;       // J, kinetic energy lost in these
+  std::int64_t node_changes = 0;  // of cables whose nodes come and go, since the start
+  double node_losses = 0.0;       // J, kinetic energy lost in these, of chains that adapt
   std::int64_t clusters = 0;      // steps with so many events that what came last did not rebound
 };
 

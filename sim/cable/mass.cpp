@@ -160,11 +160,20 @@ Ways ways_of(const BodyProperties& body) {
 
 namespace {
 
+/// In closed form, without pivots: the choice of these would depend on units.
 Eigen::Matrix3d inverse_on(const Ways& ways, const Eigen::Matrix3d& matrix) {
-  if (ways.cols() == 0) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> there =
       ways.transpose() * matrix * ways;
-  return ways * there.inverse() * ways.transpose();
+  switch (ways.cols()) {
+    case 0:
+      return Eigen::Matrix3d::Zero();
+    case 1:
+      return ways * ways.transpose() / there(0, 0);
+    case 2:
+      return ways * Eigen::Matrix2d(there).inverse() * ways.transpose();
+    default:
+      return ways * Eigen::Matrix3d(there).inverse() * ways.transpose();
+  }
 }
 
 }  // namespace

@@ -148,11 +148,9 @@ void adapt_nodes(const Scene& scene, World& world, Workspace& work, double time,
 /// those on rims.
 void give_off(const Scene& scene, World& world, Workspace& work, double time, StageTimes* times) {
   const int changes = world.changes;
-  double before = 0.0;
   for (const int c : world.strung) {
     CableState& cable = at(world.cables, c);
     if (is_idle(work.parts, index(c)) || !has_given_off(world, cable)) continue;
-    if (world.changes == changes) before = kinetic_energy(world);
     catch_up(scene, world, at(work.parts.list, at(work.parts.of_cable, c)), time, work);
     give_off_nodes(world, cable);
   }
@@ -169,7 +167,6 @@ void give_off(const Scene& scene, World& world, Workspace& work, double time, St
     apply_no_forces(scene, world, part, time, work);
     strike(scene, world, work, part, false);
   }
-  world.diagnostics.node_losses += before - kinetic_energy(world);
 }
 
 StepStatus fail_by_changes(World& world) {

@@ -169,6 +169,7 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     if (event.kind == EventKind::link_gone && is_strung(cable, at(cable.links, event.item))) {
       take_in_node(world, cable, event.item);
+      ++world.diagnostics.node_changes;
       work.broad_phase.boxes.clear();  // for bodies with other outlines
     } else if (event.kind == EventKind::link_gone) {
       const Link& link = at(cable.links, event.item);

@@ -180,8 +180,12 @@ void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d
   all.diagonal() += Eigen::Vector3d(kept * own.x(), kept * own.y(), own.z());
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
   Eigen::Matrix3d old = all;
-  old.diagonal() -= own.cwiseProduct(Eigen::Vector3d(linear.before, linear.before, angular.before));
-  all.diagonal() += own.cwiseProduct(Eigen::Vector3d(linear.after, linear.after, angular.after));
+  Eigen::Vector3d dragged = own;  // a node is the cable that it carries
+  if (body.node) dragged.head<2>().array() += at(s.carried, place)(0, 0);
+  old.diagonal() -=
+      dragged.cwiseProduct(Eigen::Vector3d(linear.before, linear.before, angular.before));
+  all.diagonal() +=
+      dragged.cwiseProduct(Eigen::Vector3d(linear.after, linear.after, angular.after));
   const Eigen::Matrix3d inverse = inverse_for(body, all);
   Eigen::Vector3d& free = at(s.free_velocity, place);
   Eigen::Vector3d given = Eigen::Vector3d::Zero();

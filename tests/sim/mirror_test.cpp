@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Population{"Discs", random_scene, 200}, Population{"Elastic", random_elastic, 60},
         Population{"SlippingElastic", slipping_elastic, 60}, Population{"Linkages", linkage, 60},
         Population{"Ropes", falling_on_rope, 60}, Population{"SlippingRopes", slipping_rope, 60},
-        Population{"Adapting", random_hanging, 20},
+        Population{"StrungRopes", strung_rope, 30}, Population{"Adapting", random_hanging, 20},
         Population{"OnPieces", [](int seed) { return random_on_pieces(seed, false); }, 40}),
     [](const auto& of) { return of.param.name; });
 
@@ -141,7 +141,7 @@ TEST(MirrorDemonstrations, ImageMovesAsTheImage) {
   for (const char* name :
        {"01-roll-over", "02-stack", "03-drop", "04-two-blocking", "05-notch", "06-windlass",
         "07-driven-roller", "08-driven-roller-weights", "more/10-drum", "more/11-chain",
-        "more/12-linkage", "more/13-car", "more/14-heavy-rope"}) {
+        "more/12-linkage", "more/13-car", "more/14-heavy-rope", "more/15-rope-way"}) {
     const Scene scene =
         read_scene_file(PINCHLAB_SOURCE_DIR "/demos/" + std::string(name) + ".json").scene;
     EXPECT_EQ(first_parted(scene, Method::pinch, scene.frame_count * scene.steps_per_frame), -1)

@@ -8,6 +8,7 @@
 #include "base/at.h"
 #include "demos/scenes/shape_scenes.h"
 #include "sim/joints.h"
+#include "sim/nodes.h"
 #include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
@@ -155,6 +156,15 @@ inline Scene slipping_rope(unsigned seed) {
     if (b.name.starts_with("weight") || what == 1) continue;
     b.cable_friction = what == 0 ? 0.0 : random.uniform(0.02, 0.5);
   }
+  return scene;
+}
+
+/// Either of them, inextensible, with nodes by which it hangs.
+inline Scene strung_rope(unsigned seed) {
+  Scene scene = seed % 2 == 0 ? falling_on_rope(seed) : slipping_rope(seed);
+  scene.cables[0].axial_stiffness = infinity;
+  scene.cables[0].nodes = 12 + static_cast<int>(seed) % 20;
+  spread_nodes(scene);
   return scene;
 }
 

@@ -22,10 +22,10 @@ namespace pinchlab::testing {
 namespace {
 
 const std::vector<std::string> demonstrations = {
-    "01-roll-over",  "02-stack",          "03-drop",          "04-two-blocking",
-    "05-notch",      "06-windlass",       "07-driven-roller", "08-driven-roller-weights",
-    "more/09-crate", "more/10-drum",      "more/11-chain",    "more/12-linkage",
-    "more/13-car",   "more/14-heavy-rope"};
+    "01-roll-over",  "02-stack",           "03-drop",          "04-two-blocking",
+    "05-notch",      "06-windlass",        "07-driven-roller", "08-driven-roller-weights",
+    "more/09-crate", "more/10-drum",       "more/11-chain",    "more/12-linkage",
+    "more/13-car",   "more/14-heavy-rope", "more/15-rope-way"};
 
 Scene demonstration(const std::string& name) {
   return read_scene_file(PINCHLAB_SOURCE_DIR "/demos/" + name + ".json").scene;
