@@ -177,6 +177,7 @@ World make_world(const Scene& scene, Configuration configuration) {
   if (string_cables(scene, world)) {
     work = {};  // nothing is known of nodes
     detect(scene, world, work);
+    refuse_what_cannot_hang(scene, world);
     refuse_hanging_into_others(scene, world, work.broad_phase);
   }
   begin_slip(scene, world);

@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/strung.h"
+#include "sim/compound.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
@@ -161,6 +162,61 @@ void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size
                    fmt::format("pieces of {} between nodes are no longer than the cable is wide; "
                                "at most {} nodes fit",
                                in_mm(piece), std::max(most, 0)));
+}
+
+namespace {
+
+/// Whether a link lets no cable through, and stands.
+bool holds_fast(const World& world, const Link& link) {
+  if (link.body < 0) return true;
+  const BodyProperties& body = at(world.bodies, mover_of(world, link.body));
+  return is_static(body) && (link.orientation == 0 || body.cable_friction == infinity);
+}
+
+/// Whether its circle stands.
+bool has_still_centre(const World& world, const Link& link) {
+  if (link.body < 0) return true;
+  const BodyProperties& body = at(world.bodies, mover_of(world, link.body));
+  return is_static(body) || (!can_move(body) && is_central(link));
+}
+
+}  // namespace
+
+void refuse_what_cannot_hang(const Scene& scene, const World& world) {
+  constexpr double rounding = 1e-9;  // of lengths between places that are decimal figures
+  for (const int c : world.strung) {
+    const CableState& cable = at(world.cables, c);
+    if (at(scene.cables, c).axial_stiffness < infinity) continue;
+    const int count = static_cast<int>(cable.links.size());
+    for (int i = 0; i < count; ++i) {
+      if (!holds_fast(world, at(cable.links, i))) continue;
+      // From there on as far as nothing gives: over circles that stand, straight between them.
+      bool hangs = false;
+      int from = i, next = next_link(cable, i);
+      double material = 0.0;
+      for (int k = 0; next >= 0 && k < count; ++k, next = next_link(cable, next)) {
+        material += at(cable.segments, next).rest_length;
+        if (is_strung(cable, at(cable.links, next))) continue;
+        const int first = next_link(cable, from);
+        const Vec2 d = at(cable.segments, next).head - at(cable.segments, first).tail;
+        const double across = std::abs(cross(d, scene.gravity));
+        hangs = hangs || (first != next && across > rounding * d.norm() * scene.gravity.norm());
+        const bool straight = material - d.norm() <= rounding * d.norm();
+        if (!straight || !has_still_centre(world, at(cable.links, next))) break;
+        if (hangs && holds_fast(world, at(cable.links, next))) {
+          throw SceneError(
+              pointer("cables", index(c)) + "/slack_m",
+              fmt::format("between {} and {}, which hold it fast, a cable with mass hangs, and no "
+                          "tension bears its weight where it is only as long as its way; give it "
+                          "slack or an axial stiffness, or leave out its nodes",
+                          name_of_body(scene, at(cable.links, i).body),
+                          name_of_body(scene, at(cable.links, next).body)));
+        }
+        from = next;
+        material = 0.0;
+      }
+    }
+  }
 }
 
 void refuse_hanging_into_others(const Scene& scene, const World& world, const BroadPhase& broad) {

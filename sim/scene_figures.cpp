@@ -272,9 +272,24 @@ void refuse_impossible_bend(const Scene& scene, std::size_t c, const Place& plac
          place, "it bends against a cable that is no piece that goes on from its node");
 }
 
+/// Nodes that are strung on a cable (spread_nodes).
+void refuse_impossible_strung_nodes(const Scene& scene, const Cable& cable, const Place& place) {
+  if (cable.first_node == -1) return;
+  bool are_nodes = cable.mass_per_metre > 0.0 && cable.nodes > 0 && cable.first_node >= 0 &&
+                   index(cable.first_node) + index(cable.nodes) <= scene.bodies.size();
+  for (int k = 0; are_nodes && k < cable.nodes; ++k) {
+    const Body& node = at(scene.bodies, cable.first_node + k);
+    are_nodes = node.node && node.kind == BodyKind::fixed && !node.outlined;
+  }
+  refuse(!are_nodes, place,
+         "its nodes are not in the scene, one after another, as spread_nodes "
+         "leaves them");
+}
+
 void refuse_impossible_cable(const Scene& scene, std::size_t c) {
   const Cable& cable = scene.cables[c];
   const Place place{"cables", static_cast<int>(c)};
+  refuse_impossible_strung_nodes(scene, cable, place);
   refuse_impossible_figures_of(cable, place);
   refuse_impossible_cable_mass(cable, place);
   refuse_impossible_course(scene, cable, place);

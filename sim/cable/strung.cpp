@@ -340,6 +340,22 @@ void take_in_node(World& world, CableState& cable, int link) {
   at(world.velocity, body) = Vec2::Zero();
 }
 
+void take_in_enclosed_nodes(World& world, CableState& cable) {
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    const Link& from = at(cable.links, i);
+    int next = next_link(cable, i), nodes = 0;
+    while (next >= 0 && is_strung(cable, at(cable.links, next)) && nodes < cable.nodes) {
+      next = next_link(cable, next);
+      ++nodes;
+    }
+    if (nodes == 0 || next < 0 || from.orientation == 0) continue;
+    if (at(cable.links, next).body != from.body || at(cable.links, next).orientation == 0) continue;
+    take_in_node(world, cable, next_link(cable, i));
+    ++world.diagnostics.node_changes;
+    i = -1;  // links have other numbers
+  }
+}
+
 double wave_at_node(const World& world, const CableState& cable, int link) {
   const int after = next_link(cable, link);
   double material = 0.0, stiffness = 0.0, turning = 0.0;  // m, N/m, rad/s

@@ -361,6 +361,7 @@ TEST(Strung, IsStraightWhereEventsAreAtTheSteps) {
   run(scene, world, 60);
   Scene straight = scene;
   straight.cables[0].nodes = 0;
+  straight.cables[0].first_node = -1;
   World other = make_world(straight, Method::cable);
   run(straight, other, 60);
   EXPECT_EQ(world.position[0], other.position[0]);
@@ -369,7 +370,7 @@ TEST(Strung, IsStraightWhereEventsAreAtTheSteps) {
 TEST(Strung, RefusesWhatItCannotHang) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = between_drums(0.4, 40, 4);
-    change(scene);
+    change(scene);  // its nodes follow its bodies: what is added comes behind them
     try {
       make_world(scene, Method::pinch);
     } catch (const SceneError& error) {
@@ -378,6 +379,22 @@ TEST(Strung, RefusesWhatItCannotHang) {
     return "";
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
+  const auto tighten = [](Scene& s) { s.cables[0].slack = 0.0; };
+  EXPECT_NE(refusal(tighten).find("between body 'left' and body 'right', which hold it fast"),
+            std::string::npos);
+  EXPECT_EQ(refusal([&](Scene& s) {
+              tighten(s);
+              s.bodies[1].kind = BodyKind::fixed_axle;
+            }),
+            "");
+  EXPECT_EQ(refusal([&](Scene& s) {
+              tighten(s);
+              s.gravity = Vec2::Zero();
+            }),
+            "");
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].nodes = 41; }).find("its nodes"), std::string::npos);
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].first_node = 1; }).find("its nodes"),
+            std::string::npos);
   EXPECT_NE(refusal([](Scene& s) {
               s.bodies.push_back(body("in the way", BodyKind::fixed, 0.0, -0.4, 0.1));
             }).find("as it hangs at the start the cable runs through body 'in the way'"),
