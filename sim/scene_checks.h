@@ -35,8 +35,8 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
 /// More nodes than a cable of that length has room for.
 void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size_t number);
 
-/// Cables with mass and nodes that are straight between what holds them fast: no tension bears their
-/// weight.
+/// Cables with mass and nodes that are straight between what holds them fast: no tension bears
+/// their weight.
 void refuse_what_cannot_hang(const Scene& scene, const World& world);
 
 /// Cables with mass and nodes that hang into what they do not run over.
