@@ -193,8 +193,17 @@ void leave_node(World& world, CableState& cable, int link) {
   remove_link(world, cable, link);
   find_carried(world, carried, sleeves);
   const bool merged = cable.links.size() + 2 == links;  // the neighbours have become one
-  const MassedSpan closed = span_of(world, cable, index(link) % cable.links.size());
+  const int now_after = link % static_cast<int>(cable.links.size());
+  const bool first_gone = merged && index(link) == links - 1;
+  const int now_before =
+      first_gone ? static_cast<int>(cable.links.size()) - 1 : previous_link(cable, now_after);
+  const MassedSpan closed = span_of(world, cable, index(now_after));
+  bool alike = true;  // what was a sleeve is one, and what was none
   for (Share& share : shares) {
+    const int sleeve =
+        sleeve_at(world, sleeves, number, share.is_head && !merged ? now_after : now_before);
+    alike = alike && (sleeve < 0) == (share.sleeve < 0);
+    share.sleeve = sleeve;
     share.after = mass_of(share);
     share.z = merged          ? left(Vec2(x - at(world.position, share.body)))
               : share.is_head ? closed.z_b
@@ -223,7 +232,7 @@ void leave_node(World& world, CableState& cable, int link) {
     energy -= 0.5 * now.dot((own + share.after) * now);
   }
   for (const Share& share : shares) {
-    const bool keeps = energy >= 0.0 && share.sleeve < 0;
+    const bool keeps = alike && energy >= 0.0 && share.sleeve < 0;
     const Vector3d joins = on_body(share.joins * (u - at_place(share.velocity, share.z)), share.z);
     push(world, share.body, at(carried, share.body), sleeves, share.sleeve,
          keeps ? share.impulse : joins);
