@@ -137,8 +137,8 @@ struct alignas(64) CableState {
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
   // Of any:
   int first_node = -1, nodes = 0;  // bodies, of one with mass that runs over bodies: strung.h
-  double grip = 1.0;  // factor on the friction of its pinches
-  double bend = 0.0;  // N m a rad, between it and `bends_with`
+  double grip = 1.0;               // factor on the friction of its pinches
+  double bend = 0.0;               // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
@@ -256,7 +256,7 @@ struct World {
                                             // does not meet;
   std::vector<std::array<int, 2>> passing_at_ends;  // of these those for good, by make_world
   std::vector<int> strung;  // cables with mass that run over bodies and have nodes; by make_world
-  int changes = 0;  // links inserted and removed so far, of all cables
+  int changes = 0;          // links inserted and removed so far, of all cables
   Diagnostics diagnostics;
   std::string failure;  // where and when, if a step was not finite
 

@@ -36,8 +36,7 @@ Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Ve
          ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
-/// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts
-/// it.
+/// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
@@ -196,7 +195,8 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
   for (const std::size_t s : spans) lengths.push_back(cable.segments[s].rest_length);
   const Vec2 d = cable.segments[last].head - cable.segments[first].tail;
   const double free = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  if (free - d.norm() <= material_rounding(cable)) return false;
+  constexpr double nothing = 1e-12;  // of the length: so little slack asks for any tension
+  if (free - d.norm() <= nothing * cable.length) return false;
   const Hanging hanging = hang(cable, lengths, end_of(world, cable, link, first),
                                end_of(world, cable, static_cast<int>(last), last), gravity);
   if (give_way(world, cable, link, true, hanging.lengths.front(), hanging.directions.front()))
