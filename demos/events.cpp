@@ -16,6 +16,11 @@ void EventWatch::hold(const std::string& what, double time) {
   times.back().to = time;
 }
 
+void EventWatch::hold_pinch(const std::string& cable, int body, int other, double time) {
+  const std::string &a = at(scene_.bodies, body).name, &b = at(scene_.bodies, other).name;
+  hold(fmt::format("{} pinched between {} and {}", cable, std::min(a, b), std::max(a, b)), time);
+}
+
 void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
   const CableState& cable = world.cables[c];
   if (cable.joint == Joint::stop && cable.segments[1].tension > 0.0) {
@@ -38,8 +43,7 @@ void EventWatch::look_at_cable(const World& world, std::size_t c, double time) {
     // (A winch's rope ends on the body that it is wound on: no pinch.)
     const int from = cable.links[before].body;
     if (segment.pinched && link.body >= 0 && from >= 0 && from != link.body) {
-      const std::string &a = body(before), &b = body(i);
-      hold(fmt::format("{} pinched between {} and {}", name, std::min(a, b), std::max(a, b)), time);
+      hold_pinch(name, from, link.body, time);
     }
     // Slack that shows: by half a cable's width.
     if (!segment.pinched && segment.rest_length - segment.length > cable.half_width) {
@@ -58,7 +62,12 @@ std::string EventWatch::name_of_other(const World& world, const Contact& contact
 void EventWatch::look(const World& world, double time) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) look_at_cable(world, c, time);
   for (const Contact& contact : world.contacts) {
-    if (!contact.touching || contact.pinch_points > 0) continue;
+    const bool struck = contact.struck >= 0 && contact.struck == world.step - 1;
+    if (struck && contact.cable_between >= 0 && contact.b >= 0) {
+      hold_pinch(at(scene_.cables, contact.cable_between).name, contact.a, contact.b, time);
+      continue;
+    }
+    if (!struck && (!contact.touching || contact.pinch_points > 0)) continue;
     const std::string& a = at(scene_.bodies, contact.a).name;
     hold(fmt::format("{} touches {}", a, name_of_other(world, contact)), time);
   }

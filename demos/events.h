@@ -14,7 +14,7 @@ namespace pinchlab {
 /// Something that holds for a while.
 struct Event {
   std::string what;           ///< e.g. "rope pinched between drum and left"
-  double from = 0.0, to = 0;  ///< s, times of the first and the last step at whose end it holds
+  double from = 0.0, to = 0;  ///< s, ends of the first and the last step in which it holds
 };
 
 /// Watches a world step by step.
@@ -33,6 +33,7 @@ class EventWatch {
 
  private:
   void hold(const std::string& what, double time);
+  void hold_pinch(const std::string& cable, int body, int other, double time);
   std::string name_of_other(const World& world, const Contact& contact) const;
   void look_at_cable(const World& world, std::size_t cable, double time);
 

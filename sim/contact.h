@@ -40,14 +40,15 @@ struct Contact {
   double gap = 0.0;            // m, between the surfaces
   double target = 0.0;         // m, least gap allowed: the full width of a pinched cable, or 0
   int pinch_points = 0;        // cables (or turns of one) that share the contact's force
-  bool pinch_linked = false;   // a cable between the two takes the place of bare friction
+  int cable_between = -1;      // whose pinch takes the place of bare friction; -1: none
   double pressed_friction =
-      0.0;                  // coefficient between a cable that a polygon or layers hold fast and
-                            // what presses it on to them
-  int layers_cable = -1;    // whose layers are pressed, by whose thickness `target` grows; -1: none
-  bool touching = false;    // by the active set
-  bool rebounds = false;    // has just rebounded: bears nothing until it has parted; by impact
-  Slip slip = Slip::stick;  // of bare surfaces, by the active set
+      0.0;                // coefficient between a cable that a polygon or layers hold fast and
+                          // what presses it on to them
+  int layers_cable = -1;  // whose layers are pressed, by whose thickness `target` grows; -1: none
+  bool touching = false;  // by the active set
+  bool rebounds = false;  // has just rebounded: bears nothing until it has parted; by impact
+  std::int64_t struck = -1;    // step in which it last did
+  Slip slip = Slip::stick;     // of bare surfaces, by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
   Curvature curvature{};       // of its normal row, by note_curvatures

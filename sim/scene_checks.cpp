@@ -180,6 +180,36 @@ bool has_still_centre(const World& world, const Link& link) {
   return is_static(body) || (!can_move(body) && is_central(link));
 }
 
+/// The last link in succession on the rigid body that a link is on.
+int last_on_its_body(const World& world, const CableState& cable, int link) {
+  const int mover = mover_of(world, at(cable.links, link).body);
+  const auto is_on_it = [&](int i) {
+    const int body = i >= 0 ? at(cable.links, i).body : -1;
+    return body >= 0 && mover_of(world, body) == mover;
+  };
+  int last = link;
+  const std::size_t count = cable.links.size();
+  for (std::size_t k = 0; k < count && is_on_it(next_link(cable, last)); ++k) {
+    last = next_link(cable, last);
+  }
+  return last;
+}
+
+/// Whether a body on an axle, which cable runs on to and off again without slip at these links,
+/// can turn neither way where both sides are taut: what turns it one way tightens either.
+bool is_wedged(const World& world, const CableState& cable, int on, int off) {
+  const int mover = mover_of(world, at(cable.links, on).body), after = next_link(cable, off);
+  const BodyProperties& body = at(world.bodies, mover);
+  if (after < 0 || can_move(body) || !is_mobile(body) || body.cable_friction < infinity)
+    return false;
+  const Segment& in = at(cable.segments, on);
+  const Segment& out = at(cable.segments, after);
+  const Vec2& axle = at(world.position, mover);
+  const double torques =
+      cross(in.head - axle, -in.direction) * cross(out.tail - axle, out.direction);
+  return torques < 0.0;
+}
+
 }  // namespace
 
 void refuse_what_cannot_hang(const Scene& scene, const World& world) {
@@ -201,8 +231,12 @@ void refuse_what_cannot_hang(const Scene& scene, const World& world) {
         const Vec2 d = at(cable.segments, next).head - at(cable.segments, first).tail;
         const double across = std::abs(cross(d, scene.gravity));
         hangs = hangs || (first != next && across > rounding * d.norm() * scene.gravity.norm());
-        const bool straight = material - d.norm() <= rounding * d.norm();
-        if (!straight || !has_still_centre(world, at(cable.links, next))) break;
+        if (material - d.norm() > rounding * d.norm()) break;
+        if (!has_still_centre(world, at(cable.links, next))) {
+          const int off = last_on_its_body(world, cable, next);
+          if (!is_wedged(world, cable, next, off)) break;
+          next = off;
+        }
         if (hangs && holds_fast(world, at(cable.links, next))) {
           throw SceneError(
               pointer("cables", index(c)) + "/slack_m",

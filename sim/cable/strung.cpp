@@ -15,6 +15,7 @@
 #include "sim/compound.h"
 #include "sim/hanging.h"
 #include "sim/tangent.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 
@@ -96,11 +97,13 @@ int body_of_node(const CableState& cable, long k) {
   return cable.first_node + static_cast<int>(((k % nodes) + nodes) % nodes);
 }
 
-/// Those on a segment that are at least `margin` (m of material) away from its ends.
+/// Those on a segment that are at least `margin` (m of material) away from its ends; none where it
+/// lies along a body.
 Numbers nodes_on(const World& world, const CableState& cable, std::size_t segment, double margin) {
   const Segment& span = cable.segments[segment];
-  if (span.pinched || !(span.rest_length > 2.0 * margin)) return {};
   const int tail = previous_link(cable, static_cast<int>(segment));
+  if (span.pinched || !(span.rest_length > 2.0 * margin)) return {};
+  if (is_side(at(cable.links, tail), cable.links[segment])) return {};
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
   return nodes_within(cable, begins + margin, begins + span.rest_length - margin);
 }
@@ -165,23 +168,46 @@ Hanging hang(const CableState& cable, const std::vector<double>& lengths, const 
   }
 }
 
+/// The next corner, along the cable or against it, of the polygon that a link lies on.
+int next_corner(const World& world, const Link& link, bool along) {
+  const int corners = static_cast<int>(at(world.bodies, link.body).corners.size());
+  return (link.corner + (along ? link.orientation : -link.orientation) + corners) % corners;
+}
+
 /// Where a piece of that length (m) and direction begins at a rolling link, with `leaves`, or else
 /// ends there: takes its node in that is to lie on the rim, or the link off that it lifts the cable
-/// from. Whether it has.
+/// from, or lays it on a polygon's next corner that it would cut. Whether it has.
 bool give_way(World& world, CableState& cable, int link, bool leaves, double length,
               const Vec2& direction) {
-  const Link& rim = at(cable.links, link);
+  const Link rim = at(cable.links, link);
   if (rim.orientation == 0) return false;
   const int segment = leaves ? next_link(cable, link) : link;
-  const Vec2& before = at(cable.segments, segment).direction;
-  const double turned = std::atan2(cross(before, direction), before.dot(direction));
-  if (rim.wrap + (leaves ? 1 : -1) * rim.orientation * turned < 0.0 &&
-      !needed(cable, index(link))) {
+  const int node = leaves ? segment : previous_link(cable, link);
+  const Vec2 before = at(cable.segments, segment).direction;
+  // How much more the link is wrapped, where the cable takes another direction.
+  const auto wrapped_more = [&](const Vec2& other) {
+    const double turned = std::atan2(cross(before, other), before.dot(other));
+    return (leaves ? 1 : -1) * rim.orientation * turned;
+  };
+  const double more = wrapped_more(direction);
+  if (rim.wrap + more < 0.0 && !needed(cable, index(link))) {
     remove_link(world, cable, link);
     return true;
   }
-  if (length > taken_in * spacing(cable)) return false;
-  take_in_node(world, cable, leaves ? segment : previous_link(cable, link));
+  double room = taken_in * spacing(cable);
+  if (rim.corner >= 0) {
+    const int corner = next_corner(world, rim, leaves);
+    const Vec2 side = place_of_point(world, rim.body, corner) - link_centre(world, rim);
+    if (more > wrapped_more(leaves ? side : Vec2(-side))) {
+      if (length > side.norm() + room) {
+        insert_link(world, cable, index(segment), rim.body, corner, rim.orientation);
+        return true;
+      }
+      room = infinity;
+    }
+  }
+  if (length > room) return false;
+  take_in_node(world, cable, node);
   return true;
 }
 
@@ -340,7 +366,8 @@ void take_in_node(World& world, CableState& cable, int link) {
   at(world.velocity, body) = Vec2::Zero();
 }
 
-void take_in_enclosed_nodes(World& world, CableState& cable) {
+bool take_in_enclosed_nodes(World& world, CableState& cable) {
+  bool any = false;
   for (int i = 0; index(i) < cable.links.size(); ++i) {
     const Link& from = at(cable.links, i);
     int next = next_link(cable, i), nodes = 0;
@@ -352,8 +379,10 @@ void take_in_enclosed_nodes(World& world, CableState& cable) {
     if (at(cable.links, next).body != from.body || at(cable.links, next).orientation == 0) continue;
     take_in_node(world, cable, next_link(cable, i));
     ++world.diagnostics.node_changes;
+    any = true;
     i = -1;  // links have other numbers
   }
+  return any;
 }
 
 double wave_at_node(const World& world, const CableState& cable, int link) {

@@ -56,8 +56,8 @@ bool lies_beside(const World& world, int node, int body);
 double left_until_taken_in(const CableState& cable, int link);
 
 /// Takes in the nodes between two links in succession on one body, which has met the cable beyond
-/// them: they lie on it.
-void take_in_enclosed_nodes(World& world, CableState& cable);
+/// them: they lie on it. Whether there were any.
+bool take_in_enclosed_nodes(World& world, CableState& cable);
 
 /// Takes a node in.
 void take_in_node(World& world, CableState& cable, int link);

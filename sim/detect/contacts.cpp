@@ -202,6 +202,7 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
       contact.normal_force = previous->normal_force;
       contact.tangent_force = previous->tangent_force;
       contact.curvature = previous->curvature;
+      contact.struck = previous->struck;
     }
   }
 }

@@ -25,15 +25,22 @@ double normal_speed(const World& world, const Contact& contact) {
   return contact.normal.dot(v);
 }
 
-/// Whether the bodies press what lies between them: they did in the last step, or will in the next.
-/// A cable that yields is pressed where it is narrower than its width. Round-off of a gap that is
-/// closed is below `rounding` of it.
+// What the gap of a pinch may be more than the cable's width, of that. It keeps a pinch that opens
+// and closes by the second-order gap of a rolling step: half of what gaps may err by before a
+// promise is broken (promises.h), so that what it keeps breaks none.
+constexpr double margin = 5e-4;
+
+/// Whether the bodies press what lies between them: they did in the last step, or come together
+/// now, or, where that time is not located, in the next step. A cable that yields is pressed where
+/// it is narrower than its width. Round-off of a gap that is closed is below `rounding` of it.
 bool presses(const World& world, const CableState& cable, const Contact& contact) {
   constexpr double rounding = 1e-12;
   const double gap = 2.0 * cable.half_width;
   if (yields(cable)) return contact.gap <= gap;
-  return contact.touching || contact.gap <= gap * (1.0 + rounding) ||
-         contact.gap - gap + world.step_length * normal_speed(world, contact) < 0.0;
+  if (contact.touching || contact.gap <= gap * (1.0 + rounding)) return true;
+  const double speed = normal_speed(world, contact);
+  if (locates_events(world.configuration)) return speed < 0.0 && contact.gap < gap * (1.0 + margin);
+  return contact.gap - gap + world.step_length * speed < 0.0;
 }
 
 /// The contact of two bodies, or nothing; `hint` is where it was.
@@ -96,11 +103,12 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
 }
 
 /// A drum's layers keep others out as far as the outermost reaches.
-void note_cable_between(const CableState& cable, const Link& link, Contact& contact) {
+void note_cable_between(const World& world, const CableState& cable, const Link& link,
+                        Contact& contact) {
   if (cable.least_gap > 0.0) {
     contact.target = std::max(contact.target, cable.least_gap + thickness_of_layers(link));
   }
-  contact.pinch_linked = true;
+  contact.cable_between = static_cast<int>(&cable - world.cables.data());
 }
 
 /// The same for a cable on a link that its body holds without slip, so that what presses it on to
@@ -108,7 +116,7 @@ void note_cable_between(const CableState& cable, const Link& link, Contact& cont
 /// pressed without friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
-  note_cable_between(cable, link, contact);
+  note_cable_between(world, cable, link, contact);
   if (link.layers.way != 0) {
     contact.layers_cable = static_cast<int>(&cable - world.cables.data());
   }
@@ -170,7 +178,7 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
     return;  // the pinch is there
   }
   if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, contact, i, other)) {
-    note_cable_between(cable, link, contact);
+    note_cable_between(world, cable, link, contact);
   }
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
@@ -187,16 +195,14 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
       note_cable_held(world, cable, link, other, contact);
       return;
     }
-    note_cable_between(cable, link, contact);
+    note_cable_between(world, cable, link, contact);
     if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }
   }
 }
 
-/// Middle links whose bodies have parted from the cable. The margin keeps a pinch that opens and
-/// closes by the second-order gap of a rolling step: half of what gaps may err by before a promise
-/// is broken (promises.h), so that what it keeps breaks none.
+/// Middle links whose bodies have parted from the cable.
 void remove_open_pinches(World& world, const Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (work.contacts.stands[c] || is_idle(work.parts, c)) continue;
@@ -206,7 +212,6 @@ void remove_open_pinches(World& world, const Workspace& work) {
       if (!link.pinch_middle) continue;
       const int pressed = at(cable.links, previous_link(cable, i)).body;
       const Contact* contact = find_contact(world, link.body, pressed, link.contact);
-      constexpr double margin = 5e-4;  // of the width
       const double width = 2.0 * cable.half_width;
       if (contact == nullptr ||
           (!presses(world, cable, *contact) && contact->gap > width * (1.0 + margin))) {
@@ -321,7 +326,7 @@ void configure_pinches(World& world, Workspace& work) {
         } else if (presses_arc(world, cable, contact, i, u)) {
           note_cable_held(world, cable, link, other, contact);
         } else if (over_adjacent_span(world, cable, contact, i, other)) {
-          note_cable_between(cable, link, contact);
+          note_cable_between(world, cable, link, contact);
         }
       }
     }
@@ -352,8 +357,8 @@ void assign_contacts(World& world, const Parts& parts, const Part& part) {
       Contact* contact = find_contact(world, from.body, to.body, hint);
       if (contact == nullptr) continue;
       contact = nearest_of_pair(world, contact);
-      note_cable_between(cable, from, *contact);
-      note_cable_between(cable, to, *contact);
+      note_cable_between(world, cable, from, *contact);
+      note_cable_between(world, cable, to, *contact);
       const int index = static_cast<int>(contact - world.contacts.data());
       ++contact->pinch_points;
       if (to.pinch_middle) {

@@ -296,7 +296,8 @@ void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pa
   }
 }
 
-void add_hit_links(World& world, const Workspace& work) {
+void add_hit_links(World& world, Workspace& work) {
+  const int changes = world.changes;
   const auto& pairs = work.broad_phase.span_pairs;
   // From the last segment to the first: a link put in leaves the indices before it as they are.
   std::size_t end = pairs.size();
@@ -331,6 +332,11 @@ void add_hit_links(World& world, const Workspace& work) {
       }
     }
     end = begin;
+  }
+  if (world.changes == changes) return;
+  for (const int c : world.strung) {
+    if (!take_in_enclosed_nodes(world, at(world.cables, c))) continue;
+    work.broad_phase.boxes.clear();  // for bodies with other outlines
   }
 }
 

@@ -17,7 +17,7 @@ struct Workspace;
 /// reaches the span's centre line with the body's centre beside the span, or when its centre has
 /// crossed the span within the step, however fast. The cable runs round the side on which the body
 /// was before.
-void add_hit_links(World& world, const Workspace& work);
+void add_hit_links(World& world, Workspace& work);
 
 /// Whether the body is so near to where the span is, or was before, that it may have met it.
 bool may_meet(const World& world, const SpanPair& pair);

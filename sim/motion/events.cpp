@@ -177,10 +177,7 @@ void change_courses(World& world, Workspace& work) {
       leave_body(world, cable, event.item);
     } else {
       meet_body(world, cable, index(event.item), event.body, event.corner, event.orientation);
-      if (cable.nodes > 0) {
-        take_in_enclosed_nodes(world, cable);
-        work.broad_phase.boxes.clear();
-      }
+      if (cable.nodes > 0 && take_in_enclosed_nodes(world, cable)) work.broad_phase.boxes.clear();
     }
     cable_changed = event.cable;
     item_changed = event.item;

@@ -67,7 +67,9 @@ bool throw_back(World& world, const Parts& parts, const Part& part, PartSystem& 
     }
     at(s.rows, struck).bias = 0.0;
     s.free_velocity = s.velocity;
-    at(world.contacts, at(s.rows, struck).index).rebounds = any = true;
+    Contact& contact = at(world.contacts, at(s.rows, struck).index);
+    contact.rebounds = any = true;
+    contact.struck = world.step;
   }
   return any;
 }

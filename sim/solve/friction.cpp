@@ -48,7 +48,7 @@ double contact_coefficient(double mu_a, double mu_b) {
 }
 
 double coefficient_of(const World& world, const Contact& contact) {
-  if (contact.pinch_linked) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
+  if (contact.cable_between >= 0) return contact.pinch_points == 0 ? contact.pressed_friction : 0.0;
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).contact_friction
                                       : at(world.obstacles, contact.wall).contact_friction;
   return contact_coefficient(at(world.bodies, contact.a).contact_friction, other);

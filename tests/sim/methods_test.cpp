@@ -33,7 +33,7 @@ Elements count_elements(const World& world) {
     if (c.segments[i].pinched && !at_middle) ++e.transitional;
   }
   for (const Contact& contact : world.contacts) {
-    if (contact.pinch_linked) ++e.contacts;
+    if (contact.cable_between >= 0) ++e.contacts;
   }
   return e;
 }

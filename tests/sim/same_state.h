@@ -46,9 +46,9 @@ inline bool same_contact(const Contact& p, const Contact& q) {
   return p.a == q.a && p.b == q.b && p.wall == q.wall && p.touch == q.touch && p.point == q.point &&
          p.piece == q.piece && p.away == q.away && p.normal == q.normal && p.gap == q.gap &&
          p.target == q.target && p.pinch_points == q.pinch_points &&
-         p.pinch_linked == q.pinch_linked && p.pressed_friction == q.pressed_friction &&
+         p.cable_between == q.cable_between && p.pressed_friction == q.pressed_friction &&
          p.layers_cable == q.layers_cable && p.touching == q.touching && p.rebounds == q.rebounds &&
-         p.slip == q.slip && p.normal_force == q.normal_force &&
+         p.struck == q.struck && p.slip == q.slip && p.normal_force == q.normal_force &&
          p.tangent_force == q.tangent_force && p.curvature == q.curvature;
 }
 
