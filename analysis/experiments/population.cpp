@@ -100,8 +100,7 @@ struct ShapelySample {
   std::array<Soundness, ladder.size()> runs;
 };
 
-ShapelySample run_shapely(std::uint64_t seed) {
-  const ShapelyScene drawn = dropped_shapes(seed);
+ShapelySample run_shapely(const ShapelyScene& drawn) {
   ShapelySample sample{drawn.has, {}};
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     sample.runs[i] = run_scene(drawn.scene, configuration_of("pinch"), ladder[i], frames);
@@ -332,18 +331,23 @@ double end_distance(const Soundness& a, const Soundness& b, bool image) {
 void run_population(const PopulationRun& run) {
   std::array<std::vector<Sample>, 2> samples;
   Progress progress("bench population",
-                    static_cast<double>(kinds.size()) * run.scenes + run.shapely_scenes);
+                    static_cast<double>(kinds.size()) * run.scenes + 2.0 * run.shapely_scenes);
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const Configuration configuration = configuration_of(kinds[k]);
     samples[k] = run_samples<Sample>(
         run.scenes, run.first, progress,
         [&configuration](std::uint64_t seed) { return run_sample(seed, configuration); });
   }
-  const std::vector<ShapelySample> shapely =
-      run_samples<ShapelySample>(run.shapely_scenes, run.first, progress, run_shapely);
+  const std::vector<ShapelySample> shapely = run_samples<ShapelySample>(
+      run.shapely_scenes, run.first, progress,
+      [](std::uint64_t seed) { return run_shapely(dropped_shapes(seed)); });
+  const std::vector<ShapelySample> hanging = run_samples<ShapelySample>(
+      run.shapely_scenes, run.first, progress,
+      [](std::uint64_t seed) { return run_shapely(shapes_on_hanging_rope(seed)); });
   Output output(run.options.out);
   output.csv("population", table_of(run, samples), run.options.command);
   output.csv("population_shapes", table_of(run, shapely), run.options.command);
+  output.csv("population_ropes", table_of(run, hanging), run.options.command);
   const std::string page = fmt::format(
       "# Random scenes\n\n"
       "{} scenes (seeds from {} on) of one to six discs, of masses up to 1e4 apart, that fall on "
@@ -362,9 +366,13 @@ void run_population(const PopulationRun& run) {
       "{} scenes of one to four discs, polygons and compounds that fall on a cable over discs and "
       "polygons: {}. Ropes have mass and run over bodies between a weight and an end, chains hang "
       "between two points. Events at their time. Energy that is gained is what leapfrog swings by "
-      "in violent turns, and falls with the step; what is beyond 1e-2 is not.\n\n{}",
+      "in violent turns, and falls with the step; what is beyond 1e-2 is not.\n\n{}\n"
+      "## Ropes that hang\n\n"
+      "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
+      "between the bodies that it runs over: {}.\n\n{}",
       run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
-      shares(shapely), shapely_promises(shapely));
+      shares(shapely), shapely_promises(shapely), run.shapely_scenes, shares(hanging),
+      shapely_promises(hanging));
   output.page("population", page, run.options.command);
 }
 

@@ -36,11 +36,11 @@ double end_distance(const Soundness& a, const Soundness& b, bool image);
 struct PopulationRun {
   Options options;
   int scenes = 2000;          ///< of dropped_discs
-  int shapely_scenes = 1000;  ///< of dropped_shapes
+  int shapely_scenes = 1000;  ///< of dropped_shapes, and of shapes_on_hanging_rope
   int first = 1;              ///< seed of the first of either
 };
 
-/// Writes population.csv, population_shapes.csv and population.md.
+/// Writes population.csv, population_shapes.csv, population_ropes.csv and population.md.
 void run_population(const PopulationRun& run);
 
 }  // namespace pinchlab::experiments

@@ -209,13 +209,13 @@ void add_falling(Random& random, const Surfaces& surfaces, int number, double wi
   drawn.has.compounds = true;
 }
 
-ShapelyScene draw_shapely(Random& random) {
+ShapelyScene draw_shapely(Random& random, bool hangs) {
   ShapelyScene drawn;
   Scene& scene = drawn.scene;
   const Surfaces surfaces(random);
   const int pulleys = 2 + random.below(2);
   const double width = 1.5 * (pulleys - 1);
-  drawn.has.ropes = random.one_in(3);
+  drawn.has.ropes = random.one_in(3) || hangs;
   drawn.has.chains = random.one_in(2);
   add_pulleys(random, surfaces, pulleys, drawn);
   Cable cable;
@@ -253,8 +253,12 @@ ShapelyScene draw_shapely(Random& random) {
     chain.mass_per_metre = random.decades(-1.0, 0.5);
     chain.nodes = 7 + random.below(24);
     scene.cables.push_back(chain);
-    spread_nodes(scene);
   }
+  if (hangs) {
+    scene.cables[0].nodes = 5 + random.below(30);
+    scene.cables[0].slack = random.one_in(3) ? 0.0 : random.uniform(0.02, 0.4);
+  }
+  spread_nodes(scene);
   return drawn;
 }
 
@@ -283,7 +287,15 @@ Scene dropped_discs(std::uint64_t seed) {
 }
 
 ShapelyScene dropped_shapes(std::uint64_t seed) {
-  return first_that_fits(seed, draw_shapely, [](ShapelyScene& s) -> Scene& { return s.scene; });
+  return first_that_fits(
+      seed, [](Random& random) { return draw_shapely(random, false); },
+      [](ShapelyScene& s) -> Scene& { return s.scene; });
+}
+
+ShapelyScene shapes_on_hanging_rope(std::uint64_t seed) {
+  return first_that_fits(
+      seed, [](Random& random) { return draw_shapely(random, true); },
+      [](ShapelyScene& s) -> Scene& { return s.scene; });
 }
 
 }  // namespace pinchlab::experiments

@@ -33,4 +33,8 @@ struct ShapelyScene {
 /// for the same seed everywhere.
 ShapelyScene dropped_shapes(std::uint64_t seed);
 
+/// The same on a rope with mass and five to thirty-four nodes, taut or slack, that hangs between
+/// the bodies that it runs over.
+ShapelyScene shapes_on_hanging_rope(std::uint64_t seed);
+
 }  // namespace pinchlab::experiments

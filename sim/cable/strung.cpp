@@ -304,7 +304,9 @@ bool lies_beside(const World& world, int node, int body) {
   for (int i = 0; index(i) < cable.links.size(); ++i) {
     if (at(cable.links, i).body != node) continue;
     for (const int beside : {previous_link(cable, i), next_link(cable, i)}) {
-      if (beside >= 0 && at(cable.links, beside).body == body) return true;
+      if (beside < 0) continue;
+      const Link& rim = at(cable.links, beside);
+      if (rim.body == body && rim.corner < 0) return true;
     }
     return is_within_end(world, cable, at(cable.links, i), body);
   }

@@ -47,8 +47,8 @@ void carry_wound_nodes(World& world, const CableState& cable);
 /// nor the spans beside it touch that body.
 bool is_within_end(const World& world, const CableState& cable, const Link& node, int body);
 
-/// Whether it is beside a body along its cable, which lies on that body then, or within such an
-/// end. They do not touch.
+/// Whether it is beside a disc along its cable, which is a tangent of it then, or within such an
+/// end. They do not touch. A polygon's next side it may touch.
 bool lies_beside(const World& world, int node, int body);
 
 /// What is left between a node and a rim beside it until the rim takes it in (m); infinity: there

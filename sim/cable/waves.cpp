@@ -25,8 +25,9 @@ double wave_of(const World& world, const CableState& cable) {
   if (cable.nodes > 0) {
     double fastest = 0.0;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
-      if (is_strung(cable, at(cable.links, i)))
-        fastest = std::max(fastest, wave_at_node(world, cable, i));
+      if (!is_strung(cable, at(cable.links, i))) continue;
+      const double wave = wave_at_node(world, cable, i);
+      if (!is_lost(world, wave)) fastest = std::max(fastest, wave);
     }
     return fastest;
   }

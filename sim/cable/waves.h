@@ -19,12 +19,16 @@
 // for intervals of less than a thousandth of a step is drawn to a line at rest. With m' and the
 // speed m v / m' the node has less energy than it had with m and v, and more than it has with m
 // afterwards, so that none is made; but momentum is lost.
+//     Nodes that are strung on a cable between what does not give (strung.h), as where something
+// jams it on to a polygon, are pulled straight with any tension, and stay so. Those that are lost
+// are drawn to the line between their neighbours, and intervals need not follow them.
 
 #include "sim/world.h"
 
 namespace pinchlab {
 
-/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension; 0 of other cables.
+/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension, or of those strung on a
+/// cable, but for what is lost (below); 0 of other cables.
 double wave_of(const World& world, const CableState& cable);
 
 /// Whether a step is divided for waves of that omega^2 (1/s^2).

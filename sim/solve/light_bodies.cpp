@@ -27,6 +27,15 @@ bool is_node(const World& world, const Link& link) {
   return link.body >= 0 && at(world.bodies, link.body).node;
 }
 
+int number_of(const CableState& cable, const Link& link) {
+  return static_cast<int>(&link - cable.links.data());
+}
+
+/// kg; of a node what of its cable moves with it too, as its mobility has it.
+double mass_of(const BodyProperties& body, const Mobility& mobility) {
+  return body.node ? 1.0 / mobility.xx : body.mass;
+}
+
 /// Whether the segment counts for the body at its end `link`; `other` is its other end, or null: as
 /// if that stood.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, const Link& link,
@@ -49,25 +58,26 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, co
   return true;
 }
 
-/// Along unit vector v: the share of the body's mass in max(m, h^2 k), and with it the free speed.
+/// Along unit vector v: the share of a body's own mass in max(m, h^2 k), and with it the free speed.
 /// The line's speed is the mean of its other ends' along v, each weighted by what its span does
 /// there: nearly parallel spans would else ask for any speed across v that fits their small angle.
-double steady(const BodyProperties& body, const SpanMass& span, const Vec2& v, Vec2& velocity) {
+double steady(double own, const SpanMass& span, const Vec2& v, Vec2& velocity) {
   const double mass = v.dot(span.mass * v);
-  if (mass <= body.mass) return 1.0;
+  if (mass <= own) return 1.0;
   const double x = v.dot(span.momentum_x * v), y = v.dot(span.momentum_y * v);
-  const double share = body.mass / mass, line = (x * v.x() + y * v.y()) / mass;
+  const double share = own / mass, line = (x * v.x() + y * v.y()) / mass;
   velocity += (1.0 - share) * (line - v.dot(velocity)) * v;
   return share;
 }
 
 void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2& velocity) {
-  if (span.mass.trace() <= body.mass) return;
+  const double own = mass_of(body, mobility);
+  if (span.mass.trace() <= own) return;
   span.steadied = true;
   span.own = mobility;
   span.velocity = velocity;
   if (body.kind == BodyKind::rail) {
-    const double share = steady(body, span, body.rail_axis.normalized(), velocity);
+    const double share = steady(own, span, body.rail_axis.normalized(), velocity);
     mobility.xx *= share;
     mobility.xy *= share;
     mobility.yy *= share;
@@ -79,7 +89,7 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
   Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
   for (int i = 0; i < 2; ++i) {
     const Vec2 v = principal.eigenvectors().col(i);
-    inverse += mobility.xx * steady(body, span, v, velocity) * v * v.transpose();
+    inverse += mobility.xx * steady(own, span, v, velocity) * v * v.transpose();
   }
   mobility.xx = inverse(0, 0);
   mobility.xy = inverse(0, 1);
@@ -120,8 +130,9 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
       const double wave = wave_of(world, cable);
       const bool divided = is_divided_for(world, wave), lost = is_lost(world, wave);
       const auto note = [&](const Link& end, const Link& other) {
-        if (is_strung(cable, end)) return;  // intervals follow it
-        const bool followed = divided && is_node(world, end);
+        const bool strung = is_strung(cable, end);
+        if (strung && !is_lost(world, wave_at_node(world, cable, number_of(cable, end)))) return;
+        const bool followed = !strung && divided && is_node(world, end);
         if (followed && !lost) return;
         any =
             note_end(world, parts, segment, end, followed ? nullptr : &other, kick, system) || any;
@@ -152,9 +163,9 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     if (!can_move(body)) continue;
     const bool steadied = is_steadied(static_cast<int>(i));
     const Vec2 before = steadied ? s.span_masses[i].velocity : Vec2(s.free_velocity[i].head<2>());
-    energy += body.mass * before.squaredNorm();
-    if (steadied)
-      gain += body.mass * (s.velocity[i].head<2>().squaredNorm() - before.squaredNorm());
+    const double mass = mass_of(body, steadied ? s.span_masses[i].own : s.mobility[i]);
+    energy += mass * before.squaredNorm();
+    if (steadied) gain += mass * (s.velocity[i].head<2>().squaredNorm() - before.squaredNorm());
   }
   // Of all others, and of how these turn, what rows give: sum p (J v- + J v+) / 2.
   double impulse = 0.0, fastest = 0.0;  // N s, m/s

@@ -20,8 +20,9 @@ struct World;
 /// u. The rows supply f - k x. What vibrates faster than steps can follow is damped instead of
 /// thrown off. To leave all else as it is, max(m, h^2 k) stands for m + h^2 k, with k twice the sum
 /// of T/L, since the other ends may move against the body. Spans shorter than the cable's width are
-/// left out: there the bodies' contact sets the distance. So are nodes of hanging cables, which
-/// intervals follow (cable/waves.h), but for those that none can: for these u is 0.
+/// left out: there the bodies' contact sets the distance. So are nodes of cables with mass, which
+/// intervals follow (cable/waves.h), but for those that none can: for these u is 0, or, strung on a
+/// cable that runs over bodies, the line's as of other bodies.
 ///
 /// Changes mobilities and free velocities of the part's bodies; a comparison an end of a span where
 /// no body is too light. Whether any is.
