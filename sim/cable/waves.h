@@ -27,8 +27,8 @@
 
 namespace pinchlab {
 
-/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension, or of those strung on a
-/// cable, but for what is lost (below); 0 of other cables.
+/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension, or of those strung on
+/// a cable, but for what is lost; 0 of other cables.
 double wave_of(const World& world, const CableState& cable);
 
 /// Whether a step is divided for waves of that omega^2 (1/s^2).

@@ -267,6 +267,12 @@ bool is_outrun(const World& world, const Trial& trial, double length) {
   return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
 }
 
+/// The share of that length (s) that is to be tried then. No less than a tenth at once, as what it
+/// is chosen by was found with the long interval; and so much less that a trial is worth its cost.
+double share_for_wave(const World& world, const Trial& trial, double length) {
+  return std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
+}
+
 bool errs(const World& world, const Trial& trial) {
   const double allowed = share_of_error * world.configuration.error;
   return allowed > 0.0 && trial.met && trial.local_error > allowed;
@@ -305,17 +311,15 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     again(shake_rounds);
   }
   double whole = length;  // before the first halving
-  // Below, an interval becomes no shorter than a tenth at once, as what it is chosen by was found
-  // with the long one, and at least so much that another trial is worth its cost.
   for (int halvings = 0;;) {
     if (is_outrun(world, trial, length)) {
-      length *= std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
+      length *= share_for_wave(world, trial, length);
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
     }
     if (errs(world, trial) && length > shortest * world.step_length) {
-      length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);
+      length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);  // likewise
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
@@ -448,10 +452,17 @@ bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const
 
 double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool& met, Stopwatch& watch) {
-  length = find_sound_interval(scene, world, work, movers, length, watch);
-  met = work.trial.met;
-  if (work.events.empty()) return length;
-  return locate_first_event(scene, world, work, movers, length, met, watch);
+  for (;;) {
+    length = find_sound_interval(scene, world, work, movers, length, watch);
+    met = work.trial.met;
+    if (work.events.empty()) return length;
+    length = locate_first_event(scene, world, work, movers, length, met, watch);
+    // A node swings the faster the nearer it comes to the rim that takes it in.
+    if (!is_outrun(world, work.trial, length)) return length;
+    length *= share_for_wave(world, work.trial, length);
+    work.events.clear();
+    try_again(scene, world, work, movers, {length}, watch);
+  }
 }
 
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,

@@ -58,7 +58,7 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, co
   return true;
 }
 
-/// Along unit vector v: the share of a body's own mass in max(m, h^2 k), and with it the free speed.
+/// Along unit vector v: the share of the own mass in max(m, h^2 k), and with it the free speed.
 /// The line's speed is the mean of its other ends' along v, each weighted by what its span does
 /// there: nearly parallel spans would else ask for any speed across v that fits their small angle.
 double steady(double own, const SpanMass& span, const Vec2& v, Vec2& velocity) {

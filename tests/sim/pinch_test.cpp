@@ -2,6 +2,8 @@
 // Bodies that squeeze cables: gaps, rest, many bodies and cables, and the change between kinds of
 // pinch.
 
+#include <algorithm>
+
 #include "sim/cable/cable.h"
 #include "tests/sim/scenes.h"
 
@@ -98,6 +100,29 @@ TEST(Pinch, TowerOnAWrapPressesWithItsWholeWeight) {
     EXPECT_NEAR(contact.normal_force, (10 - contact.a) * g, 1e-8);
     // Only the drum carries cable; the rollers above touch one another bare.
     EXPECT_NEAR(contact.gap, contact.a == 0 ? 2.0 * w : 0.0, 1e-12);
+  }
+}
+
+// A roller that comes down pinches the cable from when it has come, not from a step before: until
+// then cable may come off at its place, where there is no pinch to be left.
+TEST(Pinch, IsMadeWhenItCloses) {
+  for (const int steps : {1, 4}) {
+    Scene scene = tower(1, false);
+    scene.steps_per_frame = steps;
+    scene.bodies[1].position.y() += 0.33;
+    World world = make_world(scene, measured());
+    Workspace work;
+    int pinched = 0;
+    for (int i = 0; i < 60 * steps; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      const std::vector<Link>& links = world.cables[0].links;
+      const bool is = std::any_of(links.begin(), links.end(),
+                                  [](const Link& link) { return link.pinch_middle; });
+      if (!is) continue;
+      ++pinched;
+      ASSERT_LE(least_gap(world, scene, 0, 1), 2.0 * w * (1.0 + 5e-4)) << steps << ": " << i;
+    }
+    EXPECT_GT(pinched, 20 * steps);
   }
 }
 

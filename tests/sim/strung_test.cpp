@@ -15,6 +15,7 @@
 #include "sim/make_world.h"
 #include "sim/mirror.h"
 #include "sim/nodes.h"
+#include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
@@ -114,6 +115,58 @@ TEST(Strung, HangsAtRestAsACatenaryThatLeavesDrums) {
       const double now = std::abs(tension / (1.5 * g * exact.a) - 1.0);
       EXPECT_LT(now, 0.8 / (nodes * nodes)) << slack << " " << nodes;
     }
+  }
+}
+
+/// The same rope between regular polygons of so many corners, of the drums' size, fastened beyond.
+Scene between_polygons(int corners, double slack, BodyKind kind) {
+  Scene scene;
+  scene.steps_per_frame = 4;
+  std::vector<Vec2> around;
+  for (int k = 0; k < corners; ++k) {
+    const double angle = 2.0 * pi * (k + 0.5) / corners;
+    around.emplace_back(drum_radius * std::cos(angle), drum_radius * std::sin(angle));
+  }
+  for (int i = 0; i < 2; ++i) {
+    scene.bodies.push_back(
+        body(i == 0 ? "left" : "right", kind, i == 0 ? -reach : reach, 0.0, drum_radius));
+    make_polygon(scene.bodies.back(), around, 0.0);
+  }
+  scene.cables.push_back(
+      cable(at(-reach - 0.6, -1.0), {{0, -1, 0}, {1, -1, 0}}, at(reach + 0.6, -1.0), half_width));
+  scene.cables[0].slack = slack;
+  scene.cables[0].mass_per_metre = 1.5;
+  return with_nodes(scene, 60);
+}
+
+int corner_links(const World& world) {
+  const std::vector<Link>& links = world.cables[0].links;
+  return static_cast<int>(
+      std::count_if(links.begin(), links.end(), [](const Link& link) { return link.corner >= 0; }));
+}
+
+// It lies along their sides, round more corners the deeper it hangs; what is on a side has no nodes.
+TEST(Strung, HangsAtRestFromPolygons) {
+  const Scene tight = between_polygons(8, 0.02, BodyKind::fixed);
+  EXPECT_LT(corner_links(make_world(tight, measured())), 8);
+  for (const int corners : {3, 4, 8, 64}) {
+    const Scene scene = between_polygons(corners, 2.0, BodyKind::fixed);
+    World world = make_world(scene, measured());
+    if (corners == 8) {
+      EXPECT_GE(corner_links(world), 8);
+    }
+    const CableState& cable = world.cables[0];
+    for (std::size_t i = 1; i + 1 < cable.links.size(); ++i) {
+      if (!is_strung(cable, cable.links[i])) continue;
+      EXPECT_FALSE(cable.links[i - 1].corner >= 0 && cable.links[i + 1].corner >= 0 &&
+                   cable.links[i - 1].body == cable.links[i + 1].body);
+    }
+    const std::vector<Vec2> start = world.position;
+    run(scene, world, 240);
+    for (std::size_t b = 0; b < start.size(); ++b) {
+      EXPECT_LT((world.position[b] - start[b]).norm(), 1e-9) << corners << ": " << b;
+    }
+    EXPECT_LT(world.diagnostics.intervals, 300) << corners;
   }
 }
 
@@ -392,6 +445,10 @@ TEST(Strung, RefusesWhatItCannotHang) {
               s.gravity = Vec2::Zero();
             }),
             "");
+  // What turns one way tightens either side.
+  EXPECT_NO_THROW(make_world(between_polygons(4, 0.3, BodyKind::fixed_axle), Method::pinch));
+  EXPECT_THROW(make_world(between_polygons(4, 0.0, BodyKind::fixed_axle), Method::pinch),
+               SceneError);
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].nodes = 41; }).find("its nodes"), std::string::npos);
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].first_node = 1; }).find("its nodes"),
             std::string::npos);
