@@ -195,13 +195,9 @@ bool give_way(World& world, CableState& cable, int link, bool leaves, double len
   const int segment = leaves ? next_link(cable, link) : link;
   const int node = leaves ? segment : previous_link(cable, link);
   const Vec2 before = at(cable.segments, segment).direction;
-  // How much more the link is wrapped, where the cable takes another direction.
-  const auto wrapped_more = [&](const Vec2& other) {
-    const double turned = std::atan2(cross(before, other), before.dot(other));
-    return (leaves ? 1 : -1) * rim.orientation * turned;
-  };
-  const double more = wrapped_more(direction);
-  if (rim.wrap + more < 0.0 && !needed(cable, index(link))) {
+  const double turned = std::atan2(cross(before, direction), before.dot(direction));
+  if (rim.wrap + (leaves ? 1 : -1) * rim.orientation * turned < 0.0 &&
+      !needed(cable, index(link))) {
     remove_link(world, cable, link);
     return true;
   }
@@ -209,7 +205,7 @@ bool give_way(World& world, CableState& cable, int link, bool leaves, double len
   if (rim.corner >= 0) {
     const int corner = next_corner(world, rim, leaves);
     const Vec2 side = place_of_point(world, rim.body, corner) - link_centre(world, rim);
-    if (more > wrapped_more(leaves ? side : Vec2(-side))) {
+    if (rim.orientation * cross(side, direction) > 0.0) {  // either way round
       if (length > side.norm() + room) {
         insert_link(world, cable, index(segment), rim.body, corner, rim.orientation);
         return true;

@@ -134,8 +134,9 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     if (round > 0) settled = solve_again(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
     if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
-    if (round > 0 &&
-        greatest_speed(world, bodies, s.velocity, &work.linear_velocity) > bent * fastest) {
+    const double round_off = s.tolerance() / t.length;  // m/s
+    if (round > 0 && greatest_speed(world, bodies, s.velocity, &work.linear_velocity) >
+                         std::max(bent * fastest, round_off)) {
       trial.missed = infinity;
       return false;
     }

