@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "analysis/experiments/adapting_nodes.h"
+#include "analysis/experiments/hanging_ropes.h"
 #include "analysis/experiments/step_cost.h"
 #include "demos/scenes/shape_scenes.h"
 #include "sim/nodes.h"
@@ -298,6 +299,7 @@ struct Shapes {
   std::vector<Hanging> hanging;
   std::vector<Fall> falls;
   AdaptingNodes adapting;
+  std::vector<HangingRope> ropes;
   std::vector<Pendulum> pendulums;
   std::vector<Creep> creeps;
   ChainCost cost;
@@ -328,6 +330,7 @@ Csv csv_of(const Shapes& shapes) {
              f.energy_made});
   }
   add_rows(shapes.adapting, csv);
+  add_rows(shapes.ropes, csv);
   for (const Pendulum& p : shapes.pendulums) {
     csv.row({std::string("flexible pendulum"), std::int64_t{p.pieces}, std::string("tip_x_m"),
              p.tip.x()});
@@ -404,7 +407,8 @@ std::string creep_table(const std::vector<Creep>& creeps) {
 }
 
 std::string page_text(const Shapes& shapes) {
-  const auto& [ladders, polygons, hanging, falls, adapting, pendulums, creeps, cost] = shapes;
+  const auto& [ladders, polygons, hanging, falls, adapting, ropes, pendulums, creeps, cost] =
+      shapes;
   return fmt::format(
       "# Corners, layers, cables with mass\n\n"
       "What bodies and cables of more than discs and massless lines come to, against solutions of "
@@ -424,7 +428,7 @@ std::string page_text(const Shapes& shapes) {
       "at 64 steps a frame. If no energy is lost it is 0.847213 (Calkin & March 1989, Am. J. Phys. "
       "57:154), less than the "
       "1 of a free fall.\n\n{}\n"
-      "{}"
+      "{}{}"
       "## A flexible pendulum\n\n1 m, 0.393 kg/m, EA = 1571 N, EI = 0.2 N m^2, pinned and let go "
       "horizontally: its tip "
       "after a second, beside the authors' own (Westin and Irani's code, ten finite elements). As "
@@ -438,8 +442,9 @@ std::string page_text(const Shapes& shapes) {
       "(directions, a "
       "tridiagonal matrix, its elimination, speeds; nothing else).\n",
       ladder_table(ladders), polygon_table(polygons), hanging_table(hanging), fall_table(falls),
-      adapting_text(adapting), pendulum_table(pendulums), creep_table(creeps),
-      time_text(cost.step_s), cost.step_s / cost.bare_s, time_text(cost.bare_s));
+      adapting_text(adapting), hanging_ropes_text(ropes), pendulum_table(pendulums),
+      creep_table(creeps), time_text(cost.step_s), cost.step_s / cost.bare_s,
+      time_text(cost.bare_s));
 }
 
 Shapes measure_shapes(const Options& options, Progress& progress) {
@@ -452,6 +457,8 @@ Shapes measure_shapes(const Options& options, Progress& progress) {
   progress.done(1.0);
   for (const int pieces : {20, 50, 100}) shapes.falls.push_back(fall(pieces, 64));
   shapes.adapting = measure_adapting_nodes();
+  progress.done(1.0);
+  shapes.ropes = measure_hanging_ropes();
   progress.done(1.0);
   for (const auto& [pieces, n] : {std::pair(20, 16), std::pair(40, 64), std::pair(80, 192)}) {
     shapes.pendulums.push_back(swing_flexibly(pieces, n));
@@ -468,7 +475,7 @@ Shapes measure_shapes(const Options& options, Progress& progress) {
 
 void run_shapes(const Options& options) {
   Output output(options.out);
-  Progress progress("shapes", 11.0);
+  Progress progress("shapes", 12.0);
   const Shapes shapes = measure_shapes(options, progress);
   output.csv("shapes", csv_of(shapes), options.command);
   output.page("shapes", page_text(shapes), options.command);

@@ -203,6 +203,25 @@ Scene heavy_tackle(int steps_per_frame) {
   return scene;
 }
 
+Scene sagging_hoist(int nodes, int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  for (const double side : {-1.0, 1.0}) {
+    scene.bodies.push_back(body(side < 0.0 ? "light" : "heavy", BodyKind::free, 2.32 * side, -1.5,
+                                0.15, 6.5 + 0.5 * side));
+  }
+  for (const double side : {-1.0, 1.0}) {
+    scene.bodies.push_back(
+        body(side < 0.0 ? "left" : "right", BodyKind::fixed_axle, 2.0 * side, 0.0, 0.3, 1.0));
+  }
+  scene.cables.push_back(cable(Attachment{0, {0.0, 0.12}}, {{2, -1, 0}, {3, -1, 0}},
+                               Attachment{1, {0.0, 0.12}}, 0.02));
+  scene.cables[0].mass_per_metre = 1.5;
+  scene.cables[0].nodes = nodes;
+  spread_nodes(scene);
+  return scene;
+}
+
 Scene catenary(int pieces, int steps_per_frame) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

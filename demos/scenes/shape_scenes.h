@@ -63,6 +63,10 @@ Scene rope_over_peg(double mu, int steps_per_frame);
 /// body 1. From rest both swing.
 Scene heavy_tackle(int steps_per_frame);
 
+/// Weights of 6 and 7 kg, bodies 0 and 1, on a rope of 1.5 kg/m over two pulleys, between which it
+/// sags. From rest the heavier one falls. Without nodes the rope is straight.
+Scene sagging_hoist(int nodes, int steps_per_frame);
+
 /// A cable of 2 m and 1 kg/m whose ends are 1 m apart at one height, in so many pieces (0: as the
 /// program chooses). Before spread_nodes.
 Scene catenary(int pieces, int steps_per_frame);

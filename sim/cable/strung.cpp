@@ -37,8 +37,8 @@ Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Ve
          ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
-/// Has a segment that closed up where a node was taken in begin as if it had been straight up to the
-/// node and on, so that what is between there and where it is now is in its way. `goes_on`: the
+/// Has a segment that closed up where a node was taken in begin as if it had been straight up to
+/// the node and on, so that what is between there and where it is now is in its way. `goes_on`: the
 /// node was near the segment's head.
 void begin_bent(const World& world, Segment& segment, bool goes_on, int node) {
   const Vec2 far = goes_on ? segment.tail : segment.head, d = at(world.position, node) - far;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "demos/scenes/shape_scenes.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/sleeve.h"
@@ -145,7 +146,7 @@ int corner_links(const World& world) {
       std::count_if(links.begin(), links.end(), [](const Link& link) { return link.corner >= 0; }));
 }
 
-// It lies along their sides, round more corners the deeper it hangs; what is on a side has no nodes.
+// It lies along their sides, round more corners the deeper it hangs; sides have no nodes.
 TEST(Strung, HangsAtRestFromPolygons) {
   const Scene tight = between_polygons(8, 0.02, BodyKind::fixed);
   EXPECT_LT(corner_links(make_world(tight, measured())), 8);
@@ -216,26 +217,8 @@ TEST(Strung, ABeltHangsTheSameHoweverFastItRuns) {
   }
 }
 
-/// Two weights on a rope over two pulleys, which sags between them.
-Scene two_weights(int nodes, int steps) {
-  Scene scene;
-  scene.steps_per_frame = steps;
-  for (int i = 0; i < 2; ++i) {
-    scene.bodies.push_back(body(i == 0 ? "light" : "heavy", BodyKind::free, i == 0 ? -2.32 : 2.32,
-                                -1.5, 0.15, 6.0 + i));
-  }
-  for (int i = 0; i < 2; ++i) {
-    scene.bodies.push_back(body(i == 0 ? "left" : "right", BodyKind::fixed_axle,
-                                i == 0 ? -2.0 : 2.0, 0.0, drum_radius, 1.0));
-  }
-  scene.cables.push_back(cable(Attachment{0, {0.0, 0.12}}, {{2, -1, 0}, {3, -1, 0}},
-                               Attachment{1, {0.0, 0.12}}, half_width));
-  scene.cables[0].mass_per_metre = 1.5;
-  return with_nodes(scene, nodes);
-}
-
 double height_after(int nodes, int steps) {
-  const Scene scene = two_weights(nodes, steps);
+  const Scene scene = build::sagging_hoist(nodes, steps);
   World world = make_world(scene, measured());
   run(scene, world, 90 * steps);
   return world.position[0].y();
@@ -256,7 +239,7 @@ TEST(Strung, ConvergesWithStepsAndWithNodes) {
 // more nodes there are, and none is made.
 TEST(Strung, WhatRimsTakeInTheyGiveOffAgain) {
   for (const int nodes : {40, 160}) {
-    const Scene scene = two_weights(nodes, 4);
+    const Scene scene = build::sagging_hoist(nodes, 4);
     World world = make_world(scene, measured());
     const int at_start = live_nodes(world);
     Workspace work;
@@ -357,7 +340,7 @@ TEST(Strung, KeepsMomentum) {
 // What hangs may have turned by whole turns about a node: then what follows has turned as often,
 // and when the node goes nothing that lies on a body may change by that.
 TEST(Strung, WholeTurnsAboutANodeWindNothingUp) {
-  const Scene scene = two_weights(40, 4);
+  const Scene scene = build::sagging_hoist(40, 4);
   World world = make_world(scene, measured());
   CableState& rope = world.cables[0];
   int node = 0;
@@ -409,7 +392,7 @@ TEST(RandomStrung, AClearedWorkspaceChangesNoBit) {
 
 // Events that take effect at the steps follow no node to a rim: there the rope is straight.
 TEST(Strung, IsStraightWhereEventsAreAtTheSteps) {
-  const Scene scene = two_weights(40, 4);
+  const Scene scene = build::sagging_hoist(40, 4);
   World world = make_world(scene, Method::cable);
   EXPECT_EQ(live_nodes(world), 0);
   run(scene, world, 60);

@@ -182,8 +182,8 @@ TEST(Population, ShapesMakeNoEnergy) {
   }
 }
 
-// The first six had gaps that were up to 18 half widths short, where nodes that were bent were taken
-// in or lay between corners; the next two gained up to 1.3 of all energy, where a node was taken
+// The first six had gaps that were up to 18 half widths short, where nodes were taken in that were
+// bent, or lay between corners; the next two gained up to 1.3 of all energy, where a node was taken
 // in by an interval that was too long for how fast it swung at its end.
 TEST(Population, RopesThatHangMakeNoEnergy) {
   std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 25, 372};
