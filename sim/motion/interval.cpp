@@ -134,7 +134,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     if (round > 0) settled = solve_again(world, work.parts, part, s, set);
     if (!settled) ++d.fallbacks;
     if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
-    const double round_off = s.tolerance() / t.length;  // m/s
+    const double round_off = s.tolerance() / t.repair;  // m/s, over a step
     if (round > 0 && greatest_speed(world, bodies, s.velocity, &work.linear_velocity) >
                          std::max(bent * fastest, round_off)) {
       trial.missed = infinity;
