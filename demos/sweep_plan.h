@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "demos/batch.h"
-#include "demos/parameter_table.h"
+#include "demos/scenes/parameter_table.h"
 
 namespace pinchlab {
 

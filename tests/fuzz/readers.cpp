@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analysis/answers_table.h"
 #include "analysis/levels_table.h"
+#include "base/design_file.h"
 #include "base/input_error.h"
+#include "demos/scenes/parameter_table.h"
 #include "demos/scenes/scene_json.h"
 #include "demos/scenes/theme.h"
 #include "study/config.h"
 #include "study/jatos.h"
+#include "study/simulate.h"
 #include "tests/fuzz/targets.h"
 
 namespace pinchlab::fuzz {
@@ -122,6 +127,56 @@ bool fuzz_theme(std::string_view bytes) {
     return true;
   } catch (const SceneFileError& error) {
     must_name(error, path.string());
+    return false;
+  }
+}
+
+bool fuzz_truth(std::string_view bytes) {
+  const fs::path path = file_with(bytes, "truth.json");
+  try {
+    study::read_truth(path);
+    return true;
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+// With its own hash nothing that was changed would come past the first door.
+bool fuzz_design(std::string_view bytes) {
+  nlohmann::json document = nlohmann::json::parse(bytes, nullptr, false);
+  const bool whole = document.is_object();
+  if (whole) document["sha256"] = design_hash(document);
+  const fs::path path = file_with(whole ? document.dump() : std::string(bytes), "design.json");
+  try {
+    if (read_design(path).sha256 != document["sha256"]) throw Finding("a hash that is another's");
+    return true;
+  } catch (const InputError& error) {
+    must_name(error, path.string());
+    return false;
+  }
+}
+
+bool fuzz_sweep(std::string_view bytes) {
+  constexpr std::size_t most = 20;  // of its rows
+  const fs::path path = file_with(bytes, "table.csv");
+  const SceneTemplate scene = read_template(source("sweep.template.json"));
+  try {
+    const ParameterTable table = read_parameter_table(path);
+    check_columns(scene, table, {});
+    bool any = false;
+    for (std::size_t row = 0; row < std::min(table.rows.size(), most); ++row) {
+      try {
+        parse_scene(fill(scene, table, row).dump(), path.string());
+        any = true;
+      } catch (const SceneFileError& error) {
+        must_name(error, path.string());
+      }
+    }
+    return any;
+  } catch (const InputError& error) {
+    const std::string_view what = error.what();
+    if (!what.starts_with(scene.path.string())) must_name(error, path.string());
     return false;
   }
 }

@@ -23,6 +23,9 @@ bool fuzz_study_config(std::string_view bytes);  ///< study.json
 bool fuzz_jatos(std::string_view bytes);         ///< results that JATOS gave back
 bool fuzz_jatos_key(std::string_view bytes);     ///< the key of an archive for JATOS
 bool fuzz_theme(std::string_view bytes);         ///< a theme of the pictures
+bool fuzz_truth(std::string_view bytes);         ///< what simulated participants answer by
+bool fuzz_design(std::string_view bytes);        ///< design.json, its hash put right
+bool fuzz_sweep(std::string_view bytes);         ///< the table of a sweep over a scene
 bool fuzz_world(std::string_view bytes);         ///< a valid scene made of the bytes
 
 struct Target {
@@ -33,7 +36,9 @@ inline constexpr Target targets[] = {
     {"scene", fuzz_scene},   {"answers", fuzz_answers},
     {"counts", fuzz_counts}, {"study_config", fuzz_study_config},
     {"jatos", fuzz_jatos},   {"jatos_key", fuzz_jatos_key},
-    {"theme", fuzz_theme},   {"world", fuzz_world},
+    {"theme", fuzz_theme},   {"truth", fuzz_truth},
+    {"design", fuzz_design}, {"sweep", fuzz_sweep},
+    {"world", fuzz_world},
 };
 
 /// The scene file that fuzz_world makes of the bytes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "demos/parameter_table.h"
+#include "demos/scenes/parameter_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

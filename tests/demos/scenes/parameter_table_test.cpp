@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tables of values, ranges, and scenes with placeholders.
 
-#include "demos/parameter_table.h"
+#include "demos/scenes/parameter_table.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
