@@ -167,10 +167,10 @@ bool fuzz_sweep(std::string_view bytes) {
     bool any = false;
     for (std::size_t row = 0; row < std::min(table.rows.size(), most); ++row) {
       try {
-        parse_scene(fill(scene, table, row).dump(), path.string());
+        parse_scene(fill(scene, table, row).dump(), "00-row.json");
         any = true;
       } catch (const SceneFileError& error) {
-        must_name(error, path.string());
+        must_name(error, "00-row.json");
       }
     }
     return any;
