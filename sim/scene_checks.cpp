@@ -255,7 +255,7 @@ void refuse_what_cannot_hang(const Scene& scene, const World& world) {
 
 void refuse_hanging_into_others(const Scene& scene, const World& world, const BroadPhase& broad) {
   const double allowed = overlap_allowed(scene);
-  const auto refuse = [&scene](int cable, const std::string& what, double depth) {
+  const auto refuse = [](int cable, const std::string& what, double depth) {
     throw SceneError(pointer("cables", index(cable)),
                      fmt::format("as it hangs at the start the cable runs through {} ({} deep); "
                                  "give it another slack, or move that",
