@@ -100,11 +100,11 @@ void ProfileLdl::solve(std::vector<double>& x) const {
   for (std::size_t u = count; u-- > 0;) {
     const std::size_t place = index(independent_[u]);
     const double value = x[u];
-    std::fill(x.begin() + place + 1, x.begin() + end, 0.0);
+    std::fill(x.data() + place + 1, x.data() + end, 0.0);
     x[place] = value;
     end = place;
   }
-  std::fill(x.begin(), x.begin() + end, 0.0);
+  std::fill(x.data(), x.data() + end, 0.0);
 }
 
 void ProfileLdl::solve_independent(std::vector<double>& x) const {

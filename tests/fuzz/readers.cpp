@@ -12,7 +12,7 @@
 #include "demos/scenes/theme.h"
 #include "study/config.h"
 #include "study/jatos.h"
-#include "study/simulate.h"
+#include "study/truth.h"
 #include "tests/fuzz/targets.h"
 
 namespace pinchlab::fuzz {
