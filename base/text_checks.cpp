@@ -45,6 +45,15 @@ std::string one_of(std::span<const std::string> words) {
   return text;
 }
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const size_t length = utf8_length(text);
+    if (length == 0) return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
 std::string why_not_a_name(std::string_view name) {
   if (name.empty()) return "it is empty";
   if (name.size() > 128) return "it is longer than 128 bytes";

@@ -17,6 +17,9 @@ std::string one_of(std::span<const std::string> words);
 /// 128 bytes of valid UTF-8, no control characters and no blanks at the ends.
 std::string why_not_a_name(std::string_view name);
 
+/// Whether it is valid UTF-8 throughout.
+bool is_utf8(std::string_view text);
+
 /// A finite decimal number that fills `text` whole, or nothing. "nan", "inf" and hexadecimal are
 /// refused.
 std::optional<double> parse_number(std::string_view text);

@@ -19,7 +19,7 @@ constexpr int tile_width = 16, tile_height = 8;  // px, even
 bool same_shapes(const Mesh& a, const Mesh& b) {
   return a.sheets() == b.sheets() &&
          std::equal(a.shapes().begin(), a.shapes().end(), b.shapes().begin(), b.shapes().end(),
-                    [](const Shape& one, const Shape& other) {
+                    [](const MeshShape& one, const MeshShape& other) {
                       return one.program == other.program && one.texture == other.texture;
                     });
 }

@@ -66,7 +66,7 @@ struct Batch {
 };
 
 /// The quads of one shape of a picture, from `first` on.
-struct Shape {
+struct MeshShape {
   Program program;
   std::uint32_t texture;
   std::size_t first;
@@ -109,7 +109,7 @@ class Mesh {
   const std::vector<Vertex>& vertices() const { return vertices_; }
   const std::vector<Batch>& batches() const { return batches_; }
   const std::vector<Sheet>& sheets() const { return sheets_; }
-  const std::vector<Shape>& shapes() const { return shapes_; }
+  const std::vector<MeshShape>& shapes() const { return shapes_; }
   std::size_t quad_count() const { return vertices_.size() / quad_corners; }
   const Vertex* quad(std::size_t index) const { return vertices_.data() + index * quad_corners; }
   const Frame& frame(std::size_t quad) const { return frames_[quad]; }
@@ -128,7 +128,7 @@ class Mesh {
   std::vector<Frame> frames_;  // one a quad
   std::vector<Batch> batches_;
   std::vector<Sheet> sheets_;
-  std::vector<Shape> shapes_;
+  std::vector<MeshShape> shapes_;
   std::vector<Piece> pieces_;  // of the strip being added
   std::vector<Side> sides_;    // of its points
   bool open_ = false;

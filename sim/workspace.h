@@ -53,7 +53,7 @@ struct Start {
 };
 
 /// What came of trying an interval.
-struct Trial {
+struct IntervalTrial {
   bool met = true;            // lengths and gaps are exact at its end
   bool settled = true;        // every solve
   bool violated = false;      // what it began with, by more than it makes up for
@@ -109,8 +109,8 @@ struct Workspace {
   Start start;                  // of the last interval
   std::vector<int> first_link;  // of each cable, in `start`; -1: it cannot slide. As that
   std::vector<Eigen::Vector3d> linear_velocity;  // of a part, before SHAKE; by move_part
-  std::vector<Trial> trials;                     // the last of each part; by try_interval, as
-  Trial trial;                                   // the last, of all that were tried
+  std::vector<IntervalTrial> trials;             // the last of each part; by try_interval, as
+  IntervalTrial trial;                           // the last, of all that were tried
   std::vector<Happening> events;        // of the interval being tried; by motion/events.cpp
   std::vector<Happening> tried_events;  // of a step that has just been divided; by move_each
   std::vector<int> known_events;        // of them, before the trial; by begin_trial

@@ -146,8 +146,14 @@ ParameterTable read_parameter_table(const std::filesystem::path& path) {
                                                    fields.size(), table.columns.size()));
     }
     for (std::size_t c = 0; c < fields.size(); ++c) {
-      if (!fields[c].empty()) continue;
-      throw InputError(reader.place(), fmt::format("column `{}` is empty", table.columns[c]));
+      if (fields[c].empty()) {
+        throw InputError(reader.place(), fmt::format("column `{}` is empty", table.columns[c]));
+      }
+      if (!is_utf8(fields[c])) {
+        throw InputError(reader.place(),
+                         fmt::format("column `{}` is not valid UTF-8 (save the file as UTF-8)",
+                                     table.columns[c]));
+      }
     }
     if (table.rows.size() == max_table_rows) {
       throw InputError(reader.place(), fmt::format("more than {} rows", max_table_rows));

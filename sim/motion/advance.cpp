@@ -178,7 +178,7 @@ StepStatus fail_by_changes(World& world) {
 
 /// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was; `met`:
 /// nothing happened in it, and lengths and gaps are exact. The part's pace.
-Pace note_ways(World& world, const Workspace& work, const Part& part, const Trial& trial,
+Pace note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
                double length, bool met) {
   const Pace before = pace_of(world, work.parts, part);
   if (!met || !trial.settled) return {.lag = 0.5 * length};

@@ -123,7 +123,8 @@ double greatest_speed(const World& world, std::span<const int> bodies,
 /// Solves and moves a part, with at most so many changes of what its motors do; whether its lengths
 /// and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               const Attempt& attempt, int changes_of_motors, Trial& trial, Stopwatch& watch) {
+               const Attempt& attempt, int changes_of_motors, IntervalTrial& trial,
+               Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   bool settled = solve_steadily(scene, world, work, part, t, changes_of_motors, watch);
@@ -175,7 +176,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
 /// The same, with motors that are within their limits then. The first solution, whose constraints
 /// are those of the interval's start, does not know half of the force that a curved way takes.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               const Attempt& attempt, Trial& trial, Stopwatch& watch) {
+               const Attempt& attempt, IntervalTrial& trial, Stopwatch& watch) {
   constexpr int most_turns = 3;  // each motor to its limit, back, and no third time
   PartSystem& s = at(work.systems, part.system);
   bool met = move_part(scene, world, work, part, t, attempt, most_motor_changes, trial, watch);
@@ -183,13 +184,13 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     put_back(world, work, part);
     s.free_velocity = s.unconstrained;
     drive(s);
-    trial = Trial{};
+    trial = IntervalTrial{};
     met = move_part(scene, world, work, part, t, attempt, 0, trial, watch);
   }
   return met;
 }
 
-void add(const Trial& one, Trial& all) {
+void add(const IntervalTrial& one, IntervalTrial& all) {
   all.met = all.met && one.met;
   all.settled = all.settled && one.settled;
   all.violated = all.violated || one.violated;
@@ -202,8 +203,8 @@ void add(const Trial& one, Trial& all) {
 }
 
 /// Tries an interval of one part.
-Trial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
-               const Attempt& attempt, Stopwatch& watch) {
+IntervalTrial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
+                       const Attempt& attempt, Stopwatch& watch) {
   PartSystem& s = at(work.systems, part.system);
   const Pace pace = pace_of(world, work.parts, part);
   TimeSpan t;
@@ -219,7 +220,7 @@ Trial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
   t.foreseen =
       attempt.foresees && s.carried.empty() && is_foreseen(pace, world.configuration.error, t);
   t.reach = attempt.locates ? s.reach : infinity;
-  Trial trial;
+  IntervalTrial trial;
   trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
   trial.foreseen = t.foreseen;
   return trial;
@@ -228,12 +229,12 @@ Trial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
 /// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
 void try_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                   const Attempt& attempt, Stopwatch& watch) {
-  work.trial = Trial{};
+  work.trial = IntervalTrial{};
   work.trials.resize(work.parts.list.size());
   begin_trial(work);
   for (const int p : movers.parts) {
     Part& part = at(work.parts.list, p);
-    Trial& trial = at(work.trials, p);
+    IntervalTrial& trial = at(work.trials, p);
     const double longest =
         attempt.locates ? longest_interval(world, work.parts, {&p, 1}) : infinity;
     const std::int64_t fallbacks = world.diagnostics.fallbacks;
@@ -264,17 +265,17 @@ void try_again(const Scene& scene, World& world, Workspace& work, const Movers& 
 }
 
 /// Whether nodes swing faster than a trial of that length (s) has followed.
-bool is_outrun(const World& world, const Trial& trial, double length) {
+bool is_outrun(const World& world, const IntervalTrial& trial, double length) {
   return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
 }
 
 /// The share of that length (s) that is to be tried then. No less than a tenth at once, as what it
 /// is chosen by was found with the long interval; and so much less that a trial is worth its cost.
-double share_for_wave(const World& world, const Trial& trial, double length) {
+double share_for_wave(const World& world, const IntervalTrial& trial, double length) {
   return std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
 }
 
-bool errs(const World& world, const Trial& trial) {
+bool errs(const World& world, const IntervalTrial& trial) {
   const double allowed = share_of_error * world.configuration.error;
   return allowed > 0.0 && trial.met && trial.local_error > allowed;
 }
@@ -284,7 +285,7 @@ bool errs(const World& world, const Trial& trial) {
 /// that comes upon a cable as straight as it can be, which cannot give, is only held once it is so
 /// far in that the cable's directions tell, and lengths are exact only if that is next to nothing:
 /// an interval is taken up to there. Another in succession would not help.
-double share_to_try(const Trial& trial, const Movers& movers) {
+double share_to_try(const IntervalTrial& trial, const Movers& movers) {
   // No less than what corrections can tell (shortest_corrected), and of the share that would just
   // do somewhat less, lest the next trial misses by a hair.
   constexpr double half = 0.5, least = 1e-6, safety = 0.7;
@@ -297,7 +298,7 @@ double share_to_try(const Trial& trial, const Movers& movers) {
 /// Returns its length.
 double find_sound_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                            double length, Stopwatch& watch) {
-  const Trial& trial = work.trial;
+  const IntervalTrial& trial = work.trial;
   const auto again = [&](int most_rounds) {
     work.events.clear();
     try_again(scene, world, work, movers, {length, most_rounds}, watch);
@@ -422,13 +423,13 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
   }
 }
 
-Trial trial_of(const Workspace& work, std::span<const int> parts) {
-  Trial all;
+IntervalTrial trial_of(const Workspace& work, std::span<const int> parts) {
+  IntervalTrial all;
   for (const int p : parts) add(at(work.trials, p), all);
   return all;
 }
 
-bool is_sound(const World& world, const Trial& trial, double length) {
+bool is_sound(const World& world, const IntervalTrial& trial, double length) {
   return trial.met && !errs(world, trial) && !is_outrun(world, trial, length) &&
          length <= trial.longest;
 }

@@ -10,7 +10,7 @@
 
 namespace pinchlab {
 
-struct Trial;
+struct IntervalTrial;
 struct Workspace;
 
 /// The share of Configuration::error that one interval may err by. Intervals' errors add up, and an
@@ -45,11 +45,11 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
                     double length, Stopwatch& watch);
 
 /// The last trial of these parts.
-Trial trial_of(const Workspace& work, std::span<const int> parts);
+IntervalTrial trial_of(const Workspace& work, std::span<const int> parts);
 
 /// Whether a trial of that length (s) errs by no more than the scene allows, has followed all waves
 /// on cables of nodes, is no longer than vanishing spans allow, and needs no repair.
-bool is_sound(const World& world, const Trial& trial, double length);
+bool is_sound(const World& world, const IntervalTrial& trial, double length);
 
 /// Of the time that is left of a step (s) the interval to try: all of it, or what follows the waves
 /// on these parts' cables under the tensions that they have and, with `locates`, their vanishing

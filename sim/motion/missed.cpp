@@ -36,7 +36,7 @@ double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
 }  // namespace
 
 double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t, PartSystem& s,
-                  Trial& trial) {
+                  IntervalTrial& trial) {
   const CapstanScratch& capstan = set.capstan;
   const bool slides = !capstan.runs.empty();
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`

@@ -7,12 +7,12 @@ namespace pinchlab {
 struct SolveScratch;
 struct PartSystem;
 struct TimeSpan;
-struct Trial;
+struct IntervalTrial;
 struct World;
 
 /// Adds to the rows' biases what their conditions have missed at the present positions; returns the
 /// most (m). Notes in the trial whether one was violated from the start.
 double add_missed(const World& world, const SolveScratch& scratch, const TimeSpan& interval,
-                  PartSystem& system, Trial& trial);
+                  PartSystem& system, IntervalTrial& trial);
 
 }  // namespace pinchlab

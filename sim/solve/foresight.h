@@ -29,7 +29,7 @@ void foresee(const World& world, double length, PartSystem& system);
 struct IntervalDone {
   double length = 0.0;  // s
   bool foreseen = false;
-  double local_error = 0.0;  // m, of what was not foreseen; see Trial
+  double local_error = 0.0;  // m, of what was not foreseen; see IntervalTrial
   double allowed = 0.0;      // m, of that; 0: steps are not divided by their error
 };
 

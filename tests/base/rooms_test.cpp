@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "base/read_file.h"
 
@@ -190,6 +191,44 @@ TEST(Comments, FitIntoOneHundredColumns) {
   }
   EXPECT_GT(comments, 5000);
   EXPECT_EQ(longer, "");
+}
+
+// Two types of one name in one namespace, in different files, are undefined behaviour where both
+// are in one program: what the compiler makes of the one's vectors serves the other's. (Once `Trial`
+// was an answer's in base/ and an interval's in sim/, and a reader wrote behind its memory.)
+TEST(Rooms, NoTwoTypesHaveOneName) {
+  const fs::path root = PINCHLAB_SOURCE_DIR;
+  const std::regex opens(R"re(^namespace ([\w:]*) ?\{)re"), closes(R"re(^\}  // namespace)re");
+  const std::regex type(R"re(^(struct|class|enum class|enum) (alignas\(\d+\) )?(\w+)[^;]*\{)re");
+  std::map<std::string, std::set<std::string>> units;  // where each is defined
+  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path& path = entry.path();
+      if (path.extension() != ".h" && path.extension() != ".cpp") continue;
+      std::vector<std::string> spaces;
+      std::istringstream text(read_whole(path));
+      for (std::string line; std::getline(text, line);) {
+        std::smatch match;
+        if (std::regex_search(line, match, opens)) {
+          spaces.push_back(match[1]);
+        } else if (std::regex_search(line, closes) && !spaces.empty()) {
+          spaces.pop_back();
+        } else if (std::regex_search(line, match, type)) {
+          std::string name;
+          for (const std::string& space : spaces) name += space + "::";
+          const bool is_local = std::ranges::find(spaces, "") != spaces.end();
+          if (!is_local) units[name + match[3].str()].insert(unit_of(fs::relative(path, root)));
+        }
+      }
+    }
+  }
+  EXPECT_GT(units.size(), 200U);
+  for (const auto& [name, where] : units) {
+    // One written for two libraries: FFmpeg's and another.
+    if (where.contains("render/video")) continue;
+    EXPECT_EQ(where.size(), 1U) << name << " is in " << *where.begin() << " and "
+                                << *where.rbegin();
+  }
 }
 
 }  // namespace
