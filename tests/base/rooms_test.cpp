@@ -194,8 +194,8 @@ TEST(Comments, FitIntoOneHundredColumns) {
 }
 
 // Two types of one name in one namespace, in different files, are undefined behaviour where both
-// are in one program: what the compiler makes of the one's vectors serves the other's. (Once `Trial`
-// was an answer's in base/ and an interval's in sim/, and a reader wrote behind its memory.)
+// are in one program: what the compiler makes of the one's vectors serves the other's. (`Trial`
+// was once an answer's in base/ and an interval's in sim/, and a reader wrote behind its memory.)
 TEST(Rooms, NoTwoTypesHaveOneName) {
   const fs::path root = PINCHLAB_SOURCE_DIR;
   const std::regex opens(R"re(^namespace ([\w:]*) ?\{)re"), closes(R"re(^\}  // namespace)re");
