@@ -22,7 +22,6 @@
 namespace pinchlab::study {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 
 double logistic(double x) {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 #include <stdexcept>
 
 #include "analysis/experiments/step_cost.h"

@@ -190,11 +190,11 @@ int next_corner(const World& world, const Link& link, bool along) {
 /// from, or lays it on a polygon's next corner that it would cut. Whether it has.
 bool give_way(World& world, CableState& cable, int link, bool leaves, double length,
               const Vec2& direction) {
-  const Link rim = at(cable.links, link);
+  const Link& rim = at(cable.links, link);
   if (rim.orientation == 0) return false;
   const int segment = leaves ? next_link(cable, link) : link;
   const int node = leaves ? segment : previous_link(cable, link);
-  const Vec2 before = at(cable.segments, segment).direction;
+  const Vec2& before = at(cable.segments, segment).direction;
   const double turned = std::atan2(cross(before, direction), before.dot(direction));
   if (rim.wrap + (leaves ? 1 : -1) * rim.orientation * turned < 0.0 &&
       !needed(cable, index(link))) {
@@ -248,10 +248,7 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
     at(world.position, node) = place;
     at(world.velocity, node) = velocity_between(tail, head, passed / free, along);
   }
-  for (const std::size_t s : spans) {
-    update_tangent(world, cable, s);
-    begin_here(cable.segments[s]);
-  }
+  for (const std::size_t s : spans) update_tangent(world, cable, s);
   update_wraps_and_rest_lengths(world, cable);
   return false;
 }

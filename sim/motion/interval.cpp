@@ -269,10 +269,11 @@ bool is_outrun(const World& world, const IntervalTrial& trial, double length) {
   return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
 }
 
-/// The share of that length (s) that is to be tried then. No less than a tenth at once, as what it
-/// is chosen by was found with the long interval; and so much less that a trial is worth its cost.
-double share_for_wave(const World& world, const IntervalTrial& trial, double length) {
-  return std::clamp(interval_for(world, trial.wave) / length, 0.1, 0.7);
+/// The share of an interval that is tried next where `wanted` would do. No less than a tenth at
+/// once, as what that is by was found with the long one; and so much less that a trial is worth its
+/// cost.
+double next_share(double wanted) {
+  return std::clamp(wanted, 0.1, 0.7);
 }
 
 bool errs(const World& world, const IntervalTrial& trial) {
@@ -315,13 +316,13 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
   double whole = length;  // before the first halving
   for (int halvings = 0;;) {
     if (is_outrun(world, trial, length)) {
-      length *= share_for_wave(world, trial, length);
+      length *= next_share(interval_for(world, trial.wave) / length);
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
     }
     if (errs(world, trial) && length > shortest * world.step_length) {
-      length *= std::clamp(0.8 * std::cbrt(allowed / trial.local_error), 0.1, 0.7);  // likewise
+      length *= next_share(0.8 * std::cbrt(allowed / trial.local_error));
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
@@ -461,7 +462,7 @@ double shorten_interval(const Scene& scene, World& world, Workspace& work, const
     length = locate_first_event(scene, world, work, movers, length, met, watch);
     // A node swings the faster the nearer it comes to the rim that takes it in.
     if (!is_outrun(world, work.trial, length)) return length;
-    length *= share_for_wave(world, work.trial, length);
+    length *= next_share(interval_for(world, work.trial.wave) / length);
     work.events.clear();
     try_again(scene, world, work, movers, {length}, watch);
   }

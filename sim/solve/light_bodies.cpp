@@ -127,7 +127,7 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
       if (segment.length <= 2.0 * cable.half_width) continue;
       const Link& head = cable.links[s];
       const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(s)));
-      const double wave = wave_of(world, cable);
+      const double wave = cable.nodes > 0 ? 0.0 : wave_of(world, cable);  // each node has its own
       const bool divided = is_divided_for(world, wave), lost = is_lost(world, wave);
       const auto note = [&](const Link& end, const Link& other) {
         const bool strung = is_strung(cable, end);

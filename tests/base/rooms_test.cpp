@@ -53,22 +53,35 @@ std::string unit_of(const fs::path& path) {
   return (path.parent_path() / path.stem()).string();
 }
 
-// What each file of ours includes of ours: path to paths.
-Graph includes() {
-  const fs::path root = PINCHLAB_SOURCE_DIR;
-  const std::regex line(R"re(^#include "([^"]+)")re");
-  Graph graph;
-  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
+const fs::path root = PINCHLAB_SOURCE_DIR;
+
+// Our C++ files in these folders, from the root.
+std::vector<fs::path> sources_in(const std::vector<const char*>& folders) {
+  std::vector<fs::path> sources;
+  for (const char* folder : folders) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
       const fs::path& path = entry.path();
       const bool is_source = path.extension() == ".cpp" || path.extension() == ".h";
       if (!is_source || path.string().find("node_modules") != std::string::npos) continue;
-      std::set<std::string>& of_file = graph[fs::relative(path, root).string()];
-      std::istringstream text(read_whole(path));
-      std::smatch found;
-      for (std::string l; std::getline(text, l);) {
-        if (std::regex_search(l, found, line)) of_file.insert(found[1]);
-      }
+      sources.push_back(fs::relative(path, root));
+    }
+  }
+  return sources;
+}
+
+const std::vector<const char*> top_folders = {"base",  "sim",      "render",
+                                              "demos", "analysis", "study"};
+
+// What each file of ours includes of ours: path to paths.
+Graph includes() {
+  const std::regex line(R"re(^#include "([^"]+)")re");
+  Graph graph;
+  for (const fs::path& path : sources_in(top_folders)) {
+    std::set<std::string>& of_file = graph[path.string()];
+    std::istringstream text(read_whole(root / path));
+    std::smatch found;
+    for (std::string l; std::getline(text, l);) {
+      if (std::regex_search(l, found, line)) of_file.insert(found[1]);
     }
   }
   return graph;
@@ -167,60 +180,55 @@ TEST(Rooms, NoIncludesGoRoundInACircle) {
 
 // clang-format wraps code only: what it would do to comments breaks formulas.
 TEST(Comments, FitIntoOneHundredColumns) {
-  const fs::path root = PINCHLAB_SOURCE_DIR;
   const std::regex comment(R"re(^\s*//.*)re");
   std::string longer;
   int comments = 0;
-  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study", "tests"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
-      const fs::path& path = entry.path();
-      if (path.extension() != ".cpp" && path.extension() != ".h") continue;
-      if (path.string().find("node_modules") != std::string::npos) continue;
-      std::istringstream text(read_whole(path));
-      int number = 0;
-      for (std::string line; std::getline(text, line); ++number) {
-        if (!std::regex_match(line, comment)) continue;
-        ++comments;
-        const auto columns =
-            std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });  // UTF-8
-        if (columns > 100) {
-          longer += "\n" + fs::relative(path, root).string() + ":" + std::to_string(number + 1);
-        }
-      }
+  std::vector<const char*> folders = top_folders;
+  folders.push_back("tests");
+  for (const fs::path& path : sources_in(folders)) {
+    std::istringstream text(read_whole(root / path));
+    int number = 0;
+    for (std::string line; std::getline(text, line); ++number) {
+      if (!std::regex_match(line, comment)) continue;
+      ++comments;
+      const auto columns =
+          std::ranges::count_if(line, [](char c) { return (c & 0xc0) != 0x80; });  // UTF-8
+      if (columns > 100) longer += "\n" + path.string() + ":" + std::to_string(number + 1);
     }
   }
   EXPECT_GT(comments, 5000);
   EXPECT_EQ(longer, "");
 }
 
+// Types that a file defines for others: names with their namespaces.
+std::vector<std::string> types_in(const fs::path& path) {
+  const std::regex opens(R"re(^namespace ([\w:]*) ?\{)re"), closes(R"re(^\}  // namespace)re");
+  const std::regex type(R"re(^(struct|class|enum class|enum) (alignas\(\d+\) )?(\w+)[^;]*\{)re");
+  std::vector<std::string> types, spaces;
+  std::istringstream text(read_whole(root / path));
+  for (std::string line; std::getline(text, line);) {
+    std::smatch match;
+    if (std::regex_search(line, match, opens)) {
+      spaces.push_back(match[1]);
+    } else if (std::regex_search(line, closes) && !spaces.empty()) {
+      spaces.pop_back();
+    } else if (std::regex_search(line, match, type) &&
+               std::ranges::find(spaces, "") == spaces.end()) {
+      std::string name;
+      for (const std::string& space : spaces) name += space + "::";
+      types.push_back(name + match[3].str());
+    }
+  }
+  return types;
+}
+
 // Two types of one name in one namespace, in different files, are undefined behaviour where both
 // are in one program: what the compiler makes of the one's vectors serves the other's. (`Trial`
 // was once an answer's in base/ and an interval's in sim/, and a reader wrote behind its memory.)
 TEST(Rooms, NoTwoTypesHaveOneName) {
-  const fs::path root = PINCHLAB_SOURCE_DIR;
-  const std::regex opens(R"re(^namespace ([\w:]*) ?\{)re"), closes(R"re(^\}  // namespace)re");
-  const std::regex type(R"re(^(struct|class|enum class|enum) (alignas\(\d+\) )?(\w+)[^;]*\{)re");
-  std::map<std::string, std::set<std::string>> units;  // where each is defined
-  for (const char* top : {"base", "sim", "render", "demos", "analysis", "study"}) {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / top)) {
-      const fs::path& path = entry.path();
-      if (path.extension() != ".h" && path.extension() != ".cpp") continue;
-      std::vector<std::string> spaces;
-      std::istringstream text(read_whole(path));
-      for (std::string line; std::getline(text, line);) {
-        std::smatch match;
-        if (std::regex_search(line, match, opens)) {
-          spaces.push_back(match[1]);
-        } else if (std::regex_search(line, closes) && !spaces.empty()) {
-          spaces.pop_back();
-        } else if (std::regex_search(line, match, type)) {
-          std::string name;
-          for (const std::string& space : spaces) name += space + "::";
-          const bool is_local = std::ranges::find(spaces, "") != spaces.end();
-          if (!is_local) units[name + match[3].str()].insert(unit_of(fs::relative(path, root)));
-        }
-      }
-    }
+  Graph units;  // where each is defined
+  for (const fs::path& path : sources_in(top_folders)) {
+    for (const std::string& name : types_in(path)) units[name].insert(unit_of(path));
   }
   EXPECT_GT(units.size(), 200U);
   for (const auto& [name, where] : units) {

@@ -48,11 +48,11 @@ void check(const analysis::AnswersTable& table) {
   }
 }
 
-bool read_table(const fs::path& path) {
-  analysis::ReadOptions options;
-  options.allow_missing = true;
+/// Whether `read` takes the file; if it refuses it, it must name it.
+template <typename Read>
+bool is_used(const fs::path& path, Read read) {
   try {
-    check(analysis::read_answers({path}, options));
+    read();
     return true;
   } catch (const InputError& error) {
     must_name(error, path.string());
@@ -60,16 +60,18 @@ bool read_table(const fs::path& path) {
   }
 }
 
+bool read_table(const fs::path& path) {
+  analysis::ReadOptions options;
+  options.allow_missing = true;
+  return is_used(path, [&] { check(analysis::read_answers({path}, options)); });
+}
+
 /// Counts at each level, as threshold studies give them.
 bool read_levels(const fs::path& path) {
-  try {
+  return is_used(path, [&] {
     const analysis::LevelsTable table = analysis::read_levels({path}, {});
     if (table.series.empty()) throw Finding("a table without series");
-    return true;
-  } catch (const InputError& error) {
-    must_name(error, path.string());
-    return false;
-  }
+  });
 }
 
 /// Imports into a folder that is empty before.
@@ -98,26 +100,17 @@ bool fuzz_answers(std::string_view bytes) {
 bool fuzz_counts(std::string_view bytes) {
   const fs::path path = file_with(bytes, "counts.csv");
   bool has_levels = false;
-  try {
-    has_levels = analysis::has_levels(path, {});
-  } catch (const InputError& error) {
-    must_name(error, path.string());
-    return false;
-  }
+  if (!is_used(path, [&] { has_levels = analysis::has_levels(path, {}); })) return false;
   return has_levels ? read_levels(path) : read_table(path);
 }
 
 bool fuzz_study_config(std::string_view bytes) {
   const fs::path path = file_with(bytes, "study.json");
-  try {
+  return is_used(path, [&] {
     const study::Config config = study::read_config(path);
     if (config.texts.empty()) throw Finding("a study without texts");
     if (!config.demonstrations.empty()) study::make_plan(1, 0, study::plan_options(config));
-    return true;
-  } catch (const InputError& error) {
-    must_name(error, path.string());
-    return false;
-  }
+  });
 }
 
 bool fuzz_theme(std::string_view bytes) {
@@ -133,13 +126,7 @@ bool fuzz_theme(std::string_view bytes) {
 
 bool fuzz_truth(std::string_view bytes) {
   const fs::path path = file_with(bytes, "truth.json");
-  try {
-    study::read_truth(path);
-    return true;
-  } catch (const InputError& error) {
-    must_name(error, path.string());
-    return false;
-  }
+  return is_used(path, [&] { study::read_truth(path); });
 }
 
 // With its own hash nothing that was changed would come past the first door.
@@ -148,14 +135,10 @@ bool fuzz_design(std::string_view bytes) {
   const bool whole = document.is_object();
   if (whole) document["sha256"] = design_hash(document);
   const fs::path path = file_with(whole ? document.dump() : std::string(bytes), "design.json");
-  try {
+  return is_used(path, [&] {
     const Design design = read_design(path);
     if (!whole || design.sha256 != document["sha256"]) throw Finding("a hash that is another's");
-    return true;
-  } catch (const InputError& error) {
-    must_name(error, path.string());
-    return false;
-  }
+  });
 }
 
 bool fuzz_sweep(std::string_view bytes) {
