@@ -26,8 +26,6 @@
 
 namespace pinchlab {
 
-namespace {
-
 World bodies_of_scene(const Scene& scene) {
   World world;
   world.step_length = step_length(scene);
@@ -59,6 +57,8 @@ World bodies_of_scene(const Scene& scene) {
   }
   return world;
 }
+
+namespace {
 
 void lay_cables(const Scene& scene, World& world) {
   const double allowed = overlap_allowed(scene);

@@ -6,10 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/lay.h"
+#include "sim/compound.h"
 #include "sim/hanging.h"
+#include "sim/make_world.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
@@ -133,9 +138,27 @@ class Held {
   std::vector<std::pair<int, Set>> before_;  // places, and what was there before each change
 };
 
+/// kg, what a cable that runs over bodies has to hold: the heaviest of what hangs on it, or all,
+/// where all is held up by something else. `held` is without it.
+double hung_mass_over_bodies(const Cable& cable, const Held& held) {
+  std::vector<int> roots;
+  for (const int body : bodies_on(cable)) {
+    if (body >= 0) roots.push_back(held.root_of(body));
+  }
+  std::ranges::sort(roots);
+  roots.erase(std::ranges::unique(roots).begin(), roots.end());
+  double heaviest = 0.0, all = 0.0;
+  for (const int root : roots) {
+    all += held.mass(root);
+    if (!held.anchored(root)) heaviest = std::max(heaviest, held.mass(root));
+  }
+  return heaviest > 0.0 ? heaviest : all;
+}
+
 /// kg, what the cable has to hold: the lighter of what hangs at its ends; or all, where both are
 /// held up by something else. `held` is without it.
 double hung_mass(const Cable& cable, const Held& held) {
+  if (!cable.wraps.empty()) return hung_mass_over_bodies(cable, held);
   double least = infinity, all = 0.0;
   int before = -1;
   for (const Attachment* end : {&cable.start, &cable.end}) {
@@ -190,8 +213,8 @@ double hanging_tension(const Scene& scene, const Cable& cable) {
   return chain.tension + 0.5 * weight.norm() / pieces;  // half of a piece hangs at either end
 }
 
-/// `hung` (kg) is what the cable has to hold.
-double expected_tension(const Scene& scene, const Cable& cable, double hung) {
+/// N, of one whose ends hold `hung` (kg).
+double swinging_tension(const Scene& scene, const Cable& cable, double hung) {
   const double g = scene.gravity.norm(), length = length_of(scene, cable);
   if (!(length > 0.0)) return 0.0;  // which spread_nodes refuses
   const bool start_moves = end_moves(scene, cable.start), moves = end_moves(scene, cable.end);
@@ -206,27 +229,90 @@ double expected_tension(const Scene& scene, const Cable& cable, double hung) {
   return mass * (g + (2.0 * fall + speed * speed) / length);
 }
 
+/// N, where a span between what stands bears most: at its upper end. Its chord is `chord` (m), and
+/// `slack` the share of its length that it is longer.
+double sagging_tension(const Scene& scene, const Cable& cable, const Vec2& chord, double slack) {
+  const double along = cable.mass_per_metre * std::abs(chord.dot(scene.gravity));      // N
+  const double across = cable.mass_per_metre * std::abs(cross(chord, scene.gravity));  // N
+  double tension = slack > 0.0 ? across / (8.0 * std::sqrt(0.375 * slack)) : infinity;
+  if (cable.axial_stiffness < infinity) {
+    const double taut = std::max(-slack, 0.0) * cable.axial_stiffness;
+    tension = std::min(tension, taut + std::cbrt(cable.axial_stiffness * across * across / 24.0));
+  }
+  if (tension == infinity)
+    tension = 0.0;  // what cannot sag does not stand, or has no weight across
+  return std::hypot(tension + along, 0.5 * across);
+}
+
+/// Whether a segment lies along a polygon's side.
+bool is_laid_along(const CableState& laid, std::size_t segment) {
+  const int before = previous_link(laid, static_cast<int>(segment));
+  return is_side(at(laid.links, before), laid.links[segment]);
+}
+
+bool can_swing(const World& world, const Link& link) {
+  return link.body >= 0 && can_move(at(world.bodies, mover_of(world, link.body)));
+}
+
+/// N, of one that runs over bodies and holds `hung` (kg), as it is laid.
+double tension_over_bodies(const Scene& scene, const World& world, const Cable& cable,
+                           const CableState& laid, double hung) {
+  const double g = scene.gravity.norm(), mass = hung + cable.mass_per_metre * laid.length;
+  double free = 0.0;  // m, of spans, which share the slack
+  for (std::size_t i = first_segment(laid); i < laid.segments.size(); ++i) {
+    if (!is_laid_along(laid, i)) free += laid.segments[i].length;
+  }
+  double sagging = 0.0, swinging = 0.0;
+  bool swings = false;
+  for (std::size_t i = first_segment(laid); i < laid.segments.size(); ++i) {
+    const Segment& span = laid.segments[i];
+    if (!(span.length > 0.0) || is_laid_along(laid, i)) continue;
+    sagging = std::max(
+        sagging, sagging_tension(scene, cable, span.length * span.direction, cable.slack / free));
+    const Link &from = at(laid.links, previous_link(laid, static_cast<int>(i))),
+               &to = laid.links[i];
+    if (!can_swing(world, from) && !can_swing(world, to)) continue;
+    swings = true;
+    const Vec2 apart = velocity_of(world, to) - velocity_of(world, from);
+    swinging = std::max(swinging, mass * (3.0 * g + apart.squaredNorm() / span.length));
+  }
+  return swings ? swinging : sagging;
+}
+
 }  // namespace
 
-std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables) {
+std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_t> cables) {
   Held held(scene);
   std::vector<bool> asked(scene.cables.size());
   for (const std::size_t c : cables) asked[c] = true;
   for (std::size_t c = 0; c < asked.size(); ++c) {
     if (!asked[c]) held.add(scene, scene.cables[c]);
   }
-  std::vector<double> tensions(cables.size());
-  find_hung_masses(scene, cables, held, tensions);
+  std::vector<double> hung(cables.size());
+  find_hung_masses(scene, cables, held, hung);
+  std::optional<World> world;  // to lay what runs over bodies
+  std::vector<Expected> expected;
   for (std::size_t i = 0; i < cables.size(); ++i) {
-    tensions[i] = expected_tension(scene, scene.cables[cables[i]], tensions[i]);
+    const Cable& cable = scene.cables[cables[i]];
+    if (cable.wraps.empty()) {
+      expected.push_back({length_of(scene, cable), swinging_tension(scene, cable, hung[i])});
+      continue;
+    }
+    if (!world) world = bodies_of_scene(scene);
+    const CableState laid = lay_cable(scene, *world, overlap_allowed(scene), cables[i]);
+    expected.push_back({laid.length, tension_over_bodies(scene, *world, cable, laid, hung[i])});
   }
-  return tensions;
+  return expected;
 }
 
-int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,
+int count_pieces(const Scene& scene, const Cable& cable, const Expected& expected,
                  const std::string& place) {
-  const double most = length / shortest_piece(scene, cable, length, tension);
-  int pieces = cable.nodes > 0 ? cable.nodes + 1 : 2 * std::max(1, static_cast<int>(most / 2.0));
+  const double length = expected.length;
+  int pieces = cable.nodes + 1;
+  if (cable.nodes <= 0) {
+    const double most = length / shortest_piece(scene, cable, length, expected.tension);
+    pieces = 2 * std::max(1, static_cast<int>(most / 2.0));
+  }
   if (cable.node_tolerance != 0.0) pieces = count_adaptive_pieces(cable, pieces, place);
   const double piece = length / pieces;
   if (piece <= 2.0 * cable.half_width) {

@@ -19,6 +19,16 @@
 // odd number the middle is a level piece, and what nodes show of the sag lacks l^2 / 8 of the
 // curvature.
 //
+// One that runs over bodies hangs between any two of its links. Of what hangs on it, at its ends or
+// in its bights, it bears the heaviest, M with the cable itself, and swings it about the next link:
+// 3 M g or more as above. Where all stands a span of the chord c sags by c sqrt(3 e / 8), as a
+// parabola does, for the share e of its length that is slack, and so
+//
+//     T = W / (8 sqrt(3 e / 8)),  or T_0 + (EA W^2 / 24)^(1/3) of one that stretches, the less,
+//
+// with W its weight across the chord, half of which its upper end bears beside, and all that is
+// along the chord; T_0 is what it is stretched with from the start.
+//
 // What catches a cable that is slack, a motor, or a body that falls on it may pull harder: then
 // steps are divided.
 
@@ -34,14 +44,20 @@ namespace pinchlab {
 /// 2.5e-5. Whoever wants more says so.
 constexpr int most_nodes_chosen = 199;
 
-/// N, of each of these cables, of which spread_nodes is to make chains; none comes twice. The
-/// scene's other cables count as they are before that.
-std::vector<double> expected_tensions(const Scene& scene, std::span<const std::size_t> cables);
+/// What a cable is to expect that leaves the number of its nodes open.
+struct Expected {
+  double length = 0.0;   // m
+  double tension = 0.0;  // N, the greatest
+};
 
-/// How many pieces a cable of that length (m) is made of: as many as the scene says, or as steps
-/// can follow under the tension (N), an even number. Throws SceneError where they do not fit, or
-/// bend faster than steps can follow.
-int count_pieces(const Scene& scene, const Cable& cable, double length, double tension,
+/// The same of each of these cables, which spread_nodes is to give nodes; none comes twice. The
+/// scene's other cables count as they are before that. Throws SceneError where one that runs over
+/// bodies cannot be laid.
+std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_t> cables);
+
+/// How many pieces such a cable is made of: as many as the scene says, or as steps can follow, an
+/// even number. Throws SceneError where they do not fit, or bend faster than steps can follow.
+int count_pieces(const Scene& scene, const Cable& cable, const Expected& expected,
                  const std::string& place);
 
 }  // namespace pinchlab

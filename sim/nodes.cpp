@@ -24,7 +24,7 @@ bool ends_on_mobile(const Scene& scene, const Attachment& end) {
 }
 
 void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
-  if (!(cable.mass_per_metre < infinity) || cable.nodes < 0) {
+  if (!(cable.mass_per_metre < infinity) || cable.nodes < automatic_nodes) {
     throw SceneError(place, "mass_per_metre_kg must be finite and nodes at least 1");
   }
   if (!(cable.bending_stiffness >= 0.0 && cable.bending_stiffness < infinity)) {
@@ -186,17 +186,18 @@ Cable piece_of(const Cable& whole, const NodedCable& made, int k, double piece, 
   return part;
 }
 
-NodedCable spread(Scene& scene, std::size_t c, double tension) {
+NodedCable spread(Scene& scene, std::size_t c, Expected expected) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(whole, place);
   if (whole.node_tolerance != 0.0) refuse_what_does_not_adapt(scene, whole, place);
   const Vec2 from = place_of(scene, whole.start), d = place_of(scene, whole.end) - from;
   const double straight = d.norm(), length = straight + whole.slack;
+  expected.length = length;
   if (!(length > 0.0))
     throw SceneError(place, "the cable has no length; give it slack or move its ends apart");
   refuse_what_cannot_sag(scene, whole, d, place);
-  const int pieces = count_pieces(scene, whole, length, tension, place);
+  const int pieces = count_pieces(scene, whole, expected, place);
   const double piece = length / pieces;
   const std::vector<double> masses = weigh_nodes(scene, whole, pieces, piece);
   std::vector<Vec2> directions(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
@@ -234,9 +235,15 @@ NodedCable spread(Scene& scene, std::size_t c, double tension) {
 
 /// Nodes for a cable that runs over bodies: they have the mass of what they have of it, which is
 /// none at the start, and are on the rims until make_world strings them.
-NodedCable add_strung_nodes(Scene& scene, std::size_t c) {
+NodedCable add_strung_nodes(Scene& scene, std::size_t c, const Expected& expected) {
   constexpr double next_to_nothing = 1e-9;  // of the cable's mass along its half width
   Cable& cable = scene.cables[c];
+  const std::string place = pointer("cables", c);
+  refuse_what_has_no_nodes(cable, place);
+  if (cable.nodes == automatic_nodes) {
+    const int pieces = count_pieces(scene, cable, expected, place);
+    cable.nodes = cable.closed ? pieces : pieces - 1;
+  }
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), cable.nodes, 0, 0};
   cable.first_node = made.first_body;
   const Cable whole = cable;
@@ -254,21 +261,26 @@ NodedCable add_strung_nodes(Scene& scene, std::size_t c) {
 
 std::vector<NodedCable> spread_nodes(Scene& scene) {
   std::vector<NodedCable> made;
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    if (becomes_strung(scene.cables[c])) made.push_back(add_strung_nodes(scene, c));
-  }
-  if (std::ranges::none_of(scene.cables, becomes_nodes)) return made;
+  const auto gets_nodes = [](const Cable& cable) {
+    return becomes_nodes(cable) || becomes_strung(cable);
+  };
+  if (std::ranges::none_of(scene.cables, gets_nodes)) return made;
   refuse_impossible_courses(scene);
   const std::size_t count = scene.cables.size();
   std::vector<std::size_t> open;  // cables that leave the number of their nodes open
   for (std::size_t c = 0; c < count; ++c) {
-    if (becomes_nodes(scene.cables[c]) && scene.cables[c].nodes == 0) open.push_back(c);
+    if (gets_nodes(scene.cables[c]) && scene.cables[c].nodes <= 0) open.push_back(c);
   }
-  const std::vector<double> tensions = expected_tensions(scene, open);  // before there are nodes
-  auto tension = tensions.begin();
+  std::vector<Expected> expected(count);
+  if (!open.empty()) {
+    const std::vector<Expected> found = expected_of(scene, open);  // before there are nodes
+    for (std::size_t i = 0; i < open.size(); ++i) expected[open[i]] = found[i];
+  }
   for (std::size_t c = 0; c < count; ++c) {
-    if (!becomes_nodes(scene.cables[c])) continue;
-    made.push_back(spread(scene, c, scene.cables[c].nodes == 0 ? *tension++ : 0.0));
+    if (becomes_strung(scene.cables[c])) made.push_back(add_strung_nodes(scene, c, expected[c]));
+  }
+  for (std::size_t c = 0; c < count; ++c) {
+    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c, expected[c]));
   }
   return made;
 }

@@ -24,7 +24,7 @@ inline bool becomes_nodes(const Cable& cable) {
 
 /// Whether spread_nodes gives it nodes that are strung on it where it is free (cable/strung.h).
 inline bool becomes_strung(const Cable& cable) {
-  return cable.mass_per_metre > 0.0 && !cable.wraps.empty() && cable.nodes > 0 &&
+  return cable.mass_per_metre > 0.0 && !cable.wraps.empty() && cable.nodes != 0 &&
          cable.first_node < 0;
 }
 

@@ -99,6 +99,9 @@ enum class Joint : std::int8_t {
   stop,    ///< an inextensible cable along a rail, taut where its body may go no further
 };
 
+/// As many as steps can follow: spread_nodes chooses.
+constexpr int automatic_nodes = -1;
+
 // squeeze and grip make a pinch weaker by degrees. A sheath that yields to any force surrounds a
 // core that yields to none: bodies that pinch the cable come as near to each other as (1 - squeeze)
 // times its width, and their force N acts there. At 1 it is Method::pinch_no_contact, exactly. The
@@ -126,8 +129,8 @@ struct Cable {
   /// kg/m. A cable that runs over bodies is straight between them (cable/mass.h); any other becomes
   /// a chain of nodes that have its mass (nodes.h).
   double mass_per_metre = 0.0;
-  int nodes = 0;  ///< of such a chain; 0: as spread_nodes chooses. Of one that runs over bodies, of
-                  ///< all of it; 0: it is straight between them
+  int nodes = 0;  ///< of such a chain; 0: automatic_nodes. Of one that runs over bodies, of all of
+                  ///< it; 0: it is straight between them
   int first_node = -1;  ///< of one that runs over bodies: all others follow. By spread_nodes
   /// m, of such a chain: how far from straight it may be between two nodes, whose number adapts; 0:
   /// it is fixed.

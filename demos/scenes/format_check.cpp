@@ -54,6 +54,11 @@ std::string quoted_or_type(const json& value) {
   return "\"" + pointer_token(value.get_ref<const std::string&>()) + "\"";
 }
 
+/// "one" or "two".
+std::string in_quotes(const std::vector<std::string>& words) {
+  return fmt::format("\"{}\"", fmt::join(words, "\" or \""));
+}
+
 bool in_range(const json& value, const KeyFormat& key) {
   const double number = value.get<double>();  // never NaN or infinite: JSON has neither
   return key.low <= number && number <= key.high;
@@ -61,8 +66,11 @@ bool in_range(const json& value, const KeyFormat& key) {
 
 void check_number(const json& value, const KeyFormat& key, const std::string& place,
                   Problems& problems) {
-  const bool whole = key.type == KeyType::integer;
-  if (!value.is_number() && key.type == KeyType::friction) {
+  const bool whole = key.type == KeyType::integer || key.type == KeyType::integer_or_word;
+  if (!value.is_number() && key.type == KeyType::integer_or_word) {
+    problems.push_back({place, fmt::format("must be a whole number or {}, not {}",
+                                           in_quotes(key.choices), quoted_or_type(value))});
+  } else if (!value.is_number() && key.type == KeyType::friction) {
     problems.push_back({place, fmt::format("must be {:g} to {:g} or \"no_slip\", not {}", key.low,
                                            key.high, quoted_or_type(value))});
   } else if (!value.is_number()) {
@@ -160,18 +168,20 @@ void check_list(const json& value, const KeyFormat& key, const std::string& plac
   }
 }
 
+bool is_choice(const json& value, const KeyFormat& key) {
+  return value.is_string() &&
+         std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end();
+}
+
 void check_object_or_word(const json& value, const KeyFormat& key, const std::string& place,
                           Problems& problems) {
   if (value.is_object()) return check_format(value, *key.child, place, problems);
-  if (value.is_string() &&
-      std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end()) {
-    return;
-  }
+  if (is_choice(value, key)) return;
   std::vector<std::string> keys;
   for (const KeyFormat& child : key.child->keys) keys.push_back(child.name);
-  problems.push_back({place, fmt::format("must be \"{}\" or an object with {}, not {}",
-                                         fmt::join(key.choices, "\" or \""),
-                                         fmt::join(keys, " and "), quoted_or_type(value))});
+  problems.push_back(
+      {place, fmt::format("must be {} or an object with {}, not {}", in_quotes(key.choices),
+                          fmt::join(keys, " and "), quoted_or_type(value))});
 }
 
 void check_value(const json& value, const KeyFormat& key, const std::string& place,
@@ -180,6 +190,8 @@ void check_value(const json& value, const KeyFormat& key, const std::string& pla
     case KeyType::number:
     case KeyType::integer:
       return check_number(value, key, place, problems);
+    case KeyType::integer_or_word:
+      return is_choice(value, key) ? void() : check_number(value, key, place, problems);
     case KeyType::friction:
       return value == "no_slip" ? void() : check_number(value, key, place, problems);
     case KeyType::vector:

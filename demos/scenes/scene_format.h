@@ -9,12 +9,13 @@
 namespace pinchlab {
 
 enum class KeyType {
-  number,   // low..high
-  integer,  // low..high
-  vector,   // [x, y], each low..high
-  points,   // low..high entries, each [x, y] of -most_coordinate..most_coordinate
-  text,     // low..high characters
-  name,     // text that can stand in a CSV cell and be referred to
+  number,           // low..high
+  integer,          // low..high
+  integer_or_word,  // low..high, or one of `choices`
+  vector,           // [x, y], each low..high
+  points,           // low..high entries, each [x, y] of -most_coordinate..most_coordinate
+  text,             // low..high characters
+  name,             // text that can stand in a CSV cell and be referred to
   boolean,
   choice,          // one of `choices`
   friction,        // number low..high, or "no_slip"

@@ -227,7 +227,11 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "squeeze", cable.squeeze);
   take(from, "grip", cable.grip);
   take(from, "mass_per_metre_kg", cable.mass_per_metre);
-  take(from, "nodes", cable.nodes);
+  if (from.value("nodes", json()) == "automatic") {
+    cable.nodes = automatic_nodes;
+  } else {
+    take(from, "nodes", cable.nodes);
+  }
   take(from, "node_tolerance_m", cable.node_tolerance);
   take(from, "bending_stiffness_n_m2", cable.bending_stiffness);
   take(from, "contact_friction", cable.contact_friction);
@@ -376,8 +380,9 @@ void Reader::spread(SceneContent& to) {
   int nodes = 0;
   for (std::size_t c = 0; c < to.scene.cables.size(); ++c) {
     const Cable& cable = to.scene.cables[c];
-    if (becomes_nodes(cable)) nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
-    if (becomes_strung(cable)) nodes += cable.nodes;
+    if (becomes_nodes(cable) || becomes_strung(cable)) {
+      nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
+    }
     if (nodes <= most_nodes) continue;
     problem(
         fmt::format("/cables/{}", c),

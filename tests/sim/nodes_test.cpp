@@ -342,10 +342,10 @@ TEST(Nodes, AreChosenForAllCablesAtOnceAsForEach) {
       scene.cables.back().mass_per_metre = random.uniform(0.1, 10.0);
       all.push_back(scene.cables.size() - 1);
     }
-    const std::vector<double> tensions = expected_tensions(scene, all);
+    const std::vector<Expected> expected = expected_of(scene, all);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const double alone = expected_tensions(scene, std::array{all[i]}).front();
-      EXPECT_NEAR(tensions[i], alone, 1e-12 * alone) << seed;
+      const double alone = expected_of(scene, std::array{all[i]}).front().tension;
+      EXPECT_NEAR(expected[i].tension, alone, 1e-12 * alone) << seed;
     }
   }
 }

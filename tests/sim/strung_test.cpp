@@ -235,6 +235,58 @@ TEST(Strung, ConvergesWithStepsAndWithNodes) {
   EXPECT_NEAR(height_after(60, 4), finest, 1e-4);
 }
 
+double greatest_tension(const World& world) {
+  double most = 0.0;
+  for (const Segment& segment : world.cables[0].segments) most = std::max(most, segment.tension);
+  return most;
+}
+
+// As many as fit where no piece is shorter than 2 h sqrt(T / rho), so that finer steps have more
+// and tell more; none shorter than twice the cable's width.
+TEST(Strung, TheProgramChoosesAsManyNodesAsStepsCanFollow) {
+  const double finest = height_after(190, 4);
+  int before = 0;
+  double error_before = infinity;
+  for (const int steps : {1, 2, 4, 8}) {
+    const Scene scene = build::sagging_hoist(automatic_nodes, steps);
+    World world = make_world(scene, measured());
+    Workspace work;
+    double most = 0.0;
+    for (int i = 0; i < 90 * steps; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      most = std::max(most, greatest_tension(world));
+    }
+    const double piece = world.cables[0].length / (scene.cables[0].nodes + 1);
+    EXPECT_GE(piece, 2.0 * world.step_length * std::sqrt(most / scene.cables[0].mass_per_metre));
+    EXPECT_GE(piece, 4.0 * half_width);
+    EXPECT_GE(scene.cables[0].nodes, 2 * before);
+    EXPECT_EQ(scene.cables[0].nodes % 2, 1);
+    before = scene.cables[0].nodes;
+    const double error = std::abs(height_after(automatic_nodes, steps) - finest);
+    EXPECT_LT(error, 0.5 * error_before) << steps;
+    error_before = error;
+  }
+  EXPECT_LT(error_before, 5e-5);
+}
+
+TEST(Strung, ExpectsTheTensionWithWhichItHangs) {
+  for (const double slack : {0.4, 0.05, 0.005, 0.0, -0.01}) {
+    Scene scene = between_drums(std::max(slack, 0.01), 0, 4);
+    scene.cables[0].slack = slack;
+    scene.cables[0].nodes = automatic_nodes;
+    scene.cables[0].linear_drag = 4.0;
+    if (slack <= 0.0) scene.cables[0].axial_stiffness = 1e5;
+    const double expected = expected_of(scene, std::array<std::size_t, 1>{0}).front().tension;
+    spread_nodes(scene);
+    World world = make_world(scene, measured());
+    run(scene, world, 4 * 240);
+    const double hangs = greatest_tension(world);
+    EXPECT_GT(expected, hangs) << slack;
+    // Stretched from the start it bears less than the sum of what either asks for.
+    EXPECT_LT(expected, (slack < 0.0 ? 1.4 : 1.2) * hangs) << slack;
+  }
+}
+
 // What the pulleys take in they give off again, on the other side. Energy is lost, the less the
 // more nodes there are, and none is made.
 TEST(Strung, WhatRimsTakeInTheyGiveOffAgain) {

@@ -77,6 +77,10 @@ json schema_of(const KeyFormat& key) {
       return {{"type", "boolean"}};
     case KeyType::choice:
       return {{"enum", key.choices}};
+    case KeyType::integer_or_word:
+      return {{"oneOf",
+               {{{"type", "integer"}, {"minimum", key.low}, {"maximum", key.high}},
+                {{"enum", key.choices}}}}};
     case KeyType::friction:
       return {{"oneOf",
                {{{"type", "number"}, {"minimum", key.low}, {"maximum", key.high}},
@@ -126,6 +130,8 @@ std::string documented_range(const KeyFormat& key) {
     case KeyType::integer:
     case KeyType::friction:
       return fmt::format("{:g} to {:g}", key.low, key.high);
+    case KeyType::integer_or_word:
+      return fmt::format("{:g} to {:g}, `{}`", key.low, key.high, fmt::join(key.choices, "`, `"));
     case KeyType::vector:
       return fmt::format("each {:g} to {:g}", key.low, key.high);
     case KeyType::text:

@@ -207,6 +207,15 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
                       "node_tolerance_m": 0.01})"),
             "s.json: /cables/0/node_tolerance_m: has no effect on a cable with mass_per_metre_kg "
             "that runs over bodies; leave it out");
+  EXPECT_EQ(error(R"({"nodes": "automatic"})"), "no error");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}], "nodes": "automatic",
+                      "linear_drag_per_s": 1})"),
+            "no error");
+  EXPECT_EQ(error(R"({"nodes": "many"})"),
+            "s.json: /cables/0/nodes: must be a whole number or \"automatic\", not \"many\"");
+  EXPECT_EQ(error(R"({"nodes": true})"),
+            "s.json: /cables/0/nodes: must be a whole number or \"automatic\", not a boolean");
+  EXPECT_EQ(error(R"({"nodes": 2.5})"), "s.json: /cables/0/nodes: must be a whole number, not 2.5");
   EXPECT_EQ(error(R"({"nodes": 1000})"),
             "s.json: /cables/0/nodes: pieces of 4.5 mm between nodes are no longer than the cable "
             "is wide; at most "
