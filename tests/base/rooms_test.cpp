@@ -126,8 +126,8 @@ int level_in_sim(const std::string& file) {
   if (room != of_room.end()) return room->second;
   if (file == "sim/parts.cpp" || unit_of(file) == "sim/diagnostics") return of_room.at("sim/cable");
   for (const char* above :
-       {"sim/at_steps", "sim/first_tensions", "sim/joints", "sim/make_world", "sim/nodes",
-        "sim/promises", "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
+       {"sim/at_steps", "sim/first_tensions", "sim/joints", "sim/make_world", "sim/node_count",
+        "sim/nodes", "sim/promises", "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
     if (unit_of(file) == above) return 6;
   }
   return 0;
