@@ -359,6 +359,8 @@ void assign_contacts(World& world, const Parts& parts, const Part& part) {
       contact = nearest_of_pair(world, contact);
       note_cable_between(world, cable, from, *contact);
       note_cable_between(world, cable, to, *contact);
+      const bool is_thin = contact->gap > 2.0 * cable.half_width * (1.0 + margin);
+      if (!to.pinch_middle && !segment.pinched && is_thin) continue;  // another one is pressed
       const int index = static_cast<int>(contact - world.contacts.data());
       ++contact->pinch_points;
       if (to.pinch_middle) {

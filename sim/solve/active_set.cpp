@@ -20,7 +20,11 @@ namespace {
 /// Friction rows bear force only where their contact does. A pinch without slip may push its bodies
 /// apart while it holds and let them together while it does not: infinite friction times no force.
 /// Then it holds.
-void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
+void bound_friction(PartSystem& s, const SolveScratch& set) {
+  const auto bears_nothing = [&](int r) {
+    const Row& row = at(s.rows, r);
+    return !row.on || (set.solves > 0 && row.impulse == 0.0);
+  };
   for (Friction& friction : s.frictions) {
     if (friction.repeats >= 0) continue;
     Row& row = at(s.rows, friction.row);
@@ -30,8 +34,8 @@ void bound_friction(PartSystem& s, const CapstanScratch& capstan) {
     }
     bool slack = false;
     if (friction.run >= 0) {
-      const Run& run = at(capstan.runs, friction.run);
-      slack = !at(s.rows, run.row_in).on && !at(s.rows, run.row_out).on;
+      const Run& run = at(set.capstan.runs, friction.run);
+      slack = bears_nothing(run.row_in) && bears_nothing(run.row_out);
     }
     friction.bound = bound_in_force(friction, slack);
     if (friction.bound == 0.0 || friction.dropped) row.on = false;
@@ -80,15 +84,6 @@ Tolerances tolerances(const PartSystem& s, const SolveScratch& scratch) {
   return {tolerance, 1e-10 * impulse + (stiffest > 0.0 ? tolerance / stiffest : 0.0)};
 }
 
-/// Against its friction; but the other way where a row has slid that way in this step and was found
-/// to stick: then friction presses the bodies together by more than it takes to slide (Painleve).
-Slip direction_of_sliding(const Friction& friction, const Row& row, double bound, int solves) {
-  constexpr int patience = 4;  // solves, in which what presses may find its state
-  const Slip against = slip_of(row.impulse, bound);
-  if (friction.slid != against || solves < patience) return against;
-  return against == Slip::forward ? Slip::backward : Slip::forward;
-}
-
 void check_friction(const PartSystem& s, const Row& row, int number, double sliding,
                     const Tolerances& tolerance, SolveScratch& set) {
   const Friction& friction = at(s.frictions, row.friction);
@@ -97,7 +92,9 @@ void check_friction(const PartSystem& s, const Row& row, int number, double slid
   if (row.slip == Slip::stick) {
     // Where the contact would pull, friction that bears nothing has no direction to slide in.
     if (std::abs(row.impulse) <= bound + tolerance.impulse || row.impulse == 0.0) return;
-    const Slip slip = direction_of_sliding(friction, row, bound, set.solves);
+    constexpr int patience = 4;  // solves, in which what presses may find its state
+    const Slip pushed = slip_of(row.impulse, bound);
+    const Slip slip = set.solves < patience ? pushed : way_to_try(pushed, friction.slid);
     set.flips.push_back({number, false, true, slip});
   } else if (sliding * static_cast<int>(row.slip) < -tolerance.speed && bound > tolerance.impulse) {
     set.flips.push_back({number, false, true, Slip::stick});
@@ -161,6 +158,7 @@ void apply(PartSystem& s, SolveScratch& set, const Flip& flip) {
   if (flip.is_run) {
     Run& run = at(set.capstan.runs, flip.row);
     run.slip = flip.slip;
+    if (flip.slip != Slip::stick) run.slid = flip.slip;
     run.flipped = set.solves;
     return;
   }
@@ -280,9 +278,6 @@ bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
   if (!s.sleeves.empty() || s.rows.size() > most_rows) return false;
   // A motor that winds in what hardly can give is to stall (motors.h): held exactly it throws that.
   if (!s.motors.empty()) return false;
-  // A steadied body's mass is no mass, and what it gains no energy.
-  const auto steadied = [](const SpanMass& span) { return span.steadied; };
-  if (std::any_of(s.span_masses.begin(), s.span_masses.end(), steadied)) return false;
   const auto slides = [](const Run& run) {
     return run.frictionless || run.flipped > 0 || run.slip != Slip::stick;
   };
@@ -338,7 +333,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
       set.froze = true;
     }
     if (solves == before_dropping) drop_friction(s);
-    bound_friction(s, set.capstan);
+    bound_friction(s, set);
     clamp_pinches(s);
     if (!s.sleeves.empty()) drop_rubbing(s);
     set.solves = solves;

@@ -207,6 +207,43 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
 
 namespace {
 
+/// Makes a run stick, for the next solve at least.
+void hold(SolveScratch& scratch, int run) {
+  at(scratch.capstan.runs, run).slip = Slip::stick;
+  at(scratch.capstan.runs, run).flipped = scratch.solves + 1;
+}
+
+/// Whether of two runs, one of which must stick, it is the first: the one that has kept its state
+/// longer, or holds better, by the factor of tensions that its arcs allow.
+bool holds_before(const CapstanScratch& s, const Run& one, const Run& other) {
+  const auto factor = [&s](const Run& run) {
+    double product = 1.0;
+    for (int k = run.passages_begin; k < run.passages_end; ++k) product *= at(s.passages, k).factor;
+    return product;
+  };
+  if (one.flipped != other.flipped) return one.flipped < other.flipped;
+  return factor(one) > factor(other);
+}
+
+/// The first of a cable's segments, of which there are `count` from `begin` on, before which
+/// something sticks. Where nothing does a closed cable is cut: at a run that is to stick, or, where
+/// there is no friction at all, at its first.
+int find_start(SolveScratch& scratch, int begin, int count) {
+  const CapstanScratch& s = scratch.capstan;
+  int oldest = -1;
+  for (int k = 0; k < count; ++k) {
+    const int number = at(s.run_before, begin + k);
+    if (number < 0 || at(s.runs, number).slip == Slip::stick) return k;
+    const Run& run = at(s.runs, number);
+    if (run.frictionless) continue;
+    if (oldest < 0 || holds_before(s, run, at(s.runs, at(s.run_before, begin + oldest))))
+      oldest = k;
+  }
+  if (oldest < 0) return 0;
+  hold(scratch, at(s.run_before, begin + oldest));
+  return oldest;
+}
+
 void part_slack_segments(const PartSystem& system, SolveScratch& scratch, int begin, int count,
                          int start) {
   CapstanScratch& s = scratch.capstan;
@@ -216,7 +253,7 @@ void part_slack_segments(const PartSystem& system, SolveScratch& scratch, int be
     const int position = begin + (start + k) % count;
     const int number = s.run_before[index(position)];
     if (k > 0) {
-      Run& run = s.runs[index(number)];
+      const Run& run = s.runs[index(number)];
       if (run.slip == Slip::stick) {
         slack_before = false;
         oldest = -1;
@@ -225,10 +262,7 @@ void part_slack_segments(const PartSystem& system, SolveScratch& scratch, int be
       }
     }
     if (at(system.rows, s.segments[index(position)]).on) continue;
-    if (slack_before && oldest >= 0) {
-      s.runs[index(oldest)].slip = Slip::stick;
-      s.runs[index(oldest)].flipped = scratch.solves + 1;
-    }
+    if (slack_before && oldest >= 0) hold(scratch, oldest);
     slack_before = true;
     oldest = -1;
   }
@@ -244,15 +278,7 @@ void make_groups(const PartSystem& system, SolveScratch& scratch) {
   s.group_of_row.assign(system.rows.size(), -1);
   for (std::size_t c = 0; c + 1 < s.cable_begin.size(); ++c) {
     const int begin = s.cable_begin[c], count = s.cable_begin[c + 1] - begin;
-    // Start where something sticks; a closed cable that slides everywhere is cut at its first run.
-    int start = 0;
-    for (int k = 0; k < count; ++k) {
-      const int run = s.run_before[index(begin + k)];
-      if (run < 0 || s.runs[index(run)].slip == Slip::stick) {
-        start = k;
-        break;
-      }
-    }
+    const int start = find_start(scratch, begin, count);
     part_slack_segments(system, scratch, begin, count, start);
     for (int k = 0; k < count; ++k) {
       const int position = begin + (start + k) % count;
@@ -431,7 +457,11 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
       continue;
     }
     const Slip way = way_to_slide(system, s, run, impulse_tolerance);
-    if (way != Slip::stick) set.flips.push_back({number, true, true, way});
+    if (way == Slip::stick) continue;
+    constexpr int patience = 20;  // solves, before what slides is tried anew (active_set.cpp): only
+                                  // what then circles still is jammed
+    const Slip slip = set.solves <= patience ? way : way_to_try(way, run.slid);
+    set.flips.push_back({number, true, true, slip});
   }
 }
 

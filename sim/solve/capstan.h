@@ -27,9 +27,10 @@ struct Run {
   int row_in = -1, row_out = -1;  // segment rows before and after
   bool frictionless = false;      // always slides; the direction does not matter
   Slip slip = Slip::stick;
-  double speed = 0.0;   // m/s, of the material over the body, by slip_speeds
-  int flipped = 0;      // solve of this step at which `slip` last changed
-  bool frozen = false;  // sticks for this step, whatever its bounds
+  double speed = 0.0;       // m/s, of the material over the body, by slip_speeds
+  int flipped = 0;          // solve of this step at which `slip` last changed
+  Slip slid = Slip::stick;  // the way in which it was last let slide in this step, if it was
+  bool frozen = false;      // sticks for this step, whatever its bounds
   int passages_begin = 0, passages_end = 0;
 };
 
@@ -92,6 +93,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
 ///
 /// Two slack segments of one group would determine the tension between them twice, from either
 /// side. One run between them must stick then; the one that has kept its state longest is made to.
+/// So must one of a closed cable, whose tension would have to be another after a round.
 void make_groups(const PartSystem& system, SolveScratch& scratch);
 
 /// Impulses of the groups' members in terms of the unknowns, appended to the lists of `scratch`.

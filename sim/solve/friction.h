@@ -107,6 +107,14 @@ inline Slip slip_of(double p, double most) {
   return p > 0.0 ? Slip::backward : Slip::forward;
 }
 
+/// Which way to let slide what its law says cannot stick: the way in which it is pushed; but the
+/// other where it has slid that way in this step and was found to stick. Then friction presses
+/// together what slides by more than it takes to slide (Painleve), or jams it.
+inline Slip way_to_try(Slip pushed, Slip slid) {
+  if (slid != pushed) return pushed;
+  return pushed == Slip::forward ? Slip::backward : Slip::forward;
+}
+
 /// Where several turns of cable without slip lie under one pinch, their middle rows say the same.
 /// The first stands for all, and its force is shared among them in the end, as by equally stiff
 /// cables; the system then has no repeated rows.
