@@ -262,7 +262,9 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
             at(scene.cables, w.item).name, percent(w.value), percent(limits_.sag));
         break;
       default:
-        what = "the solver did not settle and took its fallback";
+        what =
+            "the solver did not settle and took its fallback, or no repair met what was too long "
+            "or too near";
     }
     lines.push_back(fmt::format(
         "{}: first in step {} (t = {:.6g} s), in {} of {} steps{}", what, w.first_step,

@@ -55,7 +55,8 @@ struct Start {
 /// What came of trying an interval.
 struct IntervalTrial {
   bool met = true;            // lengths and gaps are exact at its end
-  bool settled = true;        // every solve
+  bool settled = true;        // every solve, and none left rows out
+  bool froze = false;         // SolveScratch::froze, of any solve
   bool violated = false;      // what it began with, by more than it makes up for
   bool foreseen = false;      // its curvatures were; of one part
   bool curves = false;        // some way, by more than round-off; of one part

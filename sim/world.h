@@ -206,7 +206,8 @@ struct Diagnostics {
   int active_set_solves = 0;                 // in the last step
   std::int64_t total_solves = 0;             // since the start
   std::int64_t fallbacks =
-      0;  // parts of steps (Events::located: steps) whose active set did not settle
+      0;  // parts of steps (Events::located: steps) whose active set did not settle, or whose
+          // lengths and gaps no repair could meet
   std::int64_t events = 0;        // located since the start
   std::int64_t intervals = 0;     // into which steps have been divided, since the start
   std::int64_t node_changes = 0;  // of cables whose nodes come and go, since the start

@@ -346,7 +346,7 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
     for (const int e : events) work.events.push_back(at(work.tried_events, e));
     work.trial = trial_of(work, movers.parts);
     work.start.fallbacks = d.fallbacks;
-    if (!work.trial.settled) ++d.fallbacks;
+    if (work.trial.froze) ++d.fallbacks;
     near.moving = movers.parts;
     course.located = true;
     double length = course.left;

@@ -133,7 +133,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   Diagnostics& d = world.diagnostics;
   for (int round = 0;; ++round) {
     if (round > 0) settled = solve_again(world, work.parts, part, s, set);
-    if (!settled) ++d.fallbacks;
+    if (set.froze) ++d.fallbacks;
     if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
     const double round_off = s.tolerance() / t.repair;  // m/s, over a step
     if (round > 0 && greatest_speed(world, bodies, s.velocity, &work.linear_velocity) >
@@ -142,6 +142,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
       return false;
     }
     trial.settled = trial.settled && settled;
+    trial.froze = trial.froze || set.froze;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
     const bool tells_forces = t.kick > shortest_told * t.repair;
     store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
@@ -193,6 +194,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
 void add(const IntervalTrial& one, IntervalTrial& all) {
   all.met = all.met && one.met;
   all.settled = all.settled && one.settled;
+  all.froze = all.froze || one.froze;
   all.violated = all.violated || one.violated;
   all.contradicts = all.contradicts || one.contradicts;
   all.missed = std::max(all.missed, one.missed);

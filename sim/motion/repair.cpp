@@ -153,12 +153,13 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;
   Stopwatch untimed(nullptr);
-  bool any = false;
+  bool any = false, met = false;
   for (int k = 0; k < most_repairs; ++k) {
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     const Violation before = violation(world, s);
-    if (before.most() <= s.reach) break;
+    met = before.most() <= s.reach;
+    if (met) break;
     for (Row& row : s.rows) {
       if (is_elastic(world, row)) row.bias = 0.0;  // it resists being stretched
     }
@@ -179,6 +180,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     // The next step of Newton's method is from here.
     for (const int c : contacts_of(work.parts, part)) measure(world, at(world.contacts, c));
   }
+  if (!met) ++world.diagnostics.fallbacks;
   return any;
 }
 

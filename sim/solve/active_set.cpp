@@ -275,18 +275,23 @@ bool suits_dual(const PartSystem& s, const CapstanScratch& capstan) {
   // Its work is that of a full basis, the cube of their number, where a guess costs about their
   // number: of 300, 3e7 operations, some hundredths of a second.
   constexpr std::size_t most_rows = 300;
-  if (!s.sleeves.empty() || s.rows.size() > most_rows) return false;
+  if (s.rows.size() > most_rows) return false;
   // A motor that winds in what hardly can give is to stall (motors.h): held exactly it throws that.
   if (!s.motors.empty()) return false;
   const auto slides = [](const Run& run) {
     return run.frictionless || run.flipped > 0 || run.slip != Slip::stick;
   };
-  const auto rubs = [&s](const Friction& friction) {
-    const Row& row = at(s.rows, friction.row);
-    return friction.repeats >= 0 || row.flipped > 0 || (row.on && row.slip != Slip::stick);
+  const auto rubs = [&s](int number) {
+    const Row& row = at(s.rows, number);
+    return row.flipped > 0 || (row.on && row.slip != Slip::stick);
   };
-  return std::none_of(capstan.runs.begin(), capstan.runs.end(), slides) &&
-         std::none_of(s.frictions.begin(), s.frictions.end(), rubs);
+  return std::ranges::none_of(capstan.runs, slides) &&
+         std::ranges::none_of(
+             s.sleeves,
+             [&rubs](const SleevePlace& one) { return one.rub >= 0 && rubs(one.rub); }) &&
+         std::ranges::none_of(s.frictions, [&rubs](const Friction& friction) {
+           return friction.repeats >= 0 || rubs(friction.row);
+         });
 }
 
 /// Solves for which unilateral rows bear a force too; whether it has. What then contradicts others
@@ -300,7 +305,7 @@ bool solve_for_rows(PartSystem& s, SolveScratch& set) {
   set.direct = false;
   set.by_dual = true;
   set.suspicious = true;
-  if (missed * set.step_length > s.reach) set.froze = true;
+  set.left_out = missed * set.step_length > s.reach;
   check(s, set);
   std::erase_if(set.flips, [&set](const Flip& flip) {
     const DualScratch& dual = set.dual;
@@ -415,7 +420,7 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {
   set.solves = 0;
-  set.froze = set.direct = set.by_dual = false;
+  set.froze = set.left_out = set.direct = set.by_dual = false;
   set.capstan.runs.clear();
   if (s.rows.empty()) {
     s.velocity = s.free_velocity;
@@ -428,7 +433,7 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
     set.direct = set.by_dual = false;
   }
   if (set.suspicious) clear_negative(s);
-  return !set.froze;
+  return !set.froze && !set.left_out;
 }
 
 bool solve_again(const World& world, const Parts& parts, const Part& part, PartSystem& s,

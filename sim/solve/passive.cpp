@@ -91,6 +91,7 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   for (Row& row : s.rows) row.impulse = 0.0;
   sweep_rows(s, set.capstan);
   set.direct = false;
+  set.froze = true;
   return false;
 }
 

@@ -43,7 +43,8 @@ struct OrderScratch {
 
 struct SolveScratch {
   int solves = 0;            // of this part in this step so far
-  bool froze = false;        // the states did not settle by themselves, or contradict
+  bool froze = false;        // the states did not settle by themselves
+  bool left_out = false;     // rows contradict others, and are left out
   bool by_dual = false;      // the last solution is that of solve_dual
   bool repairs = true;       // DualTerms::repairs
   bool direct = false;       // the last solution is that of a regular symmetric system,
