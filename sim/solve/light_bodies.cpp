@@ -157,22 +157,32 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
   const auto is_steadied = [&s](int place) {
     return index(place) < s.span_masses.size() && at(s.span_masses, place).steadied;
   };
+  const bool coupled =
+      std::ranges::any_of(s.mobility, [](const Mobility& m) { return m.xz != 0.0 || m.yz != 0.0; });
   double gain = 0.0, energy = 0.0;  // J, twice
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyProperties& body = at(world.bodies, bodies[i]);
+    const Eigen::Vector3d &free = s.free_velocity[i], &v = s.velocity[i];
+    if (const double angular = s.mobility[i].angular; !coupled && angular > 0.0) {
+      energy += free.z() * free.z() / angular;
+      gain += (v.z() - free.z()) * (v.z() + free.z()) / angular;
+    }
     if (!can_move(body)) continue;
     const bool steadied = is_steadied(static_cast<int>(i));
-    const Vec2 before = steadied ? s.span_masses[i].velocity : Vec2(s.free_velocity[i].head<2>());
+    const Vec2 before = steadied ? s.span_masses[i].velocity : Vec2(free.head<2>());
     const double mass = mass_of(body, steadied ? s.span_masses[i].own : s.mobility[i]);
     energy += mass * before.squaredNorm();
-    if (steadied) gain += mass * (s.velocity[i].head<2>().squaredNorm() - before.squaredNorm());
+    if (steadied || !coupled) gain += mass * (v.head<2>().squaredNorm() - before.squaredNorm());
   }
-  // Of all others, and of how these turn, what rows give: sum p (J v- + J v+) / 2.
+  // With cables' masses on them the others, and how these turn, are told by what rows give:
+  // sum p (J v- + J v+) / 2. Of impulses that all but cancel that is mostly round-off.
   double impulse = 0.0, fastest = 0.0;  // N s, m/s
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
     if (row.impulse == 0.0) continue;
     if (row.compliance > 0.0) return false;  // it may give back what it stores
+    gain += 2.0 * row.impulse * row.curved;
+    if (!coupled) continue;
     const auto speed = [&](int place, const Eigen::Vector3d& j) {
       const Eigen::Vector3d twice = at(s.free_velocity, place) + at(s.velocity, place);
       return is_steadied(place) ? j.z() * twice.z() : j.dot(twice);
@@ -181,7 +191,7 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     const double of_b = speed(s.bodies[r].b, s.bodies[r].jb);
     const ThirdBody* third = third_of(s, r);
     const double of_third = third ? speed(third->place, third->j) : 0.0;
-    gain += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
+    gain += row.impulse * (of_a + of_b + of_third);
     impulse += std::abs(row.impulse);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }

@@ -116,6 +116,12 @@ TEST(Population, WhatWentInCirclesSettles) {
   }
 }
 
+// A disc jammed on a cable as straight as can be, between impulses of 1e17 N s that all but cancel:
+// what they give told nothing, velocities tell that it would have been thrown with 390 J.
+TEST(Population, AJammedDiscIsNotThrown) {
+  EXPECT_LE(run_scene(dropped_shapes(794).scene, watched(), 16, 60).energy_gain, 1e-9);
+}
+
 /// By how much the tensions on either side of a cable's unpressed arcs differ by more than the
 /// capstan law lets them, as a share of its greatest.
 double beyond_capstan(const World& world, const CableState& cable) {
