@@ -19,7 +19,8 @@ namespace {
 void store_middle(const PartSystem& s, const CapstanScratch& capstan, const Row& row, Link& link) {
   const bool sticks = row.on && row.slip == Slip::stick;
   link.slip = row.slip;
-  link.slip_speed = sticks ? 0.0 : row.speed + run_speed(s, capstan, row);
+  // A bias is what it missed while it stuck: nothing makes up for that where it slides.
+  link.slip_speed = sticks ? 0.0 : row.speed - row.bias + run_speed(s, capstan, row);
 }
 
 /// What idles within reach of bearing force, as an elastic segment does at an instant, stays what
