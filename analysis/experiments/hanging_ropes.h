@@ -11,7 +11,7 @@ namespace pinchlab::experiments {
 /// A run of a hoist whose heavy rope sags between its pulleys (build::sagging_hoist).
 struct HangingRope {
   int nodes = 0;        ///< none: the rope is straight
-  bool chosen = false;  // by the program
+  bool chosen = false;  ///< by the program
   int steps_per_frame = 0;
   double error_m = 0.0;      ///< of the light weight's place at the end
   double energy_lost = 0.0;  ///< as a share of the kinetic energy at the end

@@ -147,13 +147,17 @@ void check_text(const json& value, const KeyFormat& key, const std::string& plac
   }
 }
 
+bool is_choice(const json& value, const KeyFormat& key) {
+  return value.is_string() &&
+         std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end();
+}
+
 void check_choice(const json& value, const KeyFormat& key, const std::string& place,
                   Problems& problems) {
   if (!value.is_string()) {
     problems.push_back(
         {place, fmt::format("must be {}, not {}", either(key.choices), type_name(value))});
-  } else if (std::ranges::find(key.choices, value.get_ref<const std::string&>()) ==
-             key.choices.end()) {
+  } else if (!is_choice(value, key)) {
     const auto& word = value.get_ref<const std::string&>();
     problems.push_back({place, fmt::format("must be {}, not \"{}\"{}", either(key.choices),
                                            pointer_token(word), suggestion(word, key.choices))});
@@ -166,11 +170,6 @@ void check_list(const json& value, const KeyFormat& key, const std::string& plac
   for (std::size_t i = 0; i < value.size(); ++i) {
     check_format(value[i], *key.child, fmt::format("{}/{}", place, i), problems);
   }
-}
-
-bool is_choice(const json& value, const KeyFormat& key) {
-  return value.is_string() &&
-         std::ranges::find(key.choices, value.get_ref<const std::string&>()) != key.choices.end();
 }
 
 void check_object_or_word(const json& value, const KeyFormat& key, const std::string& place,
