@@ -90,6 +90,11 @@ bool needed(const CableState& cable, std::size_t i) {
   return true;
 }
 
+bool has_come_off(const CableState& cable, std::size_t i) {
+  const Link& link = cable.links[i];
+  return link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i);
+}
+
 void note_release(Workspace& work, const Release& release) {
   const auto place =
       std::upper_bound(work.released.begin(), work.released.end(), release,
@@ -106,7 +111,7 @@ bool remove_links(World& world, Workspace& work) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         const Link& link = cable.links[i];
-        if (link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i)) {
+        if (has_come_off(cable, i)) {
           note_release(work, {static_cast<int>(c), link.body, link.orientation});
           leave_body(world, cable, static_cast<int>(i));
           changed = any = true;

@@ -17,6 +17,9 @@ struct World;
 /// Whether without link i a closed cable would lie on one body only: there would be no tangent.
 bool needed(const CableState& cable, std::size_t i);
 
+/// Whether the cable has lost its wrap on a link that it rolls on and does not need.
+bool has_come_off(const CableState& cable, std::size_t i);
+
 /// Notes it in Workspace::released, in its cable's place.
 void note_release(Workspace& work, const Release& release);
 

@@ -37,17 +37,6 @@ Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Ve
          ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
-/// Has a segment that closed up where a node was taken in begin as if it had been straight up to
-/// the node and on, so that what is between there and where it is now is in its way. `goes_on`: the
-/// node was near the segment's head.
-void begin_bent(const World& world, Segment& segment, bool goes_on, int node) {
-  const Vec2 far = goes_on ? segment.tail : segment.head, d = at(world.position, node) - far;
-  const double length = d.norm();
-  if (!(length > 0.0)) return;
-  (goes_on ? segment.previous_head : segment.previous_tail) =
-      far + std::max(segment.length / length, 1.0) * d;
-}
-
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
@@ -366,13 +355,7 @@ void take_in_node(World& world, CableState& cable, int link) {
   const double bend = alpha_head(cable, index(link)) - at(cable.segments, link).alpha;
   const double turns = std::round(bend / (2.0 * std::numbers::pi));
   if (turns != 0.0) count_turns_off(cable, link, turns);
-  const int after = next_link(cable, link);
-  const bool goes_on = at(cable.segments, link).length > at(cable.segments, after).length;
-  const bool encloses =
-      at(cable.links, previous_link(cable, link)).body == at(cable.links, after).body;
   leave_node(world, cable, link);
-  if (!encloses)
-    begin_bent(world, cable.segments[index(link) % cable.segments.size()], goes_on, body);
   BodyProperties& properties = at(world.bodies, body);
   properties.kind = BodyKind::fixed;
   properties.outlined = false;

@@ -26,7 +26,8 @@ constexpr double in_touch = 1e-6;
 
 struct Hit {
   bool found = false;
-  double time = 0.0;  // of the touch, in steps; -1 is the last step's position, 0 the present
+  double time = 0.0;  // of the touch, in steps; -1 is the last step's position, 0 the present. Of a
+                      // span that closes up: m, on the side that it comes from below 0
   int body = -1;
   int corner = -1;
   int orientation = 0;
@@ -249,6 +250,69 @@ bool may_hit(const World& world, const Workspace& work, const SpanPair& pair, st
          !is_side(from, to);
 }
 
+/// How a cable went before a span closed up: from where that begins over a point to its end (m).
+struct Closing {
+  Vec2 tail, over, head;
+};
+
+/// The first of the body's circles that the cable comes upon as it closes up: of those within its
+/// bend the farthest from the span.
+Hit test_closing(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
+                 int body, const Closing& closing) {
+  const Segment& segment = cable.segments[s];
+  const Link &to = cable.links[s],
+             &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
+  if (segment.pinched || !(segment.length > 0.0) || from.body == body || to.body == body) return {};
+  const Vec2 first = closing.over - closing.tail, second = closing.head - closing.over;
+  const int way = cross(first, second) > 0.0 ? 1 : -1;  // in which the cable turned
+  Hit farthest;
+  const auto test = [&](const Circle& circle) {
+    const Vec2 x = circle.now - segment.tail;
+    const double along = segment.direction.dot(x), side = way * cross(segment.direction, x);
+    const bool within = way * cross(first, circle.now - closing.tail) > 0.0 &&
+                        way * cross(second, circle.now - closing.over) > 0.0;
+    const bool beside = along > 0.0 && along < segment.length;
+    if (!within || !beside || side >= circle.margin * (1.0 - graze)) return;
+    if (!farthest.found || side < farthest.time) {
+      farthest = {true, side, body, circle.corner, way, 0, s};
+    }
+  };
+  const int corners = static_cast<int>(at(world.bodies, body).corners.size());
+  if (corners == 0) test(circle_of(world, work, cable, body, -1));
+  for (int k = 0; k < corners; ++k) test(circle_of(world, work, cable, body, k));
+  return farthest;
+}
+
+/// Gives a segment links on those bodies of the pairs, all of its cable, that have hit it by a test
+/// of (segment, body): of all hits on the first, then on what has hit the parts. A body gets at
+/// most one link a span and step, so there are at most as many rounds as pairs. Returns how many.
+template <class Test>
+int meet_bodies(World& world, const Workspace& work, std::size_t segment,
+                std::span<const SpanPair> pairs, Test test) {
+  if (pairs.empty()) return 0;
+  CableState& cable = at(world.cables, pairs.front().cable);
+  std::size_t added = 0;
+  for (bool again = true; again && added < pairs.size();) {
+    again = false;
+    Hit first;
+    for (const SpanPair& pair : pairs) {
+      if (work.neighbourhoods.separate_from_cable(pair.body, pair.cable)) continue;
+      for (std::size_t part = 0; part <= added; ++part) {
+        const std::size_t s = segment == 0 && part > 0 ? cable.links.size() - part : segment + part;
+        if (!may_hit(world, work, pair, s)) continue;
+        const Hit hit = test(s, pair.body);
+        if (hit.found && (!first.found || hit.time < first.time)) first = hit;
+      }
+    }
+    if (first.found) {
+      meet_body(world, cable, first.segment, first.body, first.corner, first.orientation);
+      ++added;
+      again = true;
+    }
+  }
+  return static_cast<int>(added);
+}
+
 }  // namespace
 
 double span_clearance(const World& world, const Happening& hit) {
@@ -296,6 +360,27 @@ void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pa
   }
 }
 
+int meet_in_closing(World& world, Workspace& work, int cable, std::size_t segment,
+                    const Vec2& over) {
+  const CableState& state = at(world.cables, cable);
+  const Closing closing{state.segments[segment].tail, over, state.segments[segment].head};
+  const auto test = [&](std::size_t s, int body) {
+    return test_closing(world, work, state, s, body, closing);
+  };
+  const BroadPhase& broad = work.broad_phase;
+  const bool divided =
+      work.neighbourhoods.divided && world.configuration.detection == Detection::sweep;
+  std::vector<SpanPair> near;  // each body once
+  for (const SpanPair& pair : divided ? broad.moving_pairs : broad.span_pairs) {
+    const auto is_same = [&pair](const SpanPair& other) { return other.body == pair.body; };
+    if (pair.cable != cable || std::any_of(near.begin(), near.end(), is_same)) continue;
+    near.push_back(pair);
+    if (!work.neighbourhoods.separate_from_cable(pair.body, cable)) continue;
+    if (test(segment, pair.body).found) work.neighbourhoods.crossed = true;
+  }
+  return meet_bodies(world, work, segment, near, test);
+}
+
 void add_hit_links(World& world, Workspace& work) {
   const int changes = world.changes;
   const auto& pairs = work.broad_phase.span_pairs;
@@ -307,30 +392,10 @@ void add_hit_links(World& world, Workspace& work) {
            pairs[begin - 1].segment == pairs[end - 1].segment) {
       --begin;
     }
-    CableState& cable = at(world.cables, pairs[begin].cable);
-    const auto first = index(pairs[begin].segment);
-    std::size_t added = 0;
-    // Of all hits take the earliest, then test the rest against the parts of the span. A body gets
-    // at most one link a span and step, so there are at most end - begin rounds.
-    for (bool again = true; again && added < end - begin;) {
-      again = false;
-      Hit earliest;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (work.neighbourhoods.separate_from_cable(pairs[i].body, pairs[i].cable)) continue;
-        for (std::size_t part = 0; part <= added; ++part) {
-          const std::size_t s = first == 0 && part > 0 ? cable.links.size() - part : first + part;
-          if (!may_hit(world, work, pairs[i], s)) continue;
-          const Hit hit = test_span(world, work, cable, s, pairs[i].body);
-          if (hit.found && (!earliest.found || hit.time < earliest.time)) earliest = hit;
-        }
-      }
-      if (earliest.found) {
-        meet_body(world, cable, earliest.segment, earliest.body, earliest.corner,
-                  earliest.orientation);
-        ++added;
-        again = true;
-      }
-    }
+    const CableState& cable = at(world.cables, pairs[begin].cable);
+    meet_bodies(world, work, index(pairs[begin].segment),
+                std::span(pairs).subspan(begin, end - begin),
+                [&](std::size_t s, int body) { return test_span(world, work, cable, s, body); });
     end = begin;
   }
   if (world.changes == changes) return;

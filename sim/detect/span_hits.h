@@ -19,6 +19,11 @@ struct Workspace;
 /// was before.
 void add_hit_links(World& world, Workspace& work);
 
+/// Gives a segment that has just closed up, where its cable had gone over a point (m), links on
+/// what lies within that bend, of the bodies that the cable's spans were near. Returns how many.
+int meet_in_closing(World& world, Workspace& work, int cable, std::size_t segment,
+                    const Vec2& over);
+
 /// Whether the body is so near to where the span is, or was before, that it may have met it.
 bool may_meet(const World& world, const SpanPair& pair);
 

@@ -43,6 +43,39 @@ void measure(Workspace& work, const Happening& key, double clearance, double lat
   event->seen = true;
 }
 
+/// Takes a node in, and the cable off a rim beside it where the node had bent it away from that.
+/// Both happen at once, so that what lies within these bends is in the way of the span that closes
+/// up. Returns the least number of a link that has changed; -1: any may have.
+int take_in(World& world, Workspace& work, int number, int node) {
+  CableState& cable = at(world.cables, number);
+  const Vec2 over = at(world.position, at(cable.links, node).body);
+  const std::size_t links = cable.links.size();
+  take_in_node(world, cable, node);
+  if (cable.links.size() + 1 != links) return node - 1;  // the rims beside it are one
+  const std::size_t closed_up = index(node) % cable.links.size();
+  const int before = previous_link(cable, static_cast<int>(closed_up));
+  int met = meet_in_closing(world, work, number, closed_up, over);
+  const int after = static_cast<int>(closed_up) + (closed_up > 0 ? met : 0);
+  const auto leave = [&](int rim) {
+    const Link& link = at(cable.links, rim);
+    if (!has_come_off(cable, index(rim))) return false;
+    const Vec2 point = at(cable.segments, rim).head;
+    note_release(work, {number, link.body, link.orientation});
+    const std::size_t now = cable.links.size();
+    leave_body(world, cable, rim);
+    if (cable.links.size() + 1 == now) {
+      met += meet_in_closing(world, work, number, index(rim) % cable.links.size(), point);
+    }
+    return true;
+  };
+  // The later one first, whose going leaves the number of the other.
+  const bool wraps_round = before > after;
+  leave(wraps_round ? before : after);
+  const bool left = leave(wraps_round ? after : before);
+  if (met > 0 && take_in_enclosed_nodes(world, cable)) return -1;
+  return left && !wraps_round ? before : node;
+}
+
 }  // namespace
 
 void begin_trial(Workspace& work) {
@@ -168,10 +201,13 @@ void change_courses(World& world, Workspace& work) {
     CableState& cable = at(world.cables, event.cable);
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     if (event.kind == EventKind::link_gone && is_strung(cable, at(cable.links, event.item))) {
-      take_in_node(world, cable, event.item);
+      item_changed = take_in(world, work, event.cable, event.item);
+      cable_changed = event.cable;
       ++world.diagnostics.node_changes;
       work.broad_phase.boxes.clear();  // for bodies with other outlines
-    } else if (event.kind == EventKind::link_gone) {
+      continue;
+    }
+    if (event.kind == EventKind::link_gone) {
       const Link& link = at(cable.links, event.item);
       note_release(work, {event.cable, link.body, link.orientation});
       leave_body(world, cable, event.item);

@@ -266,10 +266,12 @@ TEST(Population, ShapesMakeNoEnergy) {
 }
 
 // The first six had gaps that were up to 18 half widths short, where nodes were taken in that were
-// bent, or lay between corners; the next two gained up to 1.3 of all energy, where a node was taken
-// in by an interval that was too long for how fast it swung at its end.
+// bent, or lay between corners; the next three up to 11, where the cable came off a corner as well,
+// or closed up over a disc that it had left at another node. The last two gained up to 1.3 of all
+// energy, where a node was taken in by an interval that was too long for how fast it swung at its
+// end.
 TEST(Population, RopesThatHangMakeNoEnergy) {
-  std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 25, 372, 813};
+  std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 203, 503, 963, 25, 372, 813};
   for (int seed = 1; seed <= 8; ++seed) seeds.push_back(seed);
   for (const int seed : seeds) {
     expect_sound(seed, shapes_on_hanging_rope(static_cast<std::uint64_t>(seed)), 2e-2);
