@@ -16,6 +16,7 @@ struct Soundness {
   bool finite = true;
   bool driven = false;           ///< by a motor or a torque: its energy may rise
   double energy_gain = 0.0;      ///< over the start's, as a share of the largest kinetic energy
+  double lasting_gain = 0.0;     ///< the same, that it stays above for a tenth of a second
   double gap_violation = 0.0;    ///< as a share of the thinnest cable's half width
   double length_error = 0.0;     ///< of a cable's material
   double loose_span = 0.0;       ///< what a span without tension is longer than its material

@@ -17,10 +17,11 @@
 // to the rim, a hundredth of l is left: an event, like others located in time. Its neighbour's span
 // then leaves the rim where it is a tangent, by the angle a = W / T (W the node's weight) away. For
 // this the node rises by R a^2 / 2 + a d to that tangent, which the cable's tension pays for: the
-// energy is higher by W times that rise until the slack that is left is pulled tight, and then lower
-// than before, by T R a^3 / 6 + T d a^2 / 2, of second order in l. Momentum is kept (joins.h). Where
-// a node that swings, or that something presses, is bent by more, the span springs straight at once,
-// and may take the cable off the rim: what lies within these bends bears the cable (events.cpp).
+// energy is higher by W times that until the slack that is left is pulled tight, and then lower
+// than before, by T R a^3 / 6 + T d a^2 / 2, of second order in l. Momentum is kept (joins.h). A
+// node that swings, or that something presses, may be bent by more: the span springs straight at
+// once, and may take the cable off the rim; what lies within these bends bears the cable
+// (events.cpp).
 //     Given off. Where a rim has given off l / 4 beyond a node's place, it comes back there, on a
 // straight span, where halves of spans' masses at either end have the weight that they have with
 // it. It moves as its place of the span did: momentum is kept, energy lost, none is made.

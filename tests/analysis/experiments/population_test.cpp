@@ -251,6 +251,7 @@ void expect_sound(int seed, const ShapelyScene& drawn, double most_energy_gained
     EXPECT_LE(run.length_error, 1e-12) << seed << " at " << steps;
     EXPECT_LE(run.gap_violation, 1e-3) << seed << " at " << steps;
     EXPECT_LE(run.energy_gain, most_energy_gained) << seed << " at " << steps;
+    EXPECT_LE(run.lasting_gain, 1e-9) << seed << " at " << steps;
   }
 }
 
