@@ -102,7 +102,7 @@ struct Workspace {
   SolveScratch solve;               // of the part being solved
 
   BroadPhase broad_phase;         // by find_body_pairs and find_span_pairs
-  std::vector<Release> released;  // since update_segments, by their cables; by note_release
+  std::vector<Release> released;  // since update_segments, by their cables; by take_off
   bool spans_moved = true;        // any of them, by update_segments
   ContactScratch contacts;
   SweepScratch sweeps;  // of the iterative solver

@@ -33,6 +33,14 @@ void take_over(CableState& cable, int link, int later) {
   }
 }
 
+/// Notes it in Workspace::released, in its cable's place.
+void note_release(Workspace& work, const Release& release) {
+  const auto place =
+      std::upper_bound(work.released.begin(), work.released.end(), release,
+                       [](const Release& p, const Release& q) { return p.cable < q.cable; });
+  work.released.insert(place, release);
+}
+
 }  // namespace
 
 void remove_link(World& world, CableState& cable, int link) {
@@ -95,11 +103,10 @@ bool has_come_off(const CableState& cable, std::size_t i) {
   return link.orientation != 0 && !link.pinch_middle && link.wrap < gone && !needed(cable, i);
 }
 
-void note_release(Workspace& work, const Release& release) {
-  const auto place =
-      std::upper_bound(work.released.begin(), work.released.end(), release,
-                       [](const Release& p, const Release& q) { return p.cable < q.cable; });
-  work.released.insert(place, release);
+void take_off(World& world, Workspace& work, int cable, int link) {
+  const Link& off = at(at(world.cables, cable).links, link);
+  note_release(work, {cable, off.body, off.orientation});
+  leave_body(world, at(world.cables, cable), link);
 }
 
 bool remove_links(World& world, Workspace& work) {
@@ -110,10 +117,8 @@ bool remove_links(World& world, Workspace& work) {
     while (changed) {
       changed = false;
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        const Link& link = cable.links[i];
         if (has_come_off(cable, i)) {
-          note_release(work, {static_cast<int>(c), link.body, link.orientation});
-          leave_body(world, cable, static_cast<int>(i));
+          take_off(world, work, static_cast<int>(c), static_cast<int>(i));
           changed = any = true;
           break;
         }

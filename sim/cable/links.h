@@ -10,7 +10,6 @@ namespace pinchlab {
 struct BodyProperties;
 struct CableState;
 struct Link;
-struct Release;
 struct Workspace;
 struct World;
 
@@ -20,8 +19,8 @@ bool needed(const CableState& cable, std::size_t i);
 /// Whether the cable has lost its wrap on a link that it rolls on and does not need.
 bool has_come_off(const CableState& cable, std::size_t i);
 
-/// Notes it in Workspace::released, in its cable's place.
-void note_release(Workspace& work, const Release& release);
+/// Takes a cable off the body of a link, and notes that in Workspace::released.
+void take_off(World& world, Workspace& work, int cable, int link);
 
 /// Removes rolling links whose wrap is gone and merges neighbours on one body (thesis:
 /// RemoveJoints). Returns whether there were any.

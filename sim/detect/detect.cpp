@@ -11,20 +11,34 @@
 
 namespace pinchlab {
 
+namespace {
+
+/// Whether the pairs of an interval are those of what moves in it.
+bool are_of_movers(const World& world, const Workspace& work) {
+  return work.neighbourhoods.divided && world.configuration.detection == Detection::sweep;
+}
+
+}  // namespace
+
 void find_pairs(const Scene& scene, const World& world, Workspace& work) {
   const bool sweep = world.configuration.detection == Detection::sweep;
   (sweep ? find_body_pairs : find_all_body_pairs)(scene, world, work);
   (sweep ? find_span_pairs : find_all_span_pairs)(world, work);
 }
 
+const std::vector<SpanPair>& pairs_of_interval(const World& world, const Workspace& work) {
+  const BroadPhase& broad = work.broad_phase;
+  return are_of_movers(world, work) ? broad.moving_pairs : broad.span_pairs;
+}
+
 const std::vector<SpanPair>& find_pairs_of_interval(const Scene& scene, const World& world,
                                                     Workspace& work) {
-  if (work.neighbourhoods.divided && world.configuration.detection == Detection::sweep) {
+  if (are_of_movers(world, work)) {
     find_moving_pairs(scene, world, work);
-    return work.broad_phase.moving_pairs;
+  } else {
+    find_pairs(scene, world, work);
   }
-  find_pairs(scene, world, work);
-  return work.broad_phase.span_pairs;
+  return pairs_of_interval(world, work);
 }
 
 void detect(const Scene& scene, World& world, Workspace& work, StageTimes* times) {

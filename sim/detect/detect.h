@@ -29,4 +29,7 @@ void find_pairs(const Scene& scene, const World& world, Workspace& work);
 const std::vector<SpanPair>& find_pairs_of_interval(const Scene& scene, const World& world,
                                                     Workspace& work);
 
+/// Those that were found last.
+const std::vector<SpanPair>& pairs_of_interval(const World& world, const Workspace& work);
+
 }  // namespace pinchlab

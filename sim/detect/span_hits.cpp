@@ -7,6 +7,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/strung.h"
+#include "sim/detect/detect.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -367,11 +368,8 @@ int meet_in_closing(World& world, Workspace& work, int cable, std::size_t segmen
   const auto test = [&](std::size_t s, int body) {
     return test_closing(world, work, state, s, body, closing);
   };
-  const BroadPhase& broad = work.broad_phase;
-  const bool divided =
-      work.neighbourhoods.divided && world.configuration.detection == Detection::sweep;
   std::vector<SpanPair> near;  // each body once
-  for (const SpanPair& pair : divided ? broad.moving_pairs : broad.span_pairs) {
+  for (const SpanPair& pair : pairs_of_interval(world, work)) {
     const auto is_same = [&pair](const SpanPair& other) { return other.body == pair.body; };
     if (pair.cable != cable || std::any_of(near.begin(), near.end(), is_same)) continue;
     near.push_back(pair);

@@ -57,12 +57,10 @@ int take_in(World& world, Workspace& work, int number, int node) {
   int met = meet_in_closing(world, work, number, closed_up, over);
   const int after = static_cast<int>(closed_up) + (closed_up > 0 ? met : 0);
   const auto leave = [&](int rim) {
-    const Link& link = at(cable.links, rim);
     if (!has_come_off(cable, index(rim))) return false;
     const Vec2 point = at(cable.segments, rim).head;
-    note_release(work, {number, link.body, link.orientation});
     const std::size_t now = cable.links.size();
-    leave_body(world, cable, rim);
+    take_off(world, work, number, rim);
     if (cable.links.size() + 1 == now) {
       met += meet_in_closing(world, work, number, index(rim) % cable.links.size(), point);
     }
@@ -200,23 +198,18 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable < 0 || event.clearance > event.reach) continue;
     CableState& cable = at(world.cables, event.cable);
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
+    cable_changed = event.cable;
+    item_changed = event.item;
     if (event.kind == EventKind::link_gone && is_strung(cable, at(cable.links, event.item))) {
       item_changed = take_in(world, work, event.cable, event.item);
-      cable_changed = event.cable;
       ++world.diagnostics.node_changes;
       work.broad_phase.boxes.clear();  // for bodies with other outlines
-      continue;
-    }
-    if (event.kind == EventKind::link_gone) {
-      const Link& link = at(cable.links, event.item);
-      note_release(work, {event.cable, link.body, link.orientation});
-      leave_body(world, cable, event.item);
+    } else if (event.kind == EventKind::link_gone) {
+      take_off(world, work, event.cable, event.item);
     } else {
       meet_body(world, cable, index(event.item), event.body, event.corner, event.orientation);
       if (cable.nodes > 0 && take_in_enclosed_nodes(world, cable)) work.broad_phase.boxes.clear();
     }
-    cable_changed = event.cable;
-    item_changed = event.item;
   }
 }
 
