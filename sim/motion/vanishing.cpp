@@ -18,16 +18,23 @@ constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
 // thousandth of its length.
 constexpr double least_share = 1e-4;
 
+/// Whether a span is between bodies in touch which may part.
+bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head) {
+  if (!opposite(tail, head) || tail.pinch_middle || head.pinch_middle) return false;
+  return span.contact < 0 || !at(world.contacts, span.contact).touching;
+}
+
 /// The time for which a span between two links has been there, or will be (s), where that is less
 /// than `most`; else that.
 double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,
                  double most) {
   const double delta = head.signed_radius() - tail.signed_radius();
-  if (!(span.length > 0.0 && span.length < short_share * std::abs(delta))) return most;
-  if (span.pinched || span.slack) return most;
+  if (span.slack || !(span.length < short_share * std::abs(delta))) return most;
+  const bool opens = span.pinched && is_let_go(world, span, tail, head);
+  if (!opens && !(span.length > 0.0 && !span.pinched)) return most;
   const Vec2 apart = span.head_centre - span.tail_centre;
-  const double rate =
-      2.0 * std::abs(apart.dot(velocity_of(world, head) - velocity_of(world, tail)));
+  const double parting = 2.0 * apart.dot(velocity_of(world, head) - velocity_of(world, tail));
+  const double rate = opens ? parting : std::abs(parting);
   if (rate * vanishing_time < slow_share * delta * delta) return most;
   const double square = span.length * span.length;
   return square < rate * most ? square / rate : most;
