@@ -65,6 +65,7 @@ struct IntervalTrial {
   double excess = 0.0;        // the same, over what would do
   double local_error = 0.0;   // m
   double longest = infinity;  // s, that it may last: vanishing.h
+  double turned = 0.0;        // rad^2, by what bears force, where it curved: turning.h
   double wave = 0.0;          // 1/s^2, on cables of nodes under the tensions that it found: waves.h
 };
 

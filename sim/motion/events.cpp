@@ -92,22 +92,21 @@ void find_catches(const World& world, Workspace& work, int number) {
   const CapstanScratch& capstan = work.solve.capstan;
   const bool slides = !capstan.runs.empty();
   const double late = 0.5 * s.reach;
+  const bool any_known = !work.known_events.empty();
   Happening key{EventKind::catches};
   key.part = number;
   key.reach = s.reach;
   for (const Row& row : s.rows) {
     const bool releases = row.compliance > 0.0 && row.on && !row.clamped;
-    if (!row.idle && !releases) continue;
+    if (!row.idle && !(releases && row.clearance < -s.reach)) continue;
     if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
     const auto r = static_cast<std::size_t>(&row - s.rows.data());
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
+    const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
+    const double late_by = !releases && row.clearance > s.reach ? -s.reach : late;
+    if (!any_known && clearance >= -late_by) continue;
     key.row = static_cast<int>(r);
-    const double clearance = clearance_of(world, row);
-    if (releases) {
-      if (row.clearance < -s.reach) measure(work, key, -clearance, late);
-    } else {
-      measure(work, key, clearance, row.clearance > s.reach ? -s.reach : late);
-    }
+    measure(work, key, clearance, late_by);
   }
   if (!slides) return;
   for (const Group& group : capstan.groups) {

@@ -11,6 +11,7 @@
 #include "sim/compound.h"
 #include "sim/motion/events.h"
 #include "sim/motion/missed.h"
+#include "sim/motion/turning.h"
 #include "sim/motion/vanishing.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
@@ -29,10 +30,9 @@ namespace {
 // it into, and that bodies move so little in that only round-off would be corrected.
 constexpr double shortest = 1e-4;
 constexpr double shortest_corrected = 1e-6;
+// So short an interval turns hardly anything far; where it does, shorter ones would as well.
+constexpr double shortest_for_turns = 1.0 / 32.0;
 constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles: nobody sees it
-// Most that a way may bend in an interval, as a share of the speed: beyond it what the first
-// solution knows of the way's end has little to do with that.
-constexpr double bent = 0.5;
 // Of a step, whose impulses tell forces: in shorter ones what round-off of positions asks for, as
 // much however short they are, is no small part of them.
 constexpr double shortest_told = 1e-3;
@@ -106,20 +106,6 @@ void put_back(World& world, Workspace& work, const Part& part) {
   }
 }
 
-/// The greatest speed of a part's bodies and their rims (m/s), of `velocity` less `other`.
-double greatest_speed(const World& world, std::span<const int> bodies,
-                      const std::vector<Eigen::Vector3d>& velocity,
-                      const std::vector<Eigen::Vector3d>* other) {
-  double greatest = 0.0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Eigen::Vector3d v = velocity[i];
-    if (other) v -= (*other)[i];
-    const double rim = at(world.bodies, bodies[i]).radius * v.z();
-    greatest = std::max({greatest, std::abs(v.x()), std::abs(v.y()), std::abs(rim)});
-  }
-  return greatest;
-}
-
 /// Solves and moves a part, with at most so many changes of what its motors do; whether its lengths
 /// and gaps are exact then.
 bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
@@ -128,16 +114,14 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
   PartSystem& s = at(work.systems, part.system);
   SolveScratch& set = work.solve;
   bool settled = solve_steadily(scene, world, work, part, t, changes_of_motors, watch);
-  double last = infinity, before_last = infinity, fastest = 0.0;
+  double last = infinity, before_last = infinity;
   const std::span<const int> bodies = bodies_of(work.parts, part);
   Diagnostics& d = world.diagnostics;
   for (int round = 0;; ++round) {
     if (round > 0) settled = solve_again(world, work.parts, part, s, set);
     if (set.froze) ++d.fallbacks;
-    if (round == 1) fastest = greatest_speed(world, bodies, work.linear_velocity, nullptr);
     const double round_off = s.tolerance() / t.repair;  // m/s, over a step
-    if (round > 0 && greatest_speed(world, bodies, s.velocity, &work.linear_velocity) >
-                         std::max(bent * fastest, round_off)) {
+    if (round > 0 && bends_too_far(world, bodies, work.linear_velocity, s.velocity, round_off)) {
       trial.missed = infinity;
       return false;
     }
@@ -161,7 +145,10 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     trial.curves = trial.curves || missed > s.tolerance();
     // In so short an interval there is nothing to correct but round-off.
     const bool meets = missed <= s.tolerance() || t.length < shortest_corrected * t.repair;
-    if (meets && !follows) return true;
+    if (meets && !follows) {
+      if (round > 0) trial.turned = turned_square(world, bodies, t.length, s);
+      return true;
+    }
     // Where states flip it may get worse for a round.
     trial.missed = std::max(trial.missed, missed / s.extent);
     trial.excess = std::max(trial.excess, missed / s.tolerance());
@@ -202,6 +189,7 @@ void add(const IntervalTrial& one, IntervalTrial& all) {
   all.local_error = std::max(all.local_error, one.local_error);
   all.longest = std::min(all.longest, one.longest);
   all.wave = std::max(all.wave, one.wave);
+  all.turned = std::max(all.turned, one.turned);
 }
 
 /// Tries an interval of one part.
@@ -278,9 +266,20 @@ double next_share(double wanted) {
   return std::clamp(wanted, 0.1, 0.7);
 }
 
-bool errs(const World& world, const IntervalTrial& trial) {
+/// The length (s) to try next after a trial of `length` that errs by more than the scene allows, or
+/// turns what bears force too far; the same after any other, and where it has come down to the
+/// shortest.
+double sound_length(const World& world, const IntervalTrial& trial, double length) {
   const double allowed = share_of_error * world.configuration.error;
-  return allowed > 0.0 && trial.met && trial.local_error > allowed;
+  const auto is_longer = [&](double least) { return length > least * world.step_length; };
+  double share = 1.0;
+  if (allowed > 0.0 && trial.met && trial.local_error > allowed && is_longer(shortest)) {
+    share = 0.8 * std::cbrt(allowed / trial.local_error);
+  }
+  if (trial.turned > most_turned && is_longer(shortest_for_turns)) {
+    share = std::min(share, std::sqrt(most_turned / trial.turned));
+  }
+  return share < 1.0 ? next_share(share) * length : length;
 }
 
 /// The share of its length that an interval which was not met is to be tried with again. A way that
@@ -306,7 +305,6 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     work.events.clear();
     try_again(scene, world, work, movers, {length, most_rounds}, watch);
   };
-  const double allowed = share_of_error * world.configuration.error;
   const auto misses = [&trial, &movers] {
     const bool contradicts = trial.contradicts && !movers.crept;
     return !trial.met && (trial.settled || contradicts || trial.missed > most_missed);
@@ -323,8 +321,8 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
       if (halvings == 0) whole = length;
       continue;
     }
-    if (errs(world, trial) && length > shortest * world.step_length) {
-      length *= next_share(0.8 * std::cbrt(allowed / trial.local_error));
+    if (const double sound = sound_length(world, trial, length); sound < length) {
+      length = sound;
       again(shake_rounds);
       if (halvings == 0) whole = length;
       continue;
@@ -433,8 +431,8 @@ IntervalTrial trial_of(const Workspace& work, std::span<const int> parts) {
 }
 
 bool is_sound(const World& world, const IntervalTrial& trial, double length) {
-  return trial.met && !errs(world, trial) && !is_outrun(world, trial, length) &&
-         length <= trial.longest;
+  return trial.met && sound_length(world, trial, length) == length &&
+         !is_outrun(world, trial, length) && length <= trial.longest;
 }
 
 double length_to_try(const World& world, const Workspace& work, std::span<const int> parts,

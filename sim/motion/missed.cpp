@@ -22,13 +22,15 @@ bool is_exact_row(const Row& row) {
 /// Whether a row's condition changes by J v and nothing else: that of a segment between circles
 /// which have not moved, as its length stands and its material turns evenly.
 bool is_linear(const World& world, const Row& row) {
-  if (row.kind != RowKind::segment || row.compliance > 0.0) return false;
+  if (row.kind != RowKind::segment) return false;
   const CableState& cable = at(world.cables, row.index);
   return !at(cable.segments, row.item).moved && !cable.fills && cable.rims.empty();
 }
 
-/// J v + bias (m/s), at most, of a row without compliance; where the solver knows, as it knows.
+/// J v + bias (m/s), at most, of a row without compliance; where the solver knows, as it knows. Of
+/// any other it is what it stretches by.
 double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
+  if (s.rows[r].compliance > 0.0) return 0.0;
   if (!set.direct) return std::abs(row_speed(s, r));
   return set.unknown_of_row[r] >= 0 ? set.missing : std::abs(s.rows[r].speed);
 }

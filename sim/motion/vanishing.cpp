@@ -18,25 +18,30 @@ constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
 // thousandth of its length.
 constexpr double least_share = 1e-4;
 
-/// Whether a span is between bodies in touch which may part.
-bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head) {
+/// Whether a pinched span is between bodies that touch, have not sunk into it, and may part.
+bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head,
+               double distance) {
+  constexpr double rounding = 1e-9;
   if (!opposite(tail, head) || tail.pinch_middle || head.pinch_middle) return false;
-  return span.contact < 0 || !at(world.contacts, span.contact).touching;
+  if (span.contact >= 0 && at(world.contacts, span.contact).touching) return false;
+  return distance >= (1.0 - rounding) * (tail.radius + head.radius);
 }
 
 /// The time for which a span between two links has been there, or will be (s), where that is less
 /// than `most`; else that.
 double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,
                  double most) {
-  const double delta = head.signed_radius() - tail.signed_radius();
-  if (span.slack || !(span.length < short_share * std::abs(delta))) return most;
-  const bool opens = span.pinched && is_let_go(world, span, tail, head);
-  if (!opens && !(span.length > 0.0 && !span.pinched)) return most;
+  const double touch = tail.radius + head.radius;  // m, Delta where the cable crosses over
+  if (span.length >= short_share * touch || tail.orientation * head.orientation > 0) return most;
+  if (span.slack) return most;
   const Vec2 apart = span.head_centre - span.tail_centre;
+  const bool opens = span.pinched && is_let_go(world, span, tail, head, apart.norm());
+  if (!opens && (span.pinched || span.length == 0.0)) return most;
   const double parting = 2.0 * apart.dot(velocity_of(world, head) - velocity_of(world, tail));
   const double rate = opens ? parting : std::abs(parting);
-  if (rate * vanishing_time < slow_share * delta * delta) return most;
-  const double square = span.length * span.length;
+  if (rate * vanishing_time < slow_share * touch * touch) return most;
+  const double square =
+      opens ? std::max(apart.squaredNorm() - touch * touch, 0.0) : span.length * span.length;
   return square < rate * most ? square / rate : most;
 }
 

@@ -27,16 +27,17 @@ double length_of(const World& world, const TimeSpan& t) {
 double damped_share(const World& world, const TimeSpan& t, double flexibility, double mobility) {
   if (world.configuration.solver == Solver::iterative) return 1.0;  // the thesis' implicit Euler
   const double h = length_of(world, t), square = h * h * mobility;  // (omega h)^2 * flexibility
-  return flexibility == 0.0 ? 1.0 : std::max(0.0, 1.0 - 4.0 * flexibility / square);
+  if (flexibility == 0.0) return 1.0;
+  return 4.0 * flexibility < square ? 1.0 - 4.0 * flexibility / square : 0.0;
 }
 
-/// The row of a segment, `damped` being its a - b.
+/// The row of a segment of such a flexibility (m/N), `damped` being its a - b.
 void make_row(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
-              double damped, PartSystem& s, int number) {
+              double flexibility, double damped, PartSystem& s, int number) {
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
   RowBodies& bodies = at(s.bodies, number);
-  const double h = length_of(world, t), flexibility = flexibility_of(given, segment);
+  const double h = length_of(world, t);
   const double b = 0.25 * (1.0 - damped);
   const CableState& cable = at(world.cables, row.index);
   const Link &to = at(cable.links, row.item),
@@ -58,11 +59,14 @@ void make_row(const World& world, const Cable& given, const Segment& segment, co
     row.compliance = row.idle ? 0.0 : 1.0 / damper;
     return;
   }
-  const double damper = flexibility * given.damping * t.kick;  // s^2
-  const double taken = given.damping * t.kick * row.diagonal;
-  const double after = taken > 0.0 ? Drag(taken).after / taken : 0.5;  // its share
-  known -= (1.0 - after) * damper * before;
-  const double scale = b * h * h + damped * h * t.kick + after * damper;
+  double scale = b * h * h + damped * h * t.kick;  // s^2
+  if (given.damping > 0.0) {
+    const double damper = flexibility * given.damping * t.kick;  // s^2
+    const double taken = given.damping * t.kick * row.diagonal;
+    const double after = taken > 0.0 ? Drag(taken).after / taken : 0.5;  // its share
+    known -= (1.0 - after) * damper * before;
+    scale += after * damper;
+  }
   row.idle = !both_ways && row.clearance > t.reach;
   row.clamped = both_ways;
   row.on = both_ways || (!segment.slack && !row.idle);
@@ -124,10 +128,11 @@ void make_section(const World& world, const Cable& given, const CableState& cabl
     const Segment& segment = at(cable.segments, i);
     if (!is_row(i) || segment.pinched) continue;
     const int number = row_of_segment[index(i)];
-    make_row(world, given, segment, t, damped, s, number);
+    const double flexibility = flexibility_of(given, segment);
+    make_row(world, given, segment, t, flexibility, damped, s, number);
     if (s.elastic_ends.empty()) continue;
     ElasticEnd& end = at(s.elastic_ends, number);
-    end.compliance = flexibility_of(given, segment) / (t.kick * t.length);
+    end.compliance = flexibility / (t.kick * t.length);
     end.bias = at(s.rows, number).clearance / t.length + at(s.bodies, number).curvature;
   }
 }
@@ -136,9 +141,9 @@ void make_section(const World& world, const Cable& given, const CableState& cabl
 
 void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
                   PartSystem& s, int number) {
-  const double damped =
-      damped_share(world, t, flexibility_of(given, segment), at(s.rows, number).diagonal);
-  make_row(world, given, segment, t, damped, s, number);
+  const double flexibility = flexibility_of(given, segment);
+  const double damped = damped_share(world, t, flexibility, at(s.rows, number).diagonal);
+  make_row(world, given, segment, t, flexibility, damped, s, number);
 }
 
 void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,

@@ -347,13 +347,6 @@ int place_of(const Parts& parts, const PartSystem& system, int body) {
   return local >= 0 ? local : system.ground();
 }
 
-double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
-  if (body < 0) return 0.0;
-  const int mover = mover_of(world, body);
-  const Vec2& v = at(world.velocity, mover);
-  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
-}
-
 double restitution_of(const World& world, const Contact& contact) {
   const double other = contact.b >= 0 ? at(world.bodies, contact.b).restitution
                                       : at(world.obstacles, contact.wall).restitution;

@@ -3,15 +3,17 @@
 // Constraint rows: one scalar condition on the velocities of two bodies each, or three
 // (contact_bodies.h).
 
+#include "base/at.h"
+#include "sim/compound.h"
 #include "sim/solve/part_system.h"
 #include "sim/stages.h"
+#include "sim/world.h"
 
 namespace pinchlab {
 
 struct Parts;
 struct Part;
 struct SolveScratch;
-struct World;
 
 /// A body's place in its part; static bodies and the world (-1) share the one after the last.
 int place_of(const Parts& parts, const PartSystem& system, int body);
@@ -21,7 +23,12 @@ int place_of(const Parts& parts, const PartSystem& system, int body);
 double restitution_of(const World& world, const Contact& contact);
 
 /// What a body (-1: none) adds to J v of a row that sees it by j, at the world's velocities (m/s).
-double speed_of(const World& world, int body, const Eigen::Vector3d& j);
+inline double speed_of(const World& world, int body, const Eigen::Vector3d& j) {
+  if (body < 0) return 0.0;
+  const int mover = mover_of(world, body);
+  const Vec2& v = at(world.velocity, mover);
+  return j.x() * v.x() + j.y() * v.y() + j.z() * at(world.angular_velocity, mover);
+}
 
 /// Rows of a part for one solve at the present positions: of its cables, then of its contacts.
 /// Notes in `scratch` what the solve must know of the interval.

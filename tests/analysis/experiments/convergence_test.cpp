@@ -57,8 +57,8 @@ double changed_by_half_steps(const Problem& problem, int steps_per_frame) {
   return distance(one.motion, other.motion, false).largest_m;
 }
 
-// Spans between bodies that come to pinch them, or that are torn apart, vanish and come into being
-// as a root (sim/motion/vanishing.h), bodies bounce to rest on one another, and a motor gives all it
+// Spans between bodies that come to pinch them, or are torn apart, vanish and come into being as a
+// root (sim/motion/vanishing.h), bodies bounce to rest on one another, and a motor gives all it
 // can: of order 0.5 to 1.1 once.
 TEST(Convergence, DemonstrationsThatPinchAreOfSecondOrder) {
   for (const char* name : {"01-roll-over", "04-two-blocking", "05-notch"}) {

@@ -31,12 +31,21 @@ TEST(Population, NoEnergyComesFromNowhere) {
       const Soundness run = run_scene(scene, watched(), steps, 60);
       EXPECT_TRUE(run.finite) << seed << " at " << steps;
       EXPECT_LE(run.length_error, 1e-12) << seed << " at " << steps;
-      // In a step of 17 ms in which a disc is caught the mean of the velocities before and after is
-      // 1 % of the energy too much; a step later there is less than at the start.
-      const bool swings = seed == 10 && steps == 1;
       if (!run.driven) {
-        EXPECT_LE(run.energy_gain, swings ? 1e-2 : 1e-9) << seed << " at " << steps;
+        EXPECT_LE(run.energy_gain, 1e-9) << seed << " at " << steps;
       }
+    }
+  }
+}
+
+// A light ball is stopped by a cable that a heavy weight pulls, and turns the spans beside it by
+// half a radian in a step (sim/motion/turning.h). It gained up to 28 % of all energy.
+TEST(Population, WhatTurnsSpansFarMakesNoEnergy) {
+  for (const int seed : {88, 100, 512, 579, 951, 1573, 1842, 1865}) {
+    const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
+    for (const int steps : {1, 4, 16}) {
+      EXPECT_LE(run_scene(scene, watched(), steps, 60).energy_gain, 1e-9)
+          << seed << " at " << steps;
     }
   }
 }

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/turning.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/solve/part_system.h"
+#include "sim/world.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Twice the kinetic energy (J) of a body at such a velocity.
+double twice_kinetic_energy(const BodyProperties& body, const Eigen::Vector3d& v) {
+  double energy = 0.0;
+  if (can_move(body)) energy += body.mass * v.head<2>().squaredNorm();
+  if (body.kind != BodyKind::fixed) energy += inertia_of(body) * v.z() * v.z();
+  return energy;
+}
+
+/// The greatest speed of bodies and their rims (m/s), of `velocity` less `other`.
+double greatest_speed(const World& world, std::span<const int> bodies,
+                      const std::vector<Eigen::Vector3d>& velocity,
+                      const std::vector<Eigen::Vector3d>* other) {
+  double greatest = 0.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Eigen::Vector3d v = velocity[i];
+    if (other) v -= (*other)[i];
+    const double rim = at(world.bodies, bodies[i]).radius * v.z();
+    greatest = std::max({greatest, std::abs(v.x()), std::abs(v.y()), std::abs(rim)});
+  }
+  return greatest;
+}
+
+}  // namespace
+
+double turned_square(const World& world, std::span<const int> bodies, double length,
+                     const PartSystem& s) {
+  if (!s.carried.empty()) return 0.0;
+  const double round_off = s.tolerance() / length;  // m/s
+  double swung = 0.0;                               // J
+  for (const Row& row : s.rows) {
+    if (row.compliance > 0.0 || std::abs(row.curved) <= round_off) continue;
+    swung += std::abs(row.impulse * row.curved);
+  }
+  if (swung == 0.0) return 0.0;
+  double twice = 0.0;  // J
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodyProperties& body = at(world.bodies, bodies[i]);
+    twice += std::max(twice_kinetic_energy(body, s.velocity[i]),
+                      twice_kinetic_energy(body, s.free_velocity[i]));
+  }
+  return 2.0 * swung / twice;
+}
+
+bool bends_too_far(const World& world, std::span<const int> bodies,
+                   const std::vector<Eigen::Vector3d>& first,
+                   const std::vector<Eigen::Vector3d>& corrected, double round_off) {
+  const double fastest = greatest_speed(world, bodies, first, nullptr);
+  return greatest_speed(world, bodies, corrected, &first) > std::max(0.5 * fastest, round_off);
+}
+
+}  // namespace pinchlab
