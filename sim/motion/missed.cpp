@@ -47,6 +47,11 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     const int group = slides ? capstan.group_of_row[r] : -1;
+    // Most rows are done with here. One that is violated is, if that is stretch.
+    const bool stretched = row.compliance > 0.0 || row.clearance >= -t.made_up;
+    if (group < 0 && stretched && is_linear(world, row) && speed_left(s, set, r) <= round_off) {
+      continue;
+    }
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;
@@ -57,7 +62,6 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
       trial.violated = true;
     }
     if (!row.on && group >= 0 && !shares) continue;
-    if (group < 0 && is_linear(world, row) && speed_left(s, set, r) <= round_off) continue;
     // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
