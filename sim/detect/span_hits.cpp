@@ -118,12 +118,16 @@ bool is_solid_end(const World& world, const CableState& cable, const Link& link)
   return false;
 }
 
-/// Over which end of the span, an end of its cable that bars the way, something has come that was
-/// so far along it before (m), as in Happening; or 0.
-int end_passed(const World& world, const CableState& cable, std::size_t s, double along_before) {
+/// Over which end of the span something has come, as in Happening, that was so far along it before
+/// (m) and is on that side of it now (m): an end of its cable that bars the way, and which it has
+/// come round, or a rim, away from which it lies, and which has given off the cable below it; or 0.
+int end_passed(const World& world, const CableState& cable, std::size_t s, double along_before,
+               double side) {
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
   const int end = along_before <= 0.0 ? -1 : 1;
-  return is_solid_end(world, cable, at(cable.links, end < 0 ? tail : head)) ? end : 0;
+  const Link& link = at(cable.links, end < 0 ? tail : head);
+  const bool outside = link.orientation != 0 && link.corner < 0 && link.orientation * side < 0.0;
+  return outside || is_solid_end(world, cable, link) ? end : 0;
 }
 
 Hit test_circle(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
@@ -148,12 +152,12 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double side_before = cross(direction_before, before);
 
   // What was within reach of the span's line before, but not beside the span, has come past its
-  // end: it is in front of the cable, not in its way, but where the end bars the way; then it has
-  // come round that. What was beside it has been pushed into it by a repair.
+  // end: it is in front of the cable, not in its way, but where end_passed has an end. What was
+  // beside it has been pushed into it by a repair.
   const bool beside_before = along_before > 0.0 && along_before < length_before;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
-    hit.over_end = within ? end_passed(world, cable, s, along_before) : 0;
+    hit.over_end = within ? end_passed(world, cable, s, along_before, side) : 0;
     if (hit.over_end == 0) return hit;
   }
   bool reached = within;
