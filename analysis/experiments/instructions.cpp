@@ -43,10 +43,11 @@ double count(const char* function, const std::string& what, int calls,
   const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = fmt::format(
       "valgrind --tool=callgrind --callgrind-out-file='{}' --toggle-collect='pinchlab::{}(*' "
-      "'{}' bench instructions {} --steps {} > /dev/null 2>&1",
+      "'{}' bench instructions {} --steps {}",
       file.string(), function, program, what, calls);
-  if (std::system(command.c_str()) != 0) {
-    throw std::runtime_error("valgrind failed; to see why: " + command);
+  if (std::system((command + " > /dev/null 2>&1").c_str()) != 0) {
+    std::filesystem::remove(file);
+    throw std::runtime_error("valgrind cannot run this program here; to see why: " + command);
   }
   std::ifstream in(file);
   constexpr const char* key = "totals: ";
