@@ -113,13 +113,13 @@ double share_after(double lag, double length) {
   return lag / (lag + 0.5 * length);
 }
 
+}  // namespace
+
 double kinetic_energy(const BodyProperties& body, const Vec2& v, double omega) {
   if (body.kind == BodyKind::fixed) return 0.0;
   const double turning = 0.5 * inertia_of(body) * omega * omega;
   return can_move(body) ? turning + 0.5 * body.mass * v.squaredNorm() : turning;
 }
-
-}  // namespace
 
 double kinetic_energy(const World& world) {
   double energy = 0.0;

@@ -36,6 +36,9 @@ inline double zero_if_finite(const World& world, int body) {
   return 0.0 * v.x() + 0.0 * v.y() + 0.0 * at(world.angular_velocity, body);
 }
 
+/// Kinetic energy (J) of a body that moves at v (m/s) and turns at omega (rad/s).
+double kinetic_energy(const BodyProperties& body, const Vec2& v, double omega);
+
 /// Kinetic energy of all bodies at the velocities that they have (J).
 double kinetic_energy(const World& world);
 

@@ -104,7 +104,7 @@ void find_catches(const World& world, Workspace& work, int number) {
     if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
     const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
     const double late_by = !releases && row.clearance > s.reach ? -s.reach : late;
-    if (!any_known && clearance >= -late_by) continue;
+    if (!any_known && clearance >= -late_by) continue;  // as most: no search for these
     key.row = static_cast<int>(r);
     measure(work, key, clearance, late_by);
   }

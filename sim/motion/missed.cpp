@@ -27,8 +27,8 @@ bool is_linear(const World& world, const Row& row) {
   return !at(cable.segments, row.item).moved && !cable.fills && cable.rims.empty();
 }
 
-/// J v + bias (m/s), at most, of a row without compliance; where the solver knows, as it knows. Of
-/// any other it is what it stretches by.
+/// J v + bias (m/s), at most; where the solver knows, as it knows. Nothing of it is left of a row
+/// with compliance, which is to stretch by that.
 double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
   if (s.rows[r].compliance > 0.0) return 0.0;
   if (!set.direct) return std::abs(row_speed(s, r));
@@ -47,9 +47,9 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     const int group = slides ? capstan.group_of_row[r] : -1;
-    // Most rows are done with here. One that is violated is, if that is stretch.
-    const bool stretched = row.compliance > 0.0 || row.clearance >= -t.made_up;
-    if (group < 0 && stretched && is_linear(world, row) && speed_left(s, set, r) <= round_off) {
+    // Most rows are done with here. What stretches may be too long.
+    const bool may_stay = row.compliance > 0.0 || row.clearance >= -t.made_up;
+    if (group < 0 && may_stay && is_linear(world, row) && speed_left(s, set, r) <= round_off) {
       continue;
     }
     // Of a group that is slack somewhere any segment may run short of its share of the material.

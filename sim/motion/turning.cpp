@@ -5,20 +5,13 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/diagnostics.h"
 #include "sim/solve/part_system.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
 namespace {
-
-/// Twice the kinetic energy (J) of a body at such a velocity.
-double twice_kinetic_energy(const BodyProperties& body, const Eigen::Vector3d& v) {
-  double energy = 0.0;
-  if (can_move(body)) energy += body.mass * v.head<2>().squaredNorm();
-  if (body.kind != BodyKind::fixed) energy += inertia_of(body) * v.z() * v.z();
-  return energy;
-}
 
 /// The greatest speed of bodies and their rims (m/s), of `velocity` less `other`.
 double greatest_speed(const World& world, std::span<const int> bodies,
@@ -46,13 +39,14 @@ double turned_square(const World& world, std::span<const int> bodies, double len
     swung += std::abs(row.impulse * row.curved);
   }
   if (swung == 0.0) return 0.0;
-  double twice = 0.0;  // J
+  double kinetic = 0.0;  // J
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyProperties& body = at(world.bodies, bodies[i]);
-    twice += std::max(twice_kinetic_energy(body, s.velocity[i]),
-                      twice_kinetic_energy(body, s.free_velocity[i]));
+    const Eigen::Vector3d &v = s.velocity[i], &free = s.free_velocity[i];
+    kinetic += std::max(kinetic_energy(body, v.head<2>(), v.z()),
+                        kinetic_energy(body, free.head<2>(), free.z()));
   }
-  return 2.0 * swung / twice;
+  return swung / kinetic;
 }
 
 bool bends_too_far(const World& world, std::span<const int> bodies,
