@@ -91,19 +91,20 @@ bool is_covered(const World& world, const BroadPhase& broad, double allowed) {
 }
 
 /// Ends of cables that are held in the world bar the way as their cables do; but for one over which
-/// a body starts. At the end of a cable with mass a span would shrink to nothing, whose turning,
-/// and with it what flows along it, has no bound.
+/// a body starts. That of a cable with mass stands out by a tenth of its half width w: to a rim of
+/// radius r that comes upon it there is a span of sqrt(0.2 (r + w) w) at least. Of one that shrank
+/// to nothing the turning, and with it what flows along it, would have no bound.
 void add_ends(const Scene& scene, const BroadPhase& broad, World& world) {
   const double allowed = overlap_allowed(scene);
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     const Cable& cable = scene.cables[c];
-    if (cable.closed || is_passed(world.cables[c]) || is_massed(world.cables[c])) continue;
+    if (cable.closed || is_passed(world.cables[c])) continue;
     for (const Attachment& end : {cable.start, cable.end}) {
       if (end.body >= 0) continue;
       Obstacle obstacle;
       obstacle.a = obstacle.b = end.point;
       obstacle.contact_friction = 0.0;
-      obstacle.radius = cable.half_width;
+      obstacle.radius = (is_massed(world.cables[c]) ? 1.1 : 1.0) * cable.half_width;
       obstacle.cable = static_cast<int>(c);
       world.obstacles.push_back(obstacle);
       if (is_covered(world, broad, allowed)) world.obstacles.pop_back();

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/touch.h"
@@ -131,7 +132,7 @@ int number_parts(const World& world, Parts& parts) {
 void describe(const World& world, Parts& parts, Part& part) {
   for (const int c : cables_of(parts, part)) {
     part.dormant = part.dormant || is_dormant(at(world.cables, c));
-    part.has_nodes = part.has_nodes || at(world.cables, c).piece || at(world.cables, c).nodes > 0;
+    part.has_mass = part.has_mass || at(world.cables, c).piece || is_massed(at(world.cables, c));
     part.creeps = part.creeps || !at(world.cables, c).rims.empty();
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
     part.has_sleeves = part.has_sleeves || has_sleeves(world, at(world.cables, c));

@@ -25,7 +25,7 @@ struct Part {
   bool can_move = false;                     // a body of it may change gaps: touch.h
   bool creeps = false;                       // a cable of it does
   bool may_slide = false;                    // a cable of it touches a body of finite friction
-  bool has_nodes = false;                    // a cable of it is a piece between nodes
+  bool has_mass = false;                     // a cable of it has, or is a piece between nodes
   bool has_sleeves = false;                  // a cable with mass that may slip on bodies
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool dormant = false;                      // pieces of cable that are part of others

@@ -35,7 +35,7 @@ struct Happening {
   int body = -1;        // hit
   int corner = -1;      // hit: of the body, if it is a polygon
   int orientation = 0;  // hit
-  int over_end = 0;     // hit: -1 over the span's tail, +1 over its head, from beyond; or 0
+  bool beside = false;  // hit: the body is beside the span when the first trial ends
   double clearance =
       0.0;             // m, that was left of it at the end of the last trial; negative: too late
   double reach = 0.0;  // m, to within which it must be met

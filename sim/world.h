@@ -174,7 +174,7 @@ enum class Tipped : std::int8_t {
 };
 
 /// What stands for good and bodies cannot pass: a wall of the scene; or the end of a cable that is
-/// held in the world, a smooth point with the cable's half width about it.
+/// held in the world, a smooth point with the cable's half width about it (make_world.cpp).
 struct Obstacle : Wall {
   double radius = 0.0;           // m, how far from its line its surface is
   int cable = -1;                // whose end it is, or -1: a wall

@@ -305,7 +305,7 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
 
 void turn_pieces(const Parts& parts, World& world) {
   for (const Part& part : parts.list) {
-    if (!part.has_nodes) continue;
+    if (!part.has_mass) continue;
     for (const int c : cables_of(parts, part)) {
       CableState& cable = at(world.cables, c);
       if (!cable.piece || !cable.segments[1].moved) continue;

@@ -5,7 +5,10 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/cable/strung.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -17,16 +20,29 @@ constexpr double in_intervals = 0.25;  // of the intervals of others, as tried
 // With the tensions that have come of them: they may double before an interval is tried again, so
 // that one that rises does not ask for a trial each time; omega h is well below 1 still.
 constexpr double at_most = 2.0 * in_intervals;
-constexpr double shortest = 1e-3;  // of a step: an interval for waves
+
+/// The square of the turning (1/s^2) of the span before a link, where neither of its ends is a node
+/// and one is a rim.
+double turning_before(const World& world, const CableState& cable, int link) {
+  const int before = previous_link(cable, link);
+  if (before < 0) return 0.0;
+  const Segment& span = at(cable.segments, link);
+  const Link &tail = at(cable.links, before), &head = at(cable.links, link);
+  if (is_strung(cable, tail) || (tail.orientation == 0 && head.orientation == 0)) return 0.0;
+  if (span.pinched || !(span.length > 0.0) || is_side(tail, head)) return 0.0;
+  const Vec2 apart = velocity_of(world, head) - velocity_of(world, tail);
+  const double turning = cross(span.direction, apart) / span.length;
+  return turning * turning;
+}
 
 }  // namespace
 
 double wave_of(const World& world, const CableState& cable) {
-  if (cable.nodes > 0) {
+  if (is_massed(cable)) {
     double fastest = 0.0;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
-      if (!is_strung(cable, at(cable.links, i))) continue;
-      const double wave = wave_at_node(world, cable, i);
+      const double wave = is_strung(cable, at(cable.links, i)) ? wave_at_node(world, cable, i)
+                                                               : turning_before(world, cable, i);
       if (!is_lost(world, wave)) fastest = std::max(fastest, wave);
     }
     return fastest;
@@ -48,16 +64,16 @@ bool is_divided_for(const World& world, double wave) {
 }
 
 bool is_lost(const World& world, double wave) {
-  const double least = shortest * world.step_length;
+  const double least = shortest_followed * world.step_length;
   return wave * least * least > in_intervals;
 }
 
 double interval_for(const World& world, double wave) {
-  return std::max(std::sqrt(in_intervals / wave), shortest * world.step_length);
+  return std::max(std::sqrt(in_intervals / wave), shortest_followed * world.step_length);
 }
 
 bool follows(const World& world, double wave, double length) {
-  return wave * length * length <= at_most || length <= shortest * world.step_length;
+  return wave * length * length <= at_most || length <= shortest_followed * world.step_length;
 }
 
 }  // namespace pinchlab

@@ -19,6 +19,9 @@
 // for intervals of less than a thousandth of a step is drawn to a line at rest. With m' and the
 // speed m v / m' the node has less energy than it had with m and v, and more than it has with m
 // afterwards, so that none is made; but momentum is lost.
+//     A span with mass that turns by a' sends mass on to the rims at its ends, R a' rho a second,
+// and the force of that is found before a kick (forces.cpp): it must not turn far in an interval
+// either. Beside the end of a cable short spans turn fast.
 //     Nodes that are strung on a cable between what does not give (strung.h), as where something
 // jams it on to a polygon, are pulled straight with any tension, and stay so. Those that are lost
 // are drawn to the line between their neighbours, and intervals need not follow them.
@@ -27,8 +30,8 @@
 
 namespace pinchlab {
 
-/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension, or of those strung on
-/// a cable, but for what is lost; 0 of other cables.
+/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension; of one with mass that
+/// runs over bodies that of its nodes and of its spans' turning, but for what is lost; else 0.
 double wave_of(const World& world, const CableState& cable);
 
 /// Whether a step is divided for waves of that omega^2 (1/s^2).
@@ -36,6 +39,9 @@ bool is_divided_for(const World& world, double wave);
 
 /// Whether no interval that is tried follows them.
 bool is_lost(const World& world, double wave);
+
+/// Of a step, the shortest interval in which anything is followed.
+constexpr double shortest_followed = 1e-3;
 
 /// The interval (s) to try for them, and whether one of `length` (s), whose own tensions they are
 /// due to, was short enough.

@@ -32,7 +32,7 @@ struct Hit {
   int body = -1;
   int corner = -1;
   int orientation = 0;
-  int over_end = 0;  // as in Happening
+  bool beside = false;  // as in Happening
   std::size_t segment = 0;
 };
 
@@ -118,16 +118,15 @@ bool is_solid_end(const World& world, const CableState& cable, const Link& link)
   return false;
 }
 
-/// Over which end of the span something has come, as in Happening, that was so far along it before
-/// (m) and is on that side of it now (m): an end of its cable that bars the way, and which it has
-/// come round, or a rim, away from which it lies, and which has given off the cable below it; or 0.
-int end_passed(const World& world, const CableState& cable, std::size_t s, double along_before,
-               double side) {
+/// Whether something that was so far along the span before (m), beyond its end, and is on that side
+/// of it now (m) comes upon it over that end: an end of its cable that bars the way, and which it
+/// has come round, or a rim, away from which it lies, and which has given off the cable below it.
+bool end_passed(const World& world, const CableState& cable, std::size_t s, double along_before,
+                double side) {
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
-  const int end = along_before <= 0.0 ? -1 : 1;
-  const Link& link = at(cable.links, end < 0 ? tail : head);
+  const Link& link = at(cable.links, along_before <= 0.0 ? tail : head);
   const bool outside = link.orientation != 0 && link.corner < 0 && link.orientation * side < 0.0;
-  return outside || is_solid_end(world, cable, link) ? end : 0;
+  return outside || is_solid_end(world, cable, link);
 }
 
 Hit test_circle(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
@@ -155,10 +154,11 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   // end: it is in front of the cable, not in its way, but where end_passed has an end. What was
   // beside it has been pushed into it by a repair.
   const bool beside_before = along_before > 0.0 && along_before < length_before;
+  bool over_end = false;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
-    hit.over_end = within ? end_passed(world, cable, s, along_before, side) : 0;
-    if (hit.over_end == 0) return hit;
+    over_end = within && end_passed(world, cable, s, along_before, side);
+    if (!over_end) return hit;
   }
   bool reached = within;
   if (!reached && side * side_before < 0.0) {
@@ -168,7 +168,7 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
     reached = along_then > 0.0 && along_then < length_then;
   }
   if (!reached) return hit;
-  const double old_side = side_before != 0.0 && hit.over_end == 0 ? side_before : side;
+  const double old_side = side_before != 0.0 && !over_end ? side_before : side;
   const double approach = old_side > 0.0 ? old_side - side : side - old_side;
   hit.found = true;
   hit.body = circle.body;
@@ -176,6 +176,14 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   hit.segment = s;
   hit.orientation = old_side > 0.0 ? 1 : -1;
   hit.time = approach > 0.0 ? (std::abs(old_side) - margin) / approach - 1.0 : 0.0;
+  hit.beside = within && locates_events(world.configuration);
+  if (!hit.beside || std::abs(side_before) < margin) return hit;
+  // So far along the span it comes to within its margin of the span's line; ways are not straight.
+  const double share = 1.0 + hit.time, unsure = 1e-2 * margin;
+  const double along_then = along_before + share * (along - along_before);
+  const double length_then = length_before + share * (segment.length - length_before);
+  if (along_then > -unsure && along_then < length_then + unsure) return hit;
+  hit.found = end_passed(world, cable, s, along_then, old_side);
   return hit;
 }
 
@@ -279,7 +287,7 @@ Hit test_closing(const World& world, const Workspace& work, const CableState& ca
     const bool beside = along > 0.0 && along < segment.length;
     if (!within || !beside || side >= circle.margin * (1.0 - graze)) return;
     if (!farthest.found || side < farthest.time) {
-      farthest = {true, side, body, circle.corner, way, 0, s};
+      farthest = {true, side, body, circle.corner, way, false, s};
     }
   };
   const int corners = static_cast<int>(at(world.bodies, body).corners.size());
@@ -327,10 +335,9 @@ double span_clearance(const World& world, const Happening& hit) {
   Vec2 x = at(world.position, hit.body) - segment.tail;
   if (hit.corner >= 0) x += turned(at(body.corners, hit.corner), at(world.angle, hit.body));
   const double margin = rim_radius(body) + cable.half_width;
-  const double clearance = hit.orientation * cross(segment.direction, x) - margin;
-  if (hit.over_end == 0) return clearance;
   const double along = segment.direction.dot(x);
-  return std::max(clearance, hit.over_end < 0 ? -along : along - segment.length);
+  const double clearance = hit.orientation * cross(segment.direction, x) - margin;
+  return hit.beside ? std::max({clearance, -along, along - segment.length}) : clearance;
 }
 
 bool may_meet(const World& world, const SpanPair& pair) {
@@ -360,7 +367,7 @@ void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pa
     event.body = pair.body;
     event.corner = hit.corner;
     event.orientation = hit.orientation;
-    event.over_end = hit.over_end;
+    event.beside = hit.beside;
     work.events.push_back(event);
   }
 }

@@ -32,7 +32,7 @@ void find_hits(const World& world, Workspace& work, std::span<const SpanPair> pa
 
 /// How far the body of a hit, or its corner, is with its margin from the span's centre line, on the
 /// side on which a cable that ran round it would have that orientation (m); below 0 where it is
-/// deeper, whether beside the span or not.
+/// deeper. Of what has come to be beside the span at least how far it is from that.
 double span_clearance(const World& world, const Happening& hit);
 
 }  // namespace pinchlab

@@ -30,7 +30,8 @@ namespace {
 // it into, and that bodies move so little in that only round-off would be corrected.
 constexpr double shortest = 1e-4;
 constexpr double shortest_corrected = 1e-6;
-// So short an interval turns hardly anything far; where it does, shorter ones would as well.
+// So short an interval turns hardly anything far; where it does, shorter ones would as well, but
+// for nodes, which a jerk whips about in far less.
 constexpr double shortest_for_turns = 1.0 / 32.0;
 constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles: nobody sees it
 // Of a step, whose impulses tell forces: in shorter ones what round-off of positions asks for, as
@@ -49,9 +50,9 @@ struct Attempt {
   bool foresees = false;  // what is to be corrected, where the intervals before tell
 };
 
-/// omega^2 (1/s^2) of the fastest wave on a part's cables of nodes.
+/// omega^2 (1/s^2) of the fastest wave on a part's cables with mass.
 double wave_on(const World& world, const Parts& parts, const Part& part) {
-  if (!part.has_nodes) return 0.0;
+  if (!part.has_mass) return 0.0;
   double fastest = 0.0;
   for (const int c : cables_of(parts, part)) {
     fastest = std::max(fastest, wave_of(world, at(world.cables, c)));
@@ -276,7 +277,8 @@ double sound_length(const World& world, const IntervalTrial& trial, double lengt
   if (allowed > 0.0 && trial.met && trial.local_error > allowed && is_longer(shortest)) {
     share = 0.8 * std::cbrt(allowed / trial.local_error);
   }
-  if (trial.turned > most_turned && is_longer(shortest_for_turns)) {
+  if (trial.turned > most_turned &&
+      is_longer(trial.wave > 0.0 ? shortest_followed : shortest_for_turns)) {
     share = std::min(share, std::sqrt(most_turned / trial.turned));
   }
   return share < 1.0 ? next_share(share) * length : length;

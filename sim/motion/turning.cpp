@@ -31,7 +31,6 @@ double greatest_speed(const World& world, std::span<const int> bodies,
 
 double turned_square(const World& world, std::span<const int> bodies, double length,
                      const PartSystem& s) {
-  if (!s.carried.empty()) return 0.0;
   const double round_off = s.tolerance() / length;  // m/s
   double swung = 0.0;                               // J
   for (const Row& row : s.rows) {
@@ -45,6 +44,10 @@ double turned_square(const World& world, std::span<const int> bodies, double len
     const Eigen::Vector3d &v = s.velocity[i], &free = s.free_velocity[i];
     kinetic += std::max(kinetic_energy(body, v.head<2>(), v.z()),
                         kinetic_energy(body, free.head<2>(), free.z()));
+  }
+  for (std::size_t i = 0; i < s.carried.size(); ++i) {
+    const Eigen::Vector3d &v = s.velocity[i], &free = s.free_velocity[i];
+    kinetic += 0.5 * std::max(v.dot(s.carried[i] * v), free.dot(s.carried[i] * free));
   }
   return swung / kinetic;
 }

@@ -26,9 +26,8 @@ struct PartSystem;
 struct World;
 
 /// phi^2 above (rad^2) of what was just solved for these bodies and an interval of `length` (s); 0
-/// where nothing curves. The energy is what they have, or would have without their rows: what rests
-/// turns nothing. Elastic rows give back what they take, and cables with mass are followed by their
-/// waves (cable/waves.h).
+/// where nothing curves. The energy is what they and the cables that they carry have, or would have
+/// without their rows: what rests turns nothing. Elastic rows give back what they take.
 double turned_square(const World& world, std::span<const int> bodies, double length,
                      const PartSystem& system);
 

@@ -32,8 +32,7 @@ bool is_let_go(const World& world, const Segment& span, const Link& tail, const 
 double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,
                  double most) {
   const double touch = tail.radius + head.radius;  // m, Delta where the cable crosses over
-  if (span.length >= short_share * touch || tail.orientation * head.orientation > 0) return most;
-  if (span.slack) return most;
+  if (tail.orientation * head.orientation > 0 || span.slack) return most;
   const Vec2 apart = span.head_centre - span.tail_centre;
   const bool opens = span.pinched && is_let_go(world, span, tail, head, apart.norm());
   if (!opens && (span.pinched || span.length == 0.0)) return most;
@@ -56,10 +55,14 @@ double longest_interval(const World& world, const Parts& parts, std::span<const 
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
       if (cable.stands || cable.elastic) continue;
-      const Link* tail = cable.closed ? &cable.links.back() : nullptr;
-      for (std::size_t i = 0; i < cable.segments.size(); ++i) {
-        const Link& head = cable.links[i];
-        if (tail) left = time_left(world, cable.segments[i], *tail, head, left);
+      const Link* tail = cable.closed ? &cable.links.back() : &cable.links.front();
+      const std::span spans(cable.segments);
+      const std::span links(cable.links);
+      for (std::size_t i = first_segment(cable); i < spans.size(); ++i) {
+        const Link& head = links[i];
+        if (spans[i].length < short_share * (tail->radius + head.radius)) {
+          left = time_left(world, spans[i], *tail, head, left);
+        }
         tail = &head;
       }
     }

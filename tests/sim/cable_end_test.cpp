@@ -2,10 +2,13 @@
 // What comes upon the end of a cable that is held in the world.
 
 #include <array>
+#include <cmath>
 
 #include "sim/lines.h"
+#include "sim/nodes.h"
 #include "sim/outline.h"
 #include "tests/sim/course.h"
+#include "tests/sim/random.h"
 
 namespace pinchlab::testing {
 namespace {
@@ -144,6 +147,76 @@ TEST(CableEnd, ABoxLiesOnIt) {
     run(scene, world, 60 * steps_per_frame);
     EXPECT_NEAR(world.position[0].y(), 0.2 + half_width, 1e-10);
   }
+}
+
+// There the rope could not bend round it if it came nearer.
+TEST(CableEnd, ABallRestsATenthOfAHalfWidthOffThatOfARope) {
+  for (const int steps_per_frame : {1, 4, 16}) {
+    Scene scene = hanging_weight({0.0, 1.0}, Vec2::Zero());
+    scene.steps_per_frame = steps_per_frame;
+    scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 2.0, -0.4, 0.35));
+    scene.bodies[1].position = {2.4, -5.0};
+    scene.cables = {cable(at(0.0, 0.0), {{2, -1, 0}}, on(1), half_width)};
+    scene.cables[0].mass_per_metre = 0.5;
+    World world = make_world(scene, measured());
+    run(scene, world, 60 * steps_per_frame);
+    EXPECT_NEAR(world.position[0].y(), apart + 0.1 * half_width, 1e-12);
+  }
+}
+
+/// A ball, body 0, of any size, mass and way that is thrown at the end of a rope, or near it, which
+/// runs over a pulley to a weight.
+Scene thrown_at_rope(unsigned seed, int nodes) {
+  Random random(seed);
+  Scene scene;
+  scene.bodies = {
+      body("ball", BodyKind::free, 0.0, 0.0, random.uniform(0.05, 0.5), random.spread(0.02, 30.0)),
+      body("pulley", random.below(2) == 0 ? BodyKind::fixed : BodyKind::fixed_axle, 2.5,
+           random.uniform(-1.0, 0.0), 0.3),
+      body("weight", BodyKind::free, 2.9, -3.0, 0.2, random.spread(0.5, 20.0))};
+  Body& ball = scene.bodies[0];
+  const double from = random.uniform(1.5, 4.5);  // rad: from beyond it
+  const double to = from + random.uniform(-0.2, 0.2), speed = random.uniform(1.0, 10.0);
+  ball.position = (ball.radius + 0.6) * Vec2(std::cos(from), std::sin(from));
+  ball.velocity = -speed * Vec2(std::cos(to), std::sin(to));
+  ball.angular_velocity = random.uniform(-10.0, 10.0);
+  ball.restitution = random.below(2) == 0 ? 0.0 : random.uniform(0.0, 1.0);
+  if (random.below(3) == 0) ball.cable_friction = random.uniform(0.0, 1.0);
+  scene.cables = {cable(at(0.0, 0.0), {{1, -1, 0}}, on(2), 0.02)};
+  scene.cables[0].mass_per_metre = 0.5;
+  scene.cables[0].nodes = nodes;
+  if (nodes > 0) {
+    scene.cables[0].slack = random.below(2) == 0 ? 0.02 : 0.1;
+    spread_nodes(scene);
+  }
+  return scene;
+}
+
+// But for what nodes rise by where rims take them in: strung.h.
+TEST(CableEnd, WhatComesUponThatOfARopeMakesNoEnergy) {
+  int come_upon = 0;
+  for (const int nodes : {0, 8}) {
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+      Scene scene = thrown_at_rope(seed, nodes);
+      for (const int steps_per_frame : {1, 4, 16}) {
+        scene.steps_per_frame = steps_per_frame;
+        const Course course = run_measured(scene, 0.5);
+        const double allowed = nodes > 0 ? 5e-4 : 1e-6;
+        EXPECT_LT(course.gained, allowed * course.at_play) << seed << ", " << nodes << " nodes";
+        EXPECT_LT(course.gap, 1e-9) << seed << ", " << nodes << " nodes";
+      }
+      World world = make_world(scene, Method::pinch);
+      Workspace work;
+      double nearest = infinity;
+      for (int i = 0; i < 480; ++i) {
+        ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+        nearest = std::min(nearest, world.position[0].norm() - scene.bodies[0].radius);
+      }
+      EXPECT_GT(nearest, 0.999 * 1.1 * 0.02);
+      come_upon += nearest < 1.5 * 0.02 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(come_upon, 30);
 }
 
 // A pendulum whose bob hangs over its pivot.

@@ -290,13 +290,23 @@ TEST(Population, ShapesMakeNoEnergy) {
 // bent, or lay between corners; the next three up to 11, where the cable came off a corner as well,
 // or closed up over a disc that it had left at another node. The last two gained up to 1.3 of all
 // energy, where a node was taken in by an interval that was too long for how fast it swung at its
-// end.
+// end. In seeds 351 and 813 a disc came over the end of the rope, where nodes were given off.
 TEST(Population, RopesThatHangMakeNoEnergy) {
-  std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 203, 503, 963, 25, 372, 813};
+  std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 203, 503, 963, 25, 372, 813, 351};
   for (int seed = 1; seed <= 8; ++seed) seeds.push_back(seed);
   for (const int seed : seeds) {
     expect_sound(seed, shapes_on_hanging_rope(static_cast<std::uint64_t>(seed)), 2e-2);
   }
+}
+
+// Nodes that a jerk whips about, and a span that turns within a few intervals: they gained 8e-3 and
+// 7e-3 of all energy.
+TEST(Population, RopesThatWhipMakeNoEnergy) {
+  const auto gain = [](std::uint64_t seed, int steps) {
+    return run_scene(shapes_on_hanging_rope(seed).scene, watched(), steps, 60).energy_gain;
+  };
+  EXPECT_LE(gain(253, 1), 1e-9);
+  EXPECT_LE(gain(892, 16), 1e-9);
 }
 
 }  // namespace
