@@ -471,13 +471,18 @@ double shorten_interval(const Scene& scene, World& world, Workspace& work, const
 }
 
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                    double length, Stopwatch& watch) {
+                    double& length, Stopwatch& watch) {
   Attempt attempt{length};
   attempt.begins = true;
   attempt.locates = false;
   try_interval(scene, world, work, movers, attempt, watch);
-  if (work.trial.met) return true;
   attempt.begins = false;
+  while (is_outrun(world, work.trial, length)) {
+    length *= next_share(interval_for(world, work.trial.wave) / length);
+    attempt.length = length;
+    try_again(scene, world, work, movers, attempt, watch);
+  }
+  if (work.trial.met) return true;
   const double missed = work.trial.missed;
   attempt.most_rounds = 0;
   try_again(scene, world, work, movers, attempt, watch);

@@ -39,10 +39,10 @@ bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const
 double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                         double length, bool& met, Stopwatch& watch);
 
-/// Moves them by an interval of `length` (s) whatever happens in it: constraints bear force as
-/// early as it takes. Whether lengths and gaps are exact at its end.
+/// Moves them by an interval of `length` (s), shortened to what waves ask for, whatever happens in
+/// it: constraints bear force as early as it takes. Whether lengths and gaps are exact at its end.
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
-                    double length, Stopwatch& watch);
+                    double& length, Stopwatch& watch);
 
 /// The last trial of these parts.
 IntervalTrial trial_of(const Workspace& work, std::span<const int> parts);
