@@ -169,11 +169,13 @@ TEST(CableEnd, ABallRestsATenthOfAHalfWidthOffThatOfARope) {
 Scene thrown_at_rope(unsigned seed, int nodes) {
   Random random(seed);
   Scene scene;
-  scene.bodies = {
-      body("ball", BodyKind::free, 0.0, 0.0, random.uniform(0.05, 0.5), random.spread(0.02, 30.0)),
-      body("pulley", random.below(2) == 0 ? BodyKind::fixed : BodyKind::fixed_axle, 2.5,
-           random.uniform(-1.0, 0.0), 0.3),
-      body("weight", BodyKind::free, 2.9, -3.0, 0.2, random.spread(0.5, 20.0))};
+  // One after another: arguments are evaluated in any order.
+  const double mass = random.spread(0.02, 30.0), size = random.uniform(0.05, 0.5);
+  const double height = random.uniform(-1.0, 0.0);
+  const BodyKind kind = random.below(2) == 0 ? BodyKind::fixed : BodyKind::fixed_axle;
+  scene.bodies = {body("ball", BodyKind::free, 0.0, 0.0, size, mass),
+                  body("pulley", kind, 2.5, height, 0.3),
+                  body("weight", BodyKind::free, 2.9, -3.0, 0.2, random.spread(0.5, 20.0))};
   Body& ball = scene.bodies[0];
   const double from = random.uniform(1.5, 4.5);  // rad: from beyond it
   const double to = from + random.uniform(-0.2, 0.2), speed = random.uniform(1.0, 10.0);
