@@ -49,6 +49,7 @@ struct alignas(64) Link {
   bool pinch_middle = false;  // middle link of a non-transitional pinch: no wrap, the links
                               // before and after lie on the pinched body
   Slip slip = Slip::stick;    // by the active set
+  bool moored = false;        // a node of the cable that the body's rim holds: strung.h
   double radius = 0.0;      // m, of the body or its corner, + cable half width; 0 at an attachment
   double material = 0.0;    // m along the cable; changed by slip only
   double wrap = 0.0;        // rad, angle of cable stored on the body, may exceed 2 pi
@@ -56,8 +57,11 @@ struct alignas(64) Link {
   Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
   // What few steps read.
   int contact = -1;  // pinch_middle: the contact that presses it, by confirm_pinches
-  Layers layers;     // of a drum that fills; `radius` is then that of the outermost turn,
-                     // by update_tangent
+  // moored:
+  double bent = 0.0;  // rad, by which the cable was bent there when the rim took hold of it
+  double slid = 0.0;  // rad, by which slipping has turned `offset` on the body; by follow_slip
+  Layers layers;      // of a drum that fills; `radius` is then that of the outermost turn,
+                      // by update_tangent
 
   double signed_radius() const { return orientation * radius; }
 };

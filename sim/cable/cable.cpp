@@ -76,7 +76,21 @@ int way_of_layers(const CableState& cable, std::size_t i) {
 }
 
 Vec2 offset_centre(const World& world, const Link& link) {
-  return at(world.position, link.body) + turned(link.offset, at(world.angle, link.body));
+  return at(world.position, link.body) +
+         turned(link.offset, at(world.angle, link.body) + link.slid);
+}
+
+int rim_of(const CableState& cable, int link) {
+  const int before = previous_link(cable, link);
+  return before >= 0 && is_moored_to(at(cable.links, link), at(cable.links, before))
+             ? before
+             : next_link(cable, link);
+}
+
+double slid_by(const World& world, const CableState& cable, int link) {
+  const Link& rim = at(cable.links, rim_of(cable, link));
+  const bool slips = at(world.bodies, rim.body).cable_friction < infinity;
+  return slips ? -rim.material / rim.signed_radius() : 0.0;
 }
 
 Vec2 velocity_of(const World& world, const Link& link) {
@@ -272,8 +286,20 @@ bool update_rod(const World& world, CableState& cable, bool begins) {
 
 }  // namespace
 
+namespace {
+
+/// Moored nodes move along with what slips on a disc.
+void follow_slip(const World& world, CableState& cable) {
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    if (Link& link = at(cable.links, i); link.moored) link.slid = slid_by(world, cable, i);
+  }
+}
+
+}  // namespace
+
 bool update_cable(const World& world, CableState& cable, bool begins, bool known) {
   if (cable.rod && cable.rims.empty()) return update_rod(world, cable, begins);
+  if (cable.density > 0.0) follow_slip(world, cable);
   if (known && cable.stands) {
     update_rolled_cable<true>(world, cable);
     return false;

@@ -17,6 +17,17 @@ inline bool is_central(const Link& link) {
   return link.offset.x() == 0.0 && link.offset.y() == 0.0;
 }
 
+/// Whether one link is a node that the rim at another holds (strung.h).
+inline bool is_moored_to(const Link& node, const Link& rim) {
+  return node.moored && node.body == rim.body && rim.orientation != 0;
+}
+
+/// The link of the rim that holds a moored node.
+int rim_of(const CableState& cable, int link);
+
+/// Link::slid of a moored node, from how far the rim's material has slipped.
+double slid_by(const World& world, const CableState& cable, int link);
+
 /// Centre of a link's circle where that is off its body's centre (m).
 Vec2 offset_centre(const World& world, const Link& link);
 
@@ -110,12 +121,13 @@ inline bool opposite(const Link& a, const Link& b) {
 /// is wound on. It has no length and exerts nothing.
 inline bool wound_end(const Link& a, const Link& b) {
   return a.body >= 0 && a.body == b.body && (a.orientation == 0) != (b.orientation == 0) &&
-         a.corner < 0 && b.corner < 0;
+         a.corner < 0 && b.corner < 0 && !a.moored && !b.moored;
 }
 
-/// Whether the segment between the two lies along a polygon that both are on. It is rigid.
+/// Whether the segment between the two lies along a polygon that both are on, or goes from a rim to
+/// a node that it holds. It is rigid.
 inline bool is_side(const Link& a, const Link& b) {
-  return (a.corner >= 0 || b.corner >= 0) && a.body == b.body;
+  return (a.corner >= 0 || b.corner >= 0 || a.moored || b.moored) && a.body == b.body;
 }
 
 /// Whether an end of the cable on a body is further in than on its rim.
@@ -126,7 +138,7 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 /// it may meet.
 inline bool holds_span(const World& world, const CableState& cable, const Link& end, int body) {
   if (end.body != body || end.corner >= 0) return false;
-  return end.orientation != 0 || is_fastened_inside(world, cable, end);
+  return end.orientation != 0 || end.moored || is_fastened_inside(world, cable, end);
 }
 
 /// +1 or -1 where a link is on the drum in layers that holds the cable's start or end; or 0.

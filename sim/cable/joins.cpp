@@ -150,6 +150,26 @@ void leave_body(World& world, CableState& cable, int link) {
   give(second.b, merged ? before : after, second.z_b, first.material);
 }
 
+void join_rim(World& world, CableState& cable, int number, int rim) {
+  Link& link = at(cable.links, number);
+  const Vec2 x = at(world.position, link.body), u = at(world.velocity, link.body);
+  link.body = at(cable.links, rim).body;
+  link.moored = true;
+  link.slid = slid_by(world, cable, number);
+  link.offset = turned(x - at(world.position, link.body), -at(world.angle, link.body) - link.slid);
+  const int mover = mover_of(world, link.body);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const auto of = static_cast<int>(&cable - world.cables.data());
+  const int sleeve = sleeve_at(world, sleeves, of, number);
+  if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
+  const double mass = end_mass(span_of(world, cable, index(number))) +
+                      end_mass(span_of(world, cable, index(next_link(cable, number))));
+  const Vec2 z = left(Vec2(x - at(world.position, mover)));
+  take_up(world, mover, at(carried, mover), sleeves, sleeve, mass, z, u);
+}
+
 void leave_node(World& world, CableState& cable, int link) {
   // What one of the two neighbours has of the cable, before and after.
   struct Share {

@@ -7,6 +7,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/joins.h"
+#include "sim/cable/strung.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 
@@ -104,9 +105,15 @@ bool has_come_off(const CableState& cable, std::size_t i) {
 }
 
 void take_off(World& world, Workspace& work, int cable, int link) {
-  const Link& off = at(at(world.cables, cable).links, link);
+  CableState& state = at(world.cables, cable);
+  const Link off = at(state.links, link);
+  for (const int beside : {previous_link(state, link), next_link(state, link)}) {
+    if (beside < 0 || !is_moored_to(at(state.links, beside), off)) continue;
+    cast_off_node(world, state, beside);
+    work.broad_phase.boxes.clear();  // for bodies with other outlines
+  }
   note_release(work, {cable, off.body, off.orientation});
-  leave_body(world, at(world.cables, cable), link);
+  leave_body(world, state, link);
 }
 
 bool remove_links(World& world, Workspace& work) {

@@ -78,7 +78,21 @@ void list_sleeves(const World& world, int number, std::vector<Sleeve>& to) {
   });
 }
 
+int span_before(const CableState& cable, const Sleeve& sleeve) {
+  const int before = previous_link(cable, sleeve.first);
+  const bool moored = is_moored_to(at(cable.links, before), at(cable.links, sleeve.first));
+  return moored ? before : sleeve.first;
+}
+
+int span_after(const CableState& cable, const Sleeve& sleeve) {
+  const int after = next_link(cable, sleeve.last);
+  const bool moored = is_moored_to(at(cable.links, after), at(cable.links, sleeve.last));
+  return moored ? next_link(cable, after) : after;
+}
+
 int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable, int link) {
+  const CableState& of = at(world.cables, cable);
+  if (at(of.links, link).moored) link = rim_of(of, link);
   if (!lies_loose(world, at(at(world.cables, cable).links, link))) return -1;
   for (std::size_t k = 0; k < sleeves.size(); ++k) {
     const Sleeve& s = sleeves[k];
@@ -91,7 +105,8 @@ int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable,
 }
 
 double turning_at(const World& world, int cable, int number) {
-  const Link& link = at(at(world.cables, cable).links, number);
+  const CableState& of = at(world.cables, cable);
+  const Link& link = at(of.links, at(of.links, number).moored ? rim_of(of, number) : number);
   if (link.body < 0) return 0.0;
   const double turning = at(world.angular_velocity, link.body);
   return lies_loose(world, link) ? turning + link.slip_speed / link.signed_radius() : turning;

@@ -30,6 +30,10 @@ bool has_sleeves(const World& world, const CableState& cable);
 /// is fast.
 void list_sleeves(const World& world, int cable, std::vector<Sleeve>& to);
 
+/// The spans before and after it, beyond nodes that are moored there.
+int span_before(const CableState& cable, const Sleeve& sleeve);
+int span_after(const CableState& cable, const Sleeve& sleeve);
+
 /// The place in `sleeves` of the one that link `link` of the cable is part of, or -1.
 int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable, int link);
 

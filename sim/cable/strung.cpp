@@ -24,6 +24,7 @@ namespace {
 // Of the distance of nodes: the header has the reasons.
 constexpr double taken_in = 1e-2;
 constexpr double given_off = 0.25;
+constexpr double most_bent = 0.5;  // rad, more than when it was moored
 
 /// m of material between two nodes.
 double spacing(const CableState& cable) {
@@ -37,21 +38,26 @@ Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Ve
          ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
+/// Makes a node a body that moves by itself, from there (m) with that velocity (m/s).
+void set_free(World& world, int node, const Vec2& position, const Vec2& velocity) {
+  at(world.position, node) = position;
+  at(world.velocity, node) = velocity;
+  at(world.angular_velocity, node) = 0.0;
+  at(world.still_steps, node) = 0;
+  BodyProperties& properties = at(world.bodies, node);
+  properties.kind = BodyKind::free;
+  properties.outlined = true;
+}
+
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
   Segment& old = cable.segments[segment];
   const double share = (material - begins) / old.rest_length;
-  at(world.position, body) = old.tail + share * (old.head - old.tail);
-  at(world.velocity, body) =
-      velocity_between(flow_at(world, cable, segment, false), flow_at(world, cable, segment, true),
-                       share, old.direction);
-  at(world.angular_velocity, body) = 0.0;
-  at(world.still_steps, body) = 0;
-  BodyProperties& properties = at(world.bodies, body);
-  properties.kind = BodyKind::free;
-  properties.outlined = true;
+  set_free(world, body, old.tail + share * (old.head - old.tail),
+           velocity_between(flow_at(world, cable, segment, false),
+                            flow_at(world, cable, segment, true), share, old.direction));
 
   // As in insert_link: what closes a loop gets it last.
   const bool seam = segment == 0;
@@ -95,6 +101,12 @@ Numbers nodes_within(const CableState& cable, double from, double to) {
 int body_of_node(const CableState& cable, long k) {
   const long nodes = cable.nodes;
   return cable.first_node + static_cast<int>(((k % nodes) + nodes) % nodes);
+}
+
+/// The body that a link's node is while no rim holds it.
+int node_of(const CableState& cable, const Link& link) {
+  const double from_first = link.material - place_of_node(cable, 0);
+  return body_of_node(cable, std::lround(from_first / spacing(cable)));
 }
 
 /// Those on a segment that are at least `margin` (m of material) away from its ends; none where it
@@ -313,6 +325,7 @@ void carry_wound_nodes(World& world, const CableState& cable) {
     const Link& link = cable.links[i];
     const double angle = body_angle(world, link);
     const double leaves = head_material(cable, i, angle);
+    if (link.moored) at(world.position, node_of(cable, link)) = link_centre(world, link);
     if (link.orientation != 0) {
       const double meets = tail_material(cable, i, angle), alpha = cable.segments[i].alpha;
       const Numbers on = nodes_within(cable, meets, leaves);
@@ -337,7 +350,44 @@ void carry_wound_nodes(World& world, const CableState& cable) {
   }
 }
 
+namespace {
+
+/// rad, by which the cable turns at a node.
+double turn_at(const CableState& cable, int link) {
+  return alpha_head(cable, index(link)) - at(cable.segments, link).alpha;
+}
+
+/// Turns what follows a node so that the cable bends there by less than half a turn.
+void count_bend_anew(CableState& cable, int link) {
+  const double turns = std::round(turn_at(cable, link) / (2.0 * std::numbers::pi));
+  if (turns != 0.0) count_turns_off(cable, link, turns);
+}
+
+/// rad, by which the cable is bent away from a rim at a node beside it.
+double bent_away(const CableState& cable, int link, int rim) {
+  return -at(cable.links, rim).orientation * turn_at(cable, link);
+}
+
+/// What is left until a moored node is in line with the rim's tangent; and until it comes off (m,
+/// on the rim).
+struct LeftOfMooring {
+  double in_line, off;
+};
+LeftOfMooring left_of_mooring(const CableState& cable, int link) {
+  const int held_by = rim_of(cable, link);
+  const Link& rim = at(cable.links, held_by);
+  const double bent = bent_away(cable, link, held_by);
+  const double more = std::min(given_off * spacing(cable) / rim.radius, most_bent);
+  return {rim.radius * bent, rim.radius * (at(cable.links, link).bent + more - bent)};
+}
+
+}  // namespace
+
 double left_until_taken_in(const CableState& cable, int link) {
+  if (at(cable.links, link).moored) {
+    const LeftOfMooring left = left_of_mooring(cable, link);
+    return std::min(left.in_line, left.off);
+  }
   double least = infinity;
   const auto look = [&](int segment, int beyond) {
     if (at(cable.links, beyond).orientation == 0) return;
@@ -350,16 +400,87 @@ double left_until_taken_in(const CableState& cable, int link) {
   return least - taken_in * spacing(cable);
 }
 
-void take_in_node(World& world, CableState& cable, int link) {
-  const int body = at(cable.links, link).body;
-  const double bend = alpha_head(cable, index(link)) - at(cable.segments, link).alpha;
-  const double turns = std::round(bend / (2.0 * std::numbers::pi));
-  if (turns != 0.0) count_turns_off(cable, link, turns);
-  leave_node(world, cable, link);
+namespace {
+
+/// The rim beside a node that holds it or is about to: the nearer one; -1: none can moor it.
+int nearest_rim(const CableState& cable, int link) {
+  int nearest = -1;
+  double least = infinity;
+  for (const bool before : {true, false}) {
+    const int beyond = before ? previous_link(cable, link) : next_link(cable, link);
+    const Segment& span = at(cable.segments, before ? link : beyond);
+    const double left = std::min(span.rest_length, span.length);
+    if (at(cable.links, beyond).orientation == 0 || left >= least) continue;
+    least = left;
+    nearest = beyond;
+  }
+  return cable.elastic ? -1 : nearest;
+}
+
+/// A node that is no link of its own any more lies on a rim, and moves with it.
+void lay_down_node(World& world, int body) {
   BodyProperties& properties = at(world.bodies, body);
   properties.kind = BodyKind::fixed;
   properties.outlined = false;
   at(world.velocity, body) = Vec2::Zero();
+}
+
+/// Where a node's link has come to be on another body, at the same place.
+void note_change(World& world, CableState& cable, int link) {
+  update_tangent(world, cable, index(link));
+  update_tangent(world, cable, index(next_link(cable, link)));
+  count_changes(world, cable, 1);
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+}  // namespace
+
+bool is_to_be_moored(const CableState& cable, int link) {
+  const int rim = nearest_rim(cable, link);
+  if (rim < 0) return false;
+  const double bent = std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi);
+  return bent > 0.0 && bent < 0.5 * std::numbers::pi;
+}
+
+bool is_to_be_cast_off(const CableState& cable, int link) {
+  const LeftOfMooring left = left_of_mooring(cable, link);
+  return left.off < left.in_line;
+}
+
+void moor_node(World& world, CableState& cable, int link) {
+  const int rim = nearest_rim(cable, link), node = at(cable.links, link).body;
+  count_bend_anew(cable, link);
+  join_rim(world, cable, link, rim);
+  lay_down_node(world, node);
+  at(cable.links, link).bent = bent_away(cable, link, rim);
+  Segment& arm = at(cable.segments, rim == previous_link(cable, link) ? link : rim);
+  arm.tension = 0.0;
+  arm.slack = false;
+  note_change(world, cable, link);
+}
+
+void cast_off_node(World& world, CableState& cable, int link) {
+  Link& moored = at(cable.links, link);
+  const int node = node_of(cable, moored);
+  const Vec2 x = link_centre(world, moored);
+  const Vec2 z = left(Vec2(x - at(world.position, mover_of(world, moored.body))));
+  set_free(world, node, x, velocity_at(world, cable, link, z));
+  moored.body = node;
+  moored.offset = Vec2::Zero();
+  moored.moored = false;
+  moored.slid = 0.0;
+  note_change(world, cable, link);
+}
+
+void take_in_node(World& world, CableState& cable, int link) {
+  if (at(cable.links, link).moored) {
+    leave_body(world, cable, link);
+    return;
+  }
+  const int body = at(cable.links, link).body;
+  count_bend_anew(cable, link);
+  leave_node(world, cable, link);
+  lay_down_node(world, body);
 }
 
 bool take_in_enclosed_nodes(World& world, CableState& cable) {
@@ -367,7 +488,10 @@ bool take_in_enclosed_nodes(World& world, CableState& cable) {
   for (int i = 0; index(i) < cable.links.size(); ++i) {
     const Link& from = at(cable.links, i);
     int next = next_link(cable, i), nodes = 0;
-    while (next >= 0 && is_strung(cable, at(cable.links, next)) && nodes < cable.nodes) {
+    const auto is_node = [&cable](const Link& link) {
+      return is_strung(cable, link) || link.moored;
+    };
+    while (next >= 0 && is_node(at(cable.links, next)) && nodes < cable.nodes) {
       next = next_link(cable, next);
       ++nodes;
     }

@@ -55,9 +55,18 @@ bool is_within_end(const World& world, const CableState& cable, const Link& node
 /// end. They do not touch. A polygon's next side it may touch.
 bool lies_beside(const World& world, int node, int body);
 
-/// What is left between a node and a rim beside it until the rim takes it in (m); infinity: there
-/// is none.
+/// What is left between a node and a rim beside it until the rim takes hold of it (m); infinity:
+/// there is none. Of a moored one, until it is taken in or cast off.
 double left_until_taken_in(const CableState& cable, int link);
+
+/// Whether a node, not moored, of which nothing is left is to be moored; or a moored one to be cast
+/// off. Else it is to be taken in.
+bool is_to_be_moored(const CableState& cable, int link);
+bool is_to_be_cast_off(const CableState& cable, int link);
+
+/// Moors a node to the rim beside it; and casts one off, which moves on as it did with the rim.
+void moor_node(World& world, CableState& cable, int link);
+void cast_off_node(World& world, CableState& cable, int link);
 
 /// Takes in the nodes between two links in succession on one body, which has met the cable beyond
 /// them: they lie on it. Whether there were any.

@@ -48,7 +48,7 @@ void measure(Workspace& work, const Happening& key, double clearance, double lat
 /// up. Returns the least number of a link that has changed; -1: any may have.
 int take_in(World& world, Workspace& work, int number, int node) {
   CableState& cable = at(world.cables, number);
-  const Vec2 over = at(world.position, at(cable.links, node).body);
+  const Vec2 over = link_centre(world, at(cable.links, node));
   const std::size_t links = cable.links.size();
   take_in_node(world, cable, node);
   if (cable.links.size() + 1 != links) return node - 1;  // the rims beside it are one
@@ -72,6 +72,19 @@ int take_in(World& world, Workspace& work, int number, int node) {
   const bool left = leave(wraps_round ? after : before);
   if (met > 0 && take_in_enclosed_nodes(world, cable)) return -1;
   return left && !wraps_round ? before : node;
+}
+
+/// Moors, takes in or casts off a node beside a rim. Returns what take_in does.
+int let_rim_have(World& world, Workspace& work, int number, int node) {
+  CableState& cable = at(world.cables, number);
+  if (!at(cable.links, node).moored) {
+    if (!is_to_be_moored(cable, node)) return take_in(world, work, number, node);
+    moor_node(world, cable, node);
+    return node;
+  }
+  if (!is_to_be_cast_off(cable, node)) return take_in(world, work, number, node);
+  cast_off_node(world, cable, node);
+  return node;
 }
 
 }  // namespace
@@ -146,7 +159,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
     for (int i = 0; index(i) < cable.links.size(); ++i) {
       const Link& link = at(cable.links, i);
       key.item = i;
-      if (is_strung(cable, link)) {
+      if (is_strung(cable, link) || link.moored) {
         measure(work, key, left_until_taken_in(cable, i), 0.5 * s.reach);
         continue;
       }
@@ -199,8 +212,9 @@ void change_courses(World& world, Workspace& work) {
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     cable_changed = event.cable;
     item_changed = event.item;
-    if (event.kind == EventKind::link_gone && is_strung(cable, at(cable.links, event.item))) {
-      item_changed = take_in(world, work, event.cable, event.item);
+    const Link& link = at(cable.links, event.item);
+    if (event.kind == EventKind::link_gone && (is_strung(cable, link) || link.moored)) {
+      item_changed = let_rim_have(world, work, event.cable, event.item);
       ++world.diagnostics.node_changes;
       work.broad_phase.boxes.clear();  // for bodies with other outlines
     } else if (event.kind == EventKind::link_gone) {

@@ -129,8 +129,8 @@ void note_spans_of_sleeves(const CableState& cable, int number, int begin, PartS
   const int first = begin - static_cast<int>(first_segment(cable));
   for (SleevePlace& one : s.sleeves) {
     if (one.sleeve.cable != number) continue;
-    one.span_in = first + one.sleeve.first;
-    one.span_out = first + next_link(cable, one.sleeve.last);
+    one.span_in = first + span_before(cable, one.sleeve);
+    one.span_out = first + span_after(cable, one.sleeve);
   }
 }
 

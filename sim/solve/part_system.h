@@ -197,6 +197,7 @@ struct SleevePlace {
   Sleeve sleeve;
   int place = 0, body = 0;                           // of the sleeve and the disc
   int cable_place = 0;                               // in the part's cables
+  double radius = 0.0;                               // m, signed, of the cable's centre line
   double share = 0.0;                                // kg, of the disc's mass
   int span_in = -1, span_out = -1;                   // of PartSystem::masses
   int row_in = -1, row_out = -1;                     // of the segments before and after it

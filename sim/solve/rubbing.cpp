@@ -51,6 +51,7 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
     const int local = at(parts.local, one.sleeve.body);
     one.body = local >= 0 ? local : ground;
     one.before = velocity_of(world, one.sleeve);
+    one.radius = radius_of(world, one.sleeve);
     one.dropped = one.frozen = false;
   }
   share_masses(world, s);
@@ -61,10 +62,12 @@ void note_flow(PartSystem& s, std::span<const Eigen::Vector3d> velocities) {
     const MassedSpan& in = at(s.masses.spans, one.span_in);
     const MassedSpan& out = at(s.masses.spans, one.span_out);
     const Eigen::Vector3d& v = at(velocities, one.place);
-    const double w = out.p_a * v.z();
+    const double w = one.radius * v.z();
     const double bend = 0.5 * in.density * (w * w + v.head<2>().squaredNorm());
-    one.flow_in = flow_tensions(in, velocities).y() - bend;
-    one.flow_out = flow_tensions(out, velocities).x() - bend;
+    // A node that is moored there is pulled at by the tension itself.
+    const double at_node = -in.density * w * w;
+    one.flow_in = in.p_b != 0.0 ? flow_tensions(in, velocities).y() - bend : at_node;
+    one.flow_out = out.p_a != 0.0 ? flow_tensions(out, velocities).x() - bend : at_node;
   }
 }
 
@@ -251,9 +254,9 @@ void make_sleeve_rows(const Scene& scene, const World& world, const TimeSpan& in
     if (one.rub < 0) continue;
     Row& row = at(s.rows, one.rub);
     row.slip = at(at(world.cables, one.sleeve.cable).links, one.sleeve.first).slip;
-    one.row_in = row_of_segment(s, one, one.sleeve.first);
-    one.row_out =
-        row_of_segment(s, one, next_link(at(world.cables, one.sleeve.cable), one.sleeve.last));
+    const CableState& cable = at(world.cables, one.sleeve.cable);
+    one.row_in = row_of_segment(s, one, span_before(cable, one.sleeve));
+    one.row_out = row_of_segment(s, one, span_after(cable, one.sleeve));
     find_law(world, scratch, one, 1, s, one.forward);
     find_law(world, scratch, one, -1, s, one.backward);
   }
