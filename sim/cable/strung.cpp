@@ -402,7 +402,7 @@ double left_until_taken_in(const CableState& cable, int link) {
 
 namespace {
 
-/// The rim beside a node that holds it or is about to: the nearer one; -1: none can moor it.
+/// The nearer one of the rims beside a node.
 int nearest_rim(const CableState& cable, int link) {
   int nearest = -1;
   double least = infinity;
@@ -414,7 +414,7 @@ int nearest_rim(const CableState& cable, int link) {
     least = left;
     nearest = beyond;
   }
-  return cable.elastic ? -1 : nearest;
+  return nearest;
 }
 
 /// A node that is no link of its own any more lies on a rim, and moves with it.
@@ -436,10 +436,11 @@ void note_change(World& world, CableState& cable, int link) {
 }  // namespace
 
 bool is_to_be_moored(const CableState& cable, int link) {
+  const Link& before = at(cable.links, previous_link(cable, link));
+  const Link& after = at(cable.links, next_link(cable, link));
+  if (before.body == after.body && opposite(before, after)) return true;  // it folds back there
   const int rim = nearest_rim(cable, link);
-  if (rim < 0) return false;
-  const double bent = std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi);
-  return bent > 0.0 && bent < 0.5 * std::numbers::pi;
+  return std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi) > 0.0;
 }
 
 bool is_to_be_cast_off(const CableState& cable, int link) {
@@ -496,7 +497,8 @@ bool take_in_enclosed_nodes(World& world, CableState& cable) {
       ++nodes;
     }
     if (nodes == 0 || next < 0 || from.orientation == 0) continue;
-    if (at(cable.links, next).body != from.body || at(cable.links, next).orientation == 0) continue;
+    const Link& to = at(cable.links, next);
+    if (to.body != from.body || to.orientation != from.orientation) continue;  // back past its side
     take_in_node(world, cable, next_link(cable, i));
     ++world.diagnostics.node_changes;
     any = true;
