@@ -109,7 +109,7 @@ void take_off(World& world, Workspace& work, int cable, int link) {
   const Link off = at(state.links, link);
   for (const int beside : {previous_link(state, link), next_link(state, link)}) {
     if (beside < 0 || !is_moored_to(at(state.links, beside), off)) continue;
-    cast_off_node(world, state, beside);
+    work.neighbourhoods.follow(cast_off_node(world, state, beside), cable);
     work.broad_phase.boxes.clear();  // for bodies with other outlines
   }
   note_release(work, {cable, off.body, off.orientation});

@@ -38,15 +38,20 @@ Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Ve
          ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
+/// Whether a node lies on a rim, or is moored there: else it is a body that moves by itself.
+void set_wound(World& world, int node, bool wound) {
+  BodyProperties& properties = at(world.bodies, node);
+  properties.kind = wound ? BodyKind::fixed : BodyKind::free;
+  properties.outlined = !wound;
+}
+
 /// Makes a node a body that moves by itself, from there (m) with that velocity (m/s).
 void set_free(World& world, int node, const Vec2& position, const Vec2& velocity) {
   at(world.position, node) = position;
   at(world.velocity, node) = velocity;
   at(world.angular_velocity, node) = 0.0;
   at(world.still_steps, node) = 0;
-  BodyProperties& properties = at(world.bodies, node);
-  properties.kind = BodyKind::free;
-  properties.outlined = true;
+  set_wound(world, node, false);
 }
 
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
@@ -288,6 +293,13 @@ void give_off_nodes(World& world, CableState& cable) {
   string_all(world, cable, given_off * spacing(cable));
 }
 
+void sort_nodes(World& world, const CableState& cable) {
+  for (int k = 0; k < cable.nodes; ++k) set_wound(world, cable.first_node + k, true);
+  for (const Link& link : cable.links) {
+    if (is_strung(cable, link)) set_wound(world, link.body, false);
+  }
+}
+
 bool is_within_end(const World& world, const CableState& cable, const Link& node, int body) {
   if (cable.closed) return false;
   const BodyProperties& outline = at(world.bodies, body);
@@ -419,9 +431,7 @@ int nearest_rim(const CableState& cable, int link) {
 
 /// A node that is no link of its own any more lies on a rim, and moves with it.
 void lay_down_node(World& world, int body) {
-  BodyProperties& properties = at(world.bodies, body);
-  properties.kind = BodyKind::fixed;
-  properties.outlined = false;
+  set_wound(world, body, true);
   at(world.velocity, body) = Vec2::Zero();
 }
 
@@ -460,7 +470,7 @@ void moor_node(World& world, CableState& cable, int link) {
   note_change(world, cable, link);
 }
 
-void cast_off_node(World& world, CableState& cable, int link) {
+int cast_off_node(World& world, CableState& cable, int link) {
   Link& moored = at(cable.links, link);
   const int node = node_of(cable, moored);
   const Vec2 x = link_centre(world, moored);
@@ -471,6 +481,7 @@ void cast_off_node(World& world, CableState& cable, int link) {
   moored.moored = false;
   moored.slid = 0.0;
   note_change(world, cable, link);
+  return node;
 }
 
 void take_in_node(World& world, CableState& cable, int link) {

@@ -9,19 +9,25 @@
 // Where that place comes to lie on a rim, the rim takes the node in; where the rim gives the
 // material off again, the node comes back.
 //
-// Taken in. A node with d of cable left to a rim swings faster and faster as d falls, with
+// Moored. A node with d of cable left to a rim swings faster and faster as d falls, with
 // omega^2 = T / m d under the tension T, for which intervals are divided (waves.h); over all of d
 // that is 2 sqrt(T l / m) / v radians, v the speed at which it comes: no more than twice what a
 // node in the middle of the cable swings by meanwhile. A node that nothing pulls may also come down
-// on the rim with cable to spare. So a node is taken in where of its cable, or of the straight line
-// to the rim, a hundredth of l is left: an event, like others located in time. Its neighbour's span
-// then leaves the rim where it is a tangent, by the angle a = W / T (W the node's weight) away. For
-// this the node rises by R a^2 / 2 + a d to that tangent, which the cable's tension pays for: the
-// energy is higher by W times that until the slack that is left is pulled tight, and then lower
-// than before, by T R a^3 / 6 + T d a^2 / 2, of second order in l. Momentum is kept (joins.h). A
-// node that swings, or that something presses, may be bent by more: the span springs straight at
-// once, and may take the cable off the rim; what lies within these bends bears the cable
-// (events.cpp).
+// on the rim with cable to spare. So a rim takes hold of a node where of its cable, or of the
+// straight line to the rim, a hundredth of l is left: an event, like others located in time. The
+// node stays where it is, on an arm that turns with the rim: its link is one on the rim's body
+// (Link::moored), which takes up its momentum, and the arm is rigid, like a side of a polygon.
+//     Taken in. At the arm's end the cable is bent away from the rim, at rest by W / T (W the
+// node's weight). The rim turns on, until the span beyond is in line with the arm, and so a tangent
+// of the rim: then the link goes. Nothing moves by that, and halves of spans' masses at their ends
+// have the same weight before and after; momentum goes with the mass (joins.h), and no energy is
+// made. Where a node is not bent away from the rim, the span beyond is next to a tangent already,
+// and it is taken in at once. One that another body has met beyond it is taken in as it lies there
+// (take_in_enclosed_nodes), and the slack that is left is pulled tight.
+//     Cast off. Where the rim turns back instead, and the bend has grown by as much as l / 4 of the
+// rim does, or by half a radian, whose strain is next to nothing on so short an arm, the node is a
+// body of its own again, at its place and with its velocity; likewise where the cable comes off the
+// rim.
 //     Given off. Where a rim has given off l / 4 beyond a node's place, it comes back there, on a
 // straight span, where halves of spans' masses at either end have the weight that they have with
 // it. It moves as its place of the span did: momentum is kept, energy lost, none is made.
@@ -42,6 +48,10 @@ void string_nodes(World& world, CableState& cable, const Vec2& gravity);
 /// Whether rims have given off nodes; and puts these back.
 bool has_given_off(const World& world, const CableState& cable);
 void give_off_nodes(World& world, CableState& cable);
+
+/// Makes bodies of the nodes that are links of the cable by themselves, and none of the others:
+/// where an earlier state of the cable has been put back.
+void sort_nodes(World& world, const CableState& cable);
 
 /// Places the nodes that have been taken in where their material is, on rims, for tables and
 /// pictures: nothing else asks where they are.
@@ -64,9 +74,10 @@ double left_until_taken_in(const CableState& cable, int link);
 bool is_to_be_moored(const CableState& cable, int link);
 bool is_to_be_cast_off(const CableState& cable, int link);
 
-/// Moors a node to the rim beside it; and casts one off, which moves on as it did with the rim.
+/// Moors a node to the rim beside it; and casts one off, which moves on as it did with the rim: a
+/// body by itself again, whose number is returned.
 void moor_node(World& world, CableState& cable, int link);
-void cast_off_node(World& world, CableState& cable, int link);
+int cast_off_node(World& world, CableState& cable, int link);
 
 /// Takes in the nodes between two links in succession on one body, which has met the cable beyond
 /// them: they lie on it. Whether there were any.

@@ -75,18 +75,21 @@ bool over_adjacent_span(const World& world, const CableState& cable, const Conta
                         std::size_t i, int other) {
   const bool circles = contact.touch == Touch::circles;
   const Vec2 place = circles ? at(world.position, other) : nearest_place(world, contact, other);
-  const int before = previous_link(cable, static_cast<int>(i));
-  const int after = next_link(cable, static_cast<int>(i));
-  for (const auto& [s, far_end] : {std::pair(static_cast<int>(i), before), {after, after}}) {
-    if (holds_span(world, cable, at(cable.links, far_end), other)) continue;
+  const auto lies_over = [&](int s, int far_end) {
+    if (holds_span(world, cable, at(cable.links, far_end), other)) return false;
     const Segment& segment = at(cable.segments, s);
-    if (is_side(cable.links[i], at(cable.links, far_end))) continue;
     const Vec2 x = place - segment.tail;
     const double along = segment.direction.dot(x);
     const double side = cross(segment.direction, x) * cable.links[i].orientation;
-    if (!segment.pinched && along > 0.0 && along < segment.length && side < 0.0) return true;
-  }
-  return false;
+    return !segment.pinched && along > 0.0 && along < segment.length && side < 0.0;
+  };
+  const int link = static_cast<int>(i);
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  const Link &tail = at(cable.links, before), &head = at(cable.links, after);
+  if ((tail.moored || !is_side(tail, cable.links[i])) && lies_over(link, before)) return true;
+  if ((head.moored || !is_side(cable.links[i], head)) && lies_over(after, after)) return true;
+  if (tail.moored && lies_over(before, previous_link(cable, before))) return true;
+  return head.moored && lies_over(next_link(cable, after), next_link(cable, after));
 }
 
 /// Whether direction u from the body's centre surely misses the cable on link i, of less than half
@@ -341,6 +344,22 @@ void configure_pinches(World& world, Workspace& work) {
 
 namespace {
 
+/// A cable that runs from a node moored to one body to another, or to a node moored there, is
+/// between the two.
+void note_cable_beside_moored(World& world, const CableState& cable, std::size_t segment) {
+  const auto on = [&cable](int link) -> const Link& {
+    return at(cable.links, at(cable.links, link).moored ? rim_of(cable, link) : link);
+  };
+  const int head = static_cast<int>(segment);
+  const Link &from = on(previous_link(cable, head)), &to = on(head);
+  if (!opposite(from, to) || from.body == to.body) return;
+  Contact* contact = find_contact(world, from.body, to.body, -1);
+  if (contact == nullptr) return;
+  contact = nearest_of_pair(world, contact);
+  note_cable_between(world, cable, from, *contact);
+  note_cable_between(world, cable, to, *contact);
+}
+
 /// assign_contacts, of one part.
 void assign_contacts(World& world, const Parts& parts, const Part& part) {
   for (const int i : contacts_of(parts, part)) at(world.contacts, i).pinch_points = 0;
@@ -351,6 +370,10 @@ void assign_contacts(World& world, const Parts& parts, const Part& part) {
       const auto tail = index(previous_link(cable, static_cast<int>(s)));
       const Link& from = cable.links[tail];
       Segment& segment = cable.segments[s];
+      if (from.moored || to.moored) {
+        note_cable_beside_moored(world, cable, s);
+        continue;
+      }
       const int hint = to.pinch_middle ? to.contact : segment.contact;
       segment.contact = to.contact = -1;
       if (!opposite(from, to) || from.pinch_middle) continue;

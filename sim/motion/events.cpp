@@ -83,7 +83,7 @@ int let_rim_have(World& world, Workspace& work, int number, int node) {
     return node;
   }
   if (!is_to_be_cast_off(cable, node)) return take_in(world, work, number, node);
-  cast_off_node(world, cable, node);
+  work.neighbourhoods.follow(cast_off_node(world, cable, node), number);
   return node;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/strung.h"
 #include "sim/detect/contacts.h"
 #include "sim/detect/span_hits.h"
 #include "sim/lines.h"
@@ -184,6 +185,10 @@ bool Neighbourhoods::separate_from_cable(int body, int cable) const {
   return a >= 0 && b >= 0 && a != b;
 }
 
+void Neighbourhoods::follow(int body, int cable) {
+  if (!of_body.empty()) at(of_body, body) = at(of_cable, cable);
+}
+
 void keep_start(const World& world, Workspace& work) {
   StepStart& kept = work.step_start;
   kept.start = work.start;
@@ -204,6 +209,7 @@ void take_back(World& world, Workspace& work) {
   world.still_steps = kept.still_steps;
   world.pace = kept.pace;
   world.diagnostics = kept.diagnostics;
+  for (const int c : world.strung) sort_nodes(world, at(world.cables, c));
   Workspace fresh;
   fresh.start = kept.start;
   fresh.first_link = kept.first_link;

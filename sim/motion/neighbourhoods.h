@@ -57,6 +57,9 @@ struct Neighbourhoods {
   double left_of(int body) const;  // s, of the step
   bool separate_bodies(int body, int other) const;
   bool separate_from_cable(int body, int cable) const;
+
+  /// A body that a cable has only now begun to move shares its course.
+  void follow(int body, int cable);
 };
 
 /// All awake parts as one neighbourhood that has the whole step before it.

@@ -32,11 +32,14 @@ double product(int n, const double* a, const double* b) {
   return sum;
 }
 
-/// A mobility as R' diag(root)^2 R, its axes in rows of R. What cannot move has roots of exactly
-/// zero: those of round-off would be 1e-8 of the others, by which anything might give.
+/// A mobility as S R' diag(root)^2 R S, S = diag(scale), its axes in rows of R. What cannot move
+/// has roots of exactly zero: those of round-off would be 1e-8 of the others, by which anything
+/// might give. Where moving and turning are coupled either is measured by its own mobility: axes of both
+/// together would depend on units.
 struct Root {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Eigen::Vector3d root = Eigen::Vector3d::Zero();
+  Eigen::Array3d scale = Eigen::Array3d::Ones();
 };
 
 Root root_of(const Mobility& m) {
@@ -57,7 +60,14 @@ Root root_of(const Mobility& m) {
     take(Eigen::Matrix2d{{m.xx, m.xy}, {m.xy, m.yy}});
     result.root.z() = std::sqrt(m.angular);
   } else {
-    take(Eigen::Matrix3d{{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.angular}});
+    const double moving = std::sqrt(m.xx + m.yy), turning = std::sqrt(m.angular);
+    const double both = moving * turning;
+    result.scale = {moving, moving, turning};
+    Eigen::Matrix3d coupled{{m.xx, m.xy, 0.0}, {m.xy, m.yy, 0.0}, {0.0, 0.0, 1.0}};
+    coupled.topLeftCorner<2, 2>() /= moving * moving;
+    coupled(0, 2) = coupled(2, 0) = m.xz / both;
+    coupled(1, 2) = coupled(2, 1) = m.yz / both;
+    take(coupled);
   }
   return result;
 }
@@ -66,7 +76,8 @@ void find_roots(const PartSystem& s, DualScratch& d) {
   d.roots.resize(9 * s.mobility.size());
   for (std::size_t b = 0; b < s.mobility.size(); ++b) {
     const Root r = root_of(s.mobility[b]);
-    Eigen::Map<Eigen::Matrix3d>(&d.roots[9 * b]) = r.root.asDiagonal() * r.axes;
+    Eigen::Map<Eigen::Matrix3d>(&d.roots[9 * b]) =
+        r.root.asDiagonal() * r.axes * r.scale.matrix().asDiagonal();
   }
 }
 
@@ -242,7 +253,7 @@ double energy_given(const PartSystem& s, const DualScratch& d) {
   double energy = 0.0;
   for (std::size_t b = 0; b < s.mobility.size(); ++b) {
     const Root r = root_of(s.mobility[b]);
-    const Eigen::Vector3d free = r.axes * s.free_velocity[b];
+    const Eigen::Vector3d free = r.axes * (s.free_velocity[b].array() / r.scale).matrix();
     for (int k = 0; k < 3; ++k) {
       if (r.root[k] == 0.0) continue;
       const double given = d.way[3 * b + index(k)];

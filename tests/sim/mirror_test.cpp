@@ -34,6 +34,7 @@ void mirror(CableState& cable) {
   for (Link& link : cable.links) {
     link.orientation = -link.orientation;
     link.offset = mirror(link.offset);
+    link.slid = -link.slid;
   }
   for (Segment& s : cable.segments) {
     s.alpha = -s.alpha;

@@ -29,7 +29,8 @@ inline bool same_link(const Link& p, const Link& q) {
   return p.body == q.body && p.orientation == q.orientation && p.corner == q.corner &&
          p.radius == q.radius && p.offset == q.offset && p.material == q.material &&
          p.wrap == q.wrap && p.pinch_middle == q.pinch_middle && p.slip == q.slip &&
-         p.slip_speed == q.slip_speed && p.contact == q.contact && same_layers(p.layers, q.layers);
+         p.slip_speed == q.slip_speed && p.contact == q.contact && p.moored == q.moored &&
+         p.bent == q.bent && p.slid == q.slid && same_layers(p.layers, q.layers);
 }
 
 inline bool same_segment(const Segment& p, const Segment& q) {
