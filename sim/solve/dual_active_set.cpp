@@ -34,8 +34,8 @@ double product(int n, const double* a, const double* b) {
 
 /// A mobility as S R' diag(root)^2 R S, S = diag(scale), its axes in rows of R. What cannot move
 /// has roots of exactly zero: those of round-off would be 1e-8 of the others, by which anything
-/// might give. Where moving and turning are coupled either is measured by its own mobility: axes of both
-/// together would depend on units.
+/// might give. Where moving and turning are coupled either is measured by its own mobility: axes of
+/// both together would depend on units.
 struct Root {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   Eigen::Vector3d root = Eigen::Vector3d::Zero();
