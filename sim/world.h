@@ -58,7 +58,8 @@ struct alignas(64) Link {
   // What few steps read.
   int contact = -1;  // pinch_middle: the contact that presses it, by confirm_pinches
   // moored:
-  double bent = 0.0;  // rad, by which the cable was bent there when the rim took hold of it
+  double bent = 0.0;  // rad, by which the cable was bent there when the rim took hold of it,
+  double held = 0.0;  // rad, at which the rim, or the cable on it, was turned
   double slid = 0.0;  // rad, by which slipping has turned `offset` on the body; by follow_slip
   Layers layers;      // of a drum that fills; `radius` is then that of the outermost turn,
                       // by update_tangent

@@ -388,9 +388,8 @@ void run_population(const PopulationRun& run) {
       "in violent turns, and falls with the step; what is beyond 1e-2 is not.\n\n{}\n"
       "## Ropes that hang\n\n"
       "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
-      "between the bodies that it runs over: {}. Where a rim has taken a node in, the energy is "
-      "higher by its rise until the slack that is left is pulled tight, and then lower than before "
-      "(`sim/cable/strung.h`).\n\n{}",
+      "between the bodies that it runs over: {}. Energy that is gained is leapfrog's swing, as "
+      "there: a rim that takes a node in lifts nothing (`sim/cable/strung.h`).\n\n{}",
       run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
       shares(shapely), shapely_promises(shapely), run.shapely_scenes, shares(hanging),
       shapely_promises(hanging));

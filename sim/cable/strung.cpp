@@ -380,24 +380,34 @@ double bent_away(const CableState& cable, int link, int rim) {
   return -at(cable.links, rim).orientation * turn_at(cable, link);
 }
 
+/// rad, by which what holds a moored node is turned.
+double turned_by(const World& world, const Link& moored) {
+  return at(world.angle, moored.body) + moored.slid;
+}
+
 /// What is left until a moored node is in line with the rim's tangent; and until it comes off (m,
 /// on the rim).
 struct LeftOfMooring {
   double in_line, off;
 };
-LeftOfMooring left_of_mooring(const CableState& cable, int link) {
+LeftOfMooring left_of_mooring(const World& world, const CableState& cable, int link) {
+  const Link& moored = at(cable.links, link);
   const int held_by = rim_of(cable, link);
   const Link& rim = at(cable.links, held_by);
   const double bent = bent_away(cable, link, held_by);
-  const double more = std::min(given_off * spacing(cable) / rim.radius, most_bent);
-  return {rim.radius * bent, rim.radius * (at(cable.links, link).bent + more - bent)};
+  const double back =
+      std::remainder(turned_by(world, moored) - moored.held, 2.0 * std::numbers::pi);
+  const double given =
+      (held_by == previous_link(cable, link) ? 1 : -1) * rim.signed_radius() * back;
+  return {rim.radius * bent, std::min(taken_in * spacing(cable) - given,
+                                      rim.radius * (moored.bent + most_bent - bent))};
 }
 
 }  // namespace
 
-double left_until_taken_in(const CableState& cable, int link) {
+double left_until_taken_in(const World& world, const CableState& cable, int link) {
   if (at(cable.links, link).moored) {
-    const LeftOfMooring left = left_of_mooring(cable, link);
+    const LeftOfMooring left = left_of_mooring(world, cable, link);
     return std::min(left.in_line, left.off);
   }
   double least = infinity;
@@ -453,8 +463,8 @@ bool is_to_be_moored(const CableState& cable, int link) {
   return std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi) > 0.0;
 }
 
-bool is_to_be_cast_off(const CableState& cable, int link) {
-  const LeftOfMooring left = left_of_mooring(cable, link);
+bool is_to_be_cast_off(const World& world, const CableState& cable, int link) {
+  const LeftOfMooring left = left_of_mooring(world, cable, link);
   return left.off < left.in_line;
 }
 
@@ -463,7 +473,9 @@ void moor_node(World& world, CableState& cable, int link) {
   count_bend_anew(cable, link);
   join_rim(world, cable, link, rim);
   lay_down_node(world, node);
-  at(cable.links, link).bent = bent_away(cable, link, rim);
+  Link& moored = at(cable.links, link);
+  moored.bent = bent_away(cable, link, rim);
+  moored.held = turned_by(world, moored);
   Segment& arm = at(cable.segments, rim == previous_link(cable, link) ? link : rim);
   arm.tension = 0.0;
   arm.slack = false;

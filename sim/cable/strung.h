@@ -24,10 +24,10 @@
 // made. Where a node is not bent away from the rim, the span beyond is next to a tangent already,
 // and it is taken in at once. One that another body has met beyond it is taken in as it lies there
 // (take_in_enclosed_nodes), and the slack that is left is pulled tight.
-//     Cast off. Where the rim turns back instead, and the bend has grown by as much as l / 4 of the
-// rim does, or by half a radian, whose strain is next to nothing on so short an arm, the node is a
-// body of its own again, at its place and with its velocity; likewise where the cable comes off the
-// rim.
+//     Cast off. Where the rim turns back instead, and has given off l / 100 since it took hold, or
+// the bend has grown by half a radian, the node is a body of its own again, at its place and with
+// its velocity; likewise where the cable comes off the rim. It swings out by what it was held back:
+// on so short a way with next to no energy.
 //     Given off. Where a rim has given off l / 4 beyond a node's place, it comes back there, on a
 // straight span, where halves of spans' masses at either end have the weight that they have with
 // it. It moves as its place of the span did: momentum is kept, energy lost, none is made.
@@ -67,12 +67,12 @@ bool lies_beside(const World& world, int node, int body);
 
 /// What is left between a node and a rim beside it until the rim takes hold of it (m); infinity:
 /// there is none. Of a moored one, until it is taken in or cast off.
-double left_until_taken_in(const CableState& cable, int link);
+double left_until_taken_in(const World& world, const CableState& cable, int link);
 
 /// Whether a node, not moored, of which nothing is left is to be moored; or a moored one to be cast
 /// off. Else it is to be taken in.
 bool is_to_be_moored(const CableState& cable, int link);
-bool is_to_be_cast_off(const CableState& cable, int link);
+bool is_to_be_cast_off(const World& world, const CableState& cable, int link);
 
 /// Moors a node to the rim beside it; and casts one off, which moves on as it did with the rim: a
 /// body by itself again, whose number is returned.

@@ -82,7 +82,7 @@ int let_rim_have(World& world, Workspace& work, int number, int node) {
     moor_node(world, cable, node);
     return node;
   }
-  if (!is_to_be_cast_off(cable, node)) return take_in(world, work, number, node);
+  if (!is_to_be_cast_off(world, cable, node)) return take_in(world, work, number, node);
   work.neighbourhoods.follow(cast_off_node(world, cable, node), number);
   return node;
 }
@@ -160,7 +160,7 @@ void find_gone_links(const World& world, Workspace& work, int number) {
       const Link& link = at(cable.links, i);
       key.item = i;
       if (is_strung(cable, link) || link.moored) {
-        measure(work, key, left_until_taken_in(cable, i), 0.5 * s.reach);
+        measure(work, key, left_until_taken_in(world, cable, i), 0.5 * s.reach);
         continue;
       }
       if (link.orientation == 0 || link.pinch_middle) continue;

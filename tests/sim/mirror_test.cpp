@@ -35,6 +35,7 @@ void mirror(CableState& cable) {
     link.orientation = -link.orientation;
     link.offset = mirror(link.offset);
     link.slid = -link.slid;
+    link.held = -link.held;
   }
   for (Segment& s : cable.segments) {
     s.alpha = -s.alpha;

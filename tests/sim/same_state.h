@@ -30,7 +30,8 @@ inline bool same_link(const Link& p, const Link& q) {
          p.radius == q.radius && p.offset == q.offset && p.material == q.material &&
          p.wrap == q.wrap && p.pinch_middle == q.pinch_middle && p.slip == q.slip &&
          p.slip_speed == q.slip_speed && p.contact == q.contact && p.moored == q.moored &&
-         p.bent == q.bent && p.slid == q.slid && same_layers(p.layers, q.layers);
+         p.bent == q.bent && p.held == q.held && p.slid == q.slid &&
+         same_layers(p.layers, q.layers);
 }
 
 inline bool same_segment(const Segment& p, const Segment& q) {

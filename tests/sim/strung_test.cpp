@@ -238,6 +238,16 @@ TEST(Strung, ConvergesWithStepsAndWithNodes) {
   EXPECT_NEAR(height_after(60, 4), finest, 1e-4);
 }
 
+// The rope comes to rest and goes back on both pulleys. Held fast until a rim had given off a
+// quarter of a piece, nodes took 5 mm off the way.
+TEST(Strung, RimsThatTurnBackLetNodesGo) {
+  const double finest = height_after(190, 4);
+  for (const int nodes : {44, 45, 46, 47, 48, 49, 50}) {
+    EXPECT_NEAR(height_after(nodes, 4), finest, 3e-4) << nodes;
+  }
+  EXPECT_NEAR(height_after(11, 1), finest, 3e-3);
+}
+
 double greatest_tension(const World& world) {
   return std::ranges::max(world.cables[0].segments, {}, &Segment::tension).tension;
 }
@@ -309,8 +319,8 @@ TEST(Strung, WhatRimsTakeInTheyGiveOffAgain) {
     }
     EXPECT_GE(world.diagnostics.node_changes, nodes / 4);
     EXPECT_GE(fewest, at_start - nodes / 10);
-    EXPECT_LT(gained, 1e-4 * at_play);
-    EXPECT_LT(start - world.diagnostics.energy, (nodes == 40 ? 2e-3 : 2e-4) * at_play);
+    EXPECT_LT(gained, 1e-9 * at_play);
+    EXPECT_LT(start - world.diagnostics.energy, (nodes == 40 ? 1e-3 : 1e-4) * at_play);
     EXPECT_EQ(world.diagnostics.fallbacks, 0);
   }
 }
@@ -512,9 +522,8 @@ TEST(Strung, AStepThatIsTakenBackPutsNodesBack) {
   EXPECT_EQ(step(now.scene, now.world, now.work), StepStatus::ok) << now.world.failure;
 }
 
-// What the energy rises by is the swing of leapfrog's, and what nodes gain that are taken in where
-// a slack rope is bent much (strung.h). A rope that whips over a pulley on which it hardly lies may
-// be too long for a step.
+// What the energy rises by is the swing of leapfrog's. A rope that whips over a pulley on which it
+// hardly lies may be too long for a step.
 TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
   int ran = 0, stretched = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -523,7 +532,7 @@ TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
       scene.steps_per_frame = steps;
       const Course course = run_measured(scene, 1.2);
       const double w = scene.cables[0].half_width;
-      EXPECT_LE(course.gained, 5e-3 * course.at_play) << seed << ", " << steps;
+      EXPECT_LE(course.gained, 2e-4 * course.at_play) << seed << ", " << steps;
       EXPECT_LE(course.gap, 1e-6 * w) << seed << ", " << steps;
       if (course.stretch > 1e-6 * w) ++stretched;
       EXPECT_LE(course.stretch, w) << seed << ", " << steps;

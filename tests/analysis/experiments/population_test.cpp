@@ -290,12 +290,23 @@ TEST(Population, ShapesMakeNoEnergy) {
 // bent, or lay between corners; the next three up to 11, where the cable came off a corner as well,
 // or closed up over a disc that it had left at another node. The last two gained up to 1.3 of all
 // energy, where a node was taken in by an interval that was too long for how fast it swung at its
-// end. In seeds 351 and 813 a disc came over the end of the rope, where nodes were given off.
+// end. In seeds 351 and 813 a disc came over the end of the rope, where nodes were given off. In
+// 523 and 865 the rope folds back about a corner at a node, which lies on no side there.
 TEST(Population, RopesThatHangMakeNoEnergy) {
-  std::vector<int> seeds = {13, 106, 163, 178, 327, 746, 203, 503, 963, 25, 372, 813, 351};
+  std::vector<int> seeds = {13,  106, 163, 178, 327, 746, 203, 503,
+                            963, 25,  372, 813, 351, 523, 865};
   for (int seed = 1; seed <= 8; ++seed) seeds.push_back(seed);
   for (const int seed : seeds) {
-    expect_sound(seed, shapes_on_hanging_rope(static_cast<std::uint64_t>(seed)), 2e-2);
+    expect_sound(seed, shapes_on_hanging_rope(static_cast<std::uint64_t>(seed)), 2e-3);
+  }
+}
+
+// On discs, on corners, with slip and without: taken in at once nodes were lifted by up to 3e-3 of
+// all energy.
+TEST(Population, RimsLiftNoNodes) {
+  for (const std::uint64_t seed : {927, 804, 370, 816, 167, 98, 116, 288}) {
+    EXPECT_LE(run_scene(shapes_on_hanging_rope(seed).scene, watched(), 4, 60).energy_gain, 1e-9)
+        << seed;
   }
 }
 
