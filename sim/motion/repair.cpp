@@ -103,10 +103,14 @@ bool is_closed(const World& world, const CableState& cable, int segment) {
   return contact.gap - contact.target <= nearly * cable.half_width;
 }
 
-/// Whether material may come into a segment: it is no closed pinch, and no side of a polygon.
+/// Whether material may come into a segment: it is no closed pinch, and no side of a polygon. That
+/// between a rim and a node which it holds may be slack.
 bool opens(const World& world, const CableState& cable, int segment) {
   const int before = previous_link(cable, segment);
-  if (before >= 0 && is_side(at(cable.links, before), at(cable.links, segment))) return false;
+  const bool moored =
+      at(cable.links, segment).moored || (before >= 0 && at(cable.links, before).moored);
+  if (!moored && before >= 0 && is_side(at(cable.links, before), at(cable.links, segment)))
+    return false;
   return !is_closed(world, cable, segment);
 }
 

@@ -291,11 +291,12 @@ TEST(Population, ShapesMakeNoEnergy) {
 // or closed up over a disc that it had left at another node. The last two gained up to 1.3 of all
 // energy, where a node was taken in by an interval that was too long for how fast it swung at its
 // end. In seeds 351 and 813 a disc came over the end of the rope, where nodes were given off. In
-// 523 and 865 the rope folds back about a corner at a node, which lies on no side there.
+// 523 and 865 the rope folds back about a corner at a node, which lies on no side there; in 9 cable
+// gathers in a pinch beside a node that a rim holds.
 TEST(Population, RopesThatHangMakeNoEnergy) {
   std::vector<int> seeds = {13,  106, 163, 178, 327, 746, 203, 503,
                             963, 25,  372, 813, 351, 523, 865};
-  for (int seed = 1; seed <= 8; ++seed) seeds.push_back(seed);
+  for (int seed = 1; seed <= 9; ++seed) seeds.push_back(seed);
   for (const int seed : seeds) {
     expect_sound(seed, shapes_on_hanging_rope(static_cast<std::uint64_t>(seed)), 2e-3);
   }
