@@ -424,7 +424,7 @@ double left_until_taken_in(const World& world, const CableState& cable, int link
 
 namespace {
 
-/// The nearer one of the rims beside a node.
+/// The nearer one of the rims beside a node, or -1.
 int nearest_rim(const CableState& cable, int link) {
   int nearest = -1;
   double least = infinity;
@@ -460,6 +460,7 @@ bool is_to_be_moored(const CableState& cable, int link) {
   const Link& after = at(cable.links, next_link(cable, link));
   if (before.body == after.body && opposite(before, after)) return true;  // it folds back there
   const int rim = nearest_rim(cable, link);
+  if (rim < 0) return false;  // it has come off at the same time
   return std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi) > 0.0;
 }
 
