@@ -49,7 +49,7 @@ struct alignas(64) Link {
   bool pinch_middle = false;  // middle link of a non-transitional pinch: no wrap, the links
                               // before and after lie on the pinched body
   Slip slip = Slip::stick;    // by the active set
-  bool moored = false;        // a node of the cable that the body's rim holds: strung.h
+  bool moored = false;        // a node of the cable that the body's rim holds: taking_in.h
   double radius = 0.0;      // m, of the body or its corner, + cable half width; 0 at an attachment
   double material = 0.0;    // m along the cable; changed by slip only
   double wrap = 0.0;        // rad, angle of cable stored on the body, may exceed 2 pi

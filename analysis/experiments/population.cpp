@@ -389,7 +389,7 @@ void run_population(const PopulationRun& run) {
       "## Ropes that hang\n\n"
       "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
       "between the bodies that it runs over: {}. Energy that is gained is leapfrog's swing, as "
-      "there: a rim that takes a node in lifts nothing (`sim/cable/strung.h`).\n\n{}",
+      "there: a rim that takes a node in lifts nothing (`sim/cable/taking_in.h`).\n\n{}",
       run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
       shares(shapely), shapely_promises(shapely), run.shapely_scenes, shares(hanging),
       shapely_promises(hanging));

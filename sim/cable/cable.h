@@ -17,7 +17,7 @@ inline bool is_central(const Link& link) {
   return link.offset.x() == 0.0 && link.offset.y() == 0.0;
 }
 
-/// Whether one link is a node that the rim at another holds (strung.h).
+/// Whether one link is a node that the rim at another holds (taking_in.h).
 inline bool is_moored_to(const Link& node, const Link& rim) {
   return node.moored && node.body == rim.body && rim.orientation != 0;
 }

@@ -13,8 +13,8 @@ void meet_body(World& world, CableState& cable, std::size_t segment, int body, i
                int orientation);
 void leave_body(World& world, CableState& cable, int link);
 
-/// Moors a node to the rim at another link (strung.h), at its place there. What moves with the rim
-/// takes up the node's momentum.
+/// Moors a node to the rim at another link (taking_in.h), at its place there. What moves with the
+/// rim takes up the node's momentum.
 void join_rim(World& world, CableState& cable, int link, int rim);
 
 /// remove_link of a node (strung.h). The span that closes up lies on a rim otherwise than it did:

@@ -7,7 +7,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/joins.h"
-#include "sim/cable/strung.h"
+#include "sim/cable/taking_in.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 

@@ -12,6 +12,7 @@
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/mass.h"
+#include "sim/cable/taking_in.h"
 #include "sim/compound.h"
 #include "sim/hanging.h"
 #include "sim/tangent.h"
@@ -21,15 +22,7 @@ namespace pinchlab {
 
 namespace {
 
-// Of the distance of nodes: the header has the reasons.
-constexpr double taken_in = 1e-2;
-constexpr double given_off = 0.25;
-constexpr double most_bent = 0.5;  // rad, more than when it was moored
-
-/// m of material between two nodes.
-double spacing(const CableState& cable) {
-  return cable.length / (cable.closed ? cable.nodes : cable.nodes + 1);
-}
+constexpr double given_off = 0.25;  // of the distance of nodes: the header has the reasons
 
 /// Of the material at that share (0..1) of the way between two ends, where the cable has this
 /// direction (m/s).
@@ -45,24 +38,15 @@ void set_wound(World& world, int node, bool wound) {
   properties.outlined = !wound;
 }
 
-/// Makes a node a body that moves by itself, from there (m) with that velocity (m/s).
-void set_free(World& world, int node, const Vec2& position, const Vec2& velocity) {
-  at(world.position, node) = position;
-  at(world.velocity, node) = velocity;
-  at(world.angular_velocity, node) = 0.0;
-  at(world.still_steps, node) = 0;
-  set_wound(world, node, false);
-}
-
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
   Segment& old = cable.segments[segment];
   const double share = (material - begins) / old.rest_length;
-  set_free(world, body, old.tail + share * (old.head - old.tail),
-           velocity_between(flow_at(world, cable, segment, false),
-                            flow_at(world, cable, segment, true), share, old.direction));
+  free_node(world, body, old.tail + share * (old.head - old.tail),
+            velocity_between(flow_at(world, cable, segment, false),
+                             flow_at(world, cable, segment, true), share, old.direction));
 
   // As in insert_link: what closes a loop gets it last.
   const bool seam = segment == 0;
@@ -90,12 +74,12 @@ struct Numbers {
 
 /// m, of node k: (k + 1) l in an open cable, (k + 1/2) l in a loop, in any of its rounds.
 double place_of_node(const CableState& cable, long k) {
-  return spacing(cable) * (static_cast<double>(k) + (cable.closed ? 0.5 : 1.0));
+  return node_spacing(cable) * (static_cast<double>(k) + (cable.closed ? 0.5 : 1.0));
 }
 
 /// Those from one material coordinate (m) to another.
 Numbers nodes_within(const CableState& cable, double from, double to) {
-  const double first = place_of_node(cable, 0), l = spacing(cable);
+  const double first = place_of_node(cable, 0), l = node_spacing(cable);
   const Numbers on{static_cast<long>(std::ceil((from - first) / l)),
                    static_cast<long>(std::floor((to - first) / l))};
   if (cable.closed) return on;
@@ -106,12 +90,6 @@ Numbers nodes_within(const CableState& cable, double from, double to) {
 int body_of_node(const CableState& cable, long k) {
   const long nodes = cable.nodes;
   return cable.first_node + static_cast<int>(((k % nodes) + nodes) % nodes);
-}
-
-/// The body that a link's node is while no rim holds it.
-int node_of(const CableState& cable, const Link& link) {
-  const double from_first = link.material - place_of_node(cable, 0);
-  return body_of_node(cable, std::lround(from_first / spacing(cable)));
 }
 
 /// Those on a segment that are at least `margin` (m of material) away from its ends; none where it
@@ -136,18 +114,6 @@ void string_all(World& world, CableState& cable, double margin) {
       s = position;
     }
   }
-}
-
-/// Turns all that follows a node by so many whole turns, and what it rolls on with it: nothing
-/// changes but how turns are counted.
-void count_turns_off(CableState& cable, int link, double turns) {
-  const double angle = 2.0 * std::numbers::pi * turns;
-  for (std::size_t i = index(link) + 1; i < cable.links.size(); ++i) {
-    cable.segments[i].alpha -= angle;
-    cable.segments[i].alpha_before -= angle;
-    cable.links[i].material += cable.links[i].signed_radius() * angle;
-  }
-  if (cable.closed) cable.turning -= angle;
 }
 
 /// What is free of a cable between two links that are no nodes: its segments.
@@ -207,7 +173,7 @@ bool give_way(World& world, CableState& cable, int link, bool leaves, double len
     remove_link(world, cable, link);
     return true;
   }
-  double room = taken_in * spacing(cable);
+  double room = taken_in * node_spacing(cable);
   if (rim.corner >= 0) {
     const int corner = next_corner(world, rim, leaves);
     const Vec2 side = place_of_point(world, rim.body, corner) - link_centre(world, rim);
@@ -261,10 +227,32 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
 
 }  // namespace
 
+double node_spacing(const CableState& cable) {
+  return cable.length / (cable.closed ? cable.nodes : cable.nodes + 1);
+}
+
+int node_of(const CableState& cable, const Link& link) {
+  const double from_first = link.material - place_of_node(cable, 0);
+  return body_of_node(cable, std::lround(from_first / node_spacing(cable)));
+}
+
+void free_node(World& world, int node, const Vec2& position, const Vec2& velocity) {
+  at(world.position, node) = position;
+  at(world.velocity, node) = velocity;
+  at(world.angular_velocity, node) = 0.0;
+  at(world.still_steps, node) = 0;
+  set_wound(world, node, false);
+}
+
+void lay_down_node(World& world, int node) {
+  set_wound(world, node, true);
+  at(world.velocity, node) = Vec2::Zero();
+}
+
 void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
   // Without gravity it is at rest in any shape.
   const Vec2 g = gravity.norm() > 0.0 ? gravity : Vec2(0.0, -1.0);
-  string_all(world, cable, taken_in * spacing(cable));
+  string_all(world, cable, taken_in * node_spacing(cable));
   // What hangs lays nodes on rims and takes others off; mostly few.
   bool changed = true;
   for (int turn = 0; changed && turn < 4 * cable.nodes; ++turn) {
@@ -281,7 +269,7 @@ void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
 }
 
 bool has_given_off(const World& world, const CableState& cable) {
-  const double margin = given_off * spacing(cable);
+  const double margin = given_off * node_spacing(cable);
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
     const Numbers on = nodes_on(world, cable, s, margin);
     if (on.first <= on.last) return true;
@@ -290,7 +278,7 @@ bool has_given_off(const World& world, const CableState& cable) {
 }
 
 void give_off_nodes(World& world, CableState& cable) {
-  string_all(world, cable, given_off * spacing(cable));
+  string_all(world, cable, given_off * node_spacing(cable));
 }
 
 void sort_nodes(World& world, const CableState& cable) {
@@ -360,175 +348,6 @@ void carry_wound_nodes(World& world, const CableState& cable) {
       at(world.position, node) = span.tail + share * (span.head - span.tail);
     }
   }
-}
-
-namespace {
-
-/// rad, by which the cable turns at a node.
-double turn_at(const CableState& cable, int link) {
-  return alpha_head(cable, index(link)) - at(cable.segments, link).alpha;
-}
-
-/// Turns what follows a node so that the cable bends there by less than half a turn.
-void count_bend_anew(CableState& cable, int link) {
-  const double turns = std::round(turn_at(cable, link) / (2.0 * std::numbers::pi));
-  if (turns != 0.0) count_turns_off(cable, link, turns);
-}
-
-/// rad, by which the cable is bent away from a rim at a node beside it.
-double bent_away(const CableState& cable, int link, int rim) {
-  return -at(cable.links, rim).orientation * turn_at(cable, link);
-}
-
-/// rad, by which what holds a moored node is turned.
-double turned_by(const World& world, const Link& moored) {
-  return at(world.angle, moored.body) + moored.slid;
-}
-
-/// What is left until a moored node is in line with the rim's tangent; and until it comes off (m,
-/// on the rim).
-struct LeftOfMooring {
-  double in_line, off;
-};
-LeftOfMooring left_of_mooring(const World& world, const CableState& cable, int link) {
-  const Link& moored = at(cable.links, link);
-  const int held_by = rim_of(cable, link);
-  const Link& rim = at(cable.links, held_by);
-  const double bent = bent_away(cable, link, held_by);
-  const double back =
-      std::remainder(turned_by(world, moored) - moored.held, 2.0 * std::numbers::pi);
-  const double given =
-      (held_by == previous_link(cable, link) ? 1 : -1) * rim.signed_radius() * back;
-  return {rim.radius * bent, std::min(taken_in * spacing(cable) - given,
-                                      rim.radius * (moored.bent + most_bent - bent))};
-}
-
-}  // namespace
-
-double left_until_taken_in(const World& world, const CableState& cable, int link) {
-  if (at(cable.links, link).moored) {
-    const LeftOfMooring left = left_of_mooring(world, cable, link);
-    return std::min(left.in_line, left.off);
-  }
-  double least = infinity;
-  const auto look = [&](int segment, int beyond) {
-    if (at(cable.links, beyond).orientation == 0) return;
-    const Segment& span = at(cable.segments, segment);
-    least = std::min({least, span.rest_length, span.length});
-  };
-  look(link, previous_link(cable, link));
-  const int after = next_link(cable, link);
-  look(after, after);
-  return least - taken_in * spacing(cable);
-}
-
-namespace {
-
-/// The nearer one of the rims beside a node, or -1.
-int nearest_rim(const CableState& cable, int link) {
-  int nearest = -1;
-  double least = infinity;
-  for (const bool before : {true, false}) {
-    const int beyond = before ? previous_link(cable, link) : next_link(cable, link);
-    const Segment& span = at(cable.segments, before ? link : beyond);
-    const double left = std::min(span.rest_length, span.length);
-    if (at(cable.links, beyond).orientation == 0 || left >= least) continue;
-    least = left;
-    nearest = beyond;
-  }
-  return nearest;
-}
-
-/// A node that is no link of its own any more lies on a rim, and moves with it.
-void lay_down_node(World& world, int body) {
-  set_wound(world, body, true);
-  at(world.velocity, body) = Vec2::Zero();
-}
-
-/// Where a node's link has come to be on another body, at the same place.
-void note_change(World& world, CableState& cable, int link) {
-  update_tangent(world, cable, index(link));
-  update_tangent(world, cable, index(next_link(cable, link)));
-  count_changes(world, cable, 1);
-  update_wraps_and_rest_lengths(world, cable);
-}
-
-}  // namespace
-
-bool is_to_be_moored(const CableState& cable, int link) {
-  const Link& before = at(cable.links, previous_link(cable, link));
-  const Link& after = at(cable.links, next_link(cable, link));
-  if (before.body == after.body && opposite(before, after)) return true;  // it folds back there
-  const int rim = nearest_rim(cable, link);
-  if (rim < 0) return false;  // it has come off at the same time
-  return std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi) > 0.0;
-}
-
-bool is_to_be_cast_off(const World& world, const CableState& cable, int link) {
-  const LeftOfMooring left = left_of_mooring(world, cable, link);
-  return left.off < left.in_line;
-}
-
-void moor_node(World& world, CableState& cable, int link) {
-  const int rim = nearest_rim(cable, link), node = at(cable.links, link).body;
-  count_bend_anew(cable, link);
-  join_rim(world, cable, link, rim);
-  lay_down_node(world, node);
-  Link& moored = at(cable.links, link);
-  moored.bent = bent_away(cable, link, rim);
-  moored.held = turned_by(world, moored);
-  Segment& arm = at(cable.segments, rim == previous_link(cable, link) ? link : rim);
-  arm.tension = 0.0;
-  arm.slack = false;
-  note_change(world, cable, link);
-}
-
-int cast_off_node(World& world, CableState& cable, int link) {
-  Link& moored = at(cable.links, link);
-  const int node = node_of(cable, moored);
-  const Vec2 x = link_centre(world, moored);
-  const Vec2 z = left(Vec2(x - at(world.position, mover_of(world, moored.body))));
-  set_free(world, node, x, velocity_at(world, cable, link, z));
-  moored.body = node;
-  moored.offset = Vec2::Zero();
-  moored.moored = false;
-  moored.slid = 0.0;
-  note_change(world, cable, link);
-  return node;
-}
-
-void take_in_node(World& world, CableState& cable, int link) {
-  if (at(cable.links, link).moored) {
-    leave_body(world, cable, link);
-    return;
-  }
-  const int body = at(cable.links, link).body;
-  count_bend_anew(cable, link);
-  leave_node(world, cable, link);
-  lay_down_node(world, body);
-}
-
-bool take_in_enclosed_nodes(World& world, CableState& cable) {
-  bool any = false;
-  for (int i = 0; index(i) < cable.links.size(); ++i) {
-    const Link& from = at(cable.links, i);
-    int next = next_link(cable, i), nodes = 0;
-    const auto is_node = [&cable](const Link& link) {
-      return is_strung(cable, link) || link.moored;
-    };
-    while (next >= 0 && is_node(at(cable.links, next)) && nodes < cable.nodes) {
-      next = next_link(cable, next);
-      ++nodes;
-    }
-    if (nodes == 0 || next < 0 || from.orientation == 0) continue;
-    const Link& to = at(cable.links, next);
-    if (to.body != from.body || to.orientation != from.orientation) continue;  // back past its side
-    take_in_node(world, cable, next_link(cable, i));
-    ++world.diagnostics.node_changes;
-    any = true;
-    i = -1;  // links have other numbers
-  }
-  return any;
 }
 
 double wave_at_node(const World& world, const CableState& cable, int link) {

@@ -7,6 +7,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/strung.h"
+#include "sim/cable/taking_in.h"
 #include "sim/detect/detect.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"

@@ -10,6 +10,7 @@
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/strung.h"
+#include "sim/cable/taking_in.h"
 #include "sim/detect/detect.h"
 #include "sim/detect/span_hits.h"
 #include "sim/motion/clearance.h"

@@ -194,7 +194,6 @@ Scene thrown_at_rope(unsigned seed, int nodes) {
   return scene;
 }
 
-// But for what nodes rise by where rims take them in: strung.h.
 TEST(CableEnd, WhatComesUponThatOfARopeMakesNoEnergy) {
   int come_upon = 0;
   for (const int nodes : {0, 8}) {
@@ -203,8 +202,7 @@ TEST(CableEnd, WhatComesUponThatOfARopeMakesNoEnergy) {
       for (const int steps_per_frame : {1, 4, 16}) {
         scene.steps_per_frame = steps_per_frame;
         const Course course = run_measured(scene, 0.5);
-        const double allowed = nodes > 0 ? 5e-4 : 1e-6;
-        EXPECT_LT(course.gained, allowed * course.at_play) << seed << ", " << nodes << " nodes";
+        EXPECT_LT(course.gained, 1e-6 * course.at_play) << seed << ", " << nodes << " nodes";
         EXPECT_LT(course.gap, 1e-9) << seed << ", " << nodes << " nodes";
       }
       World world = make_world(scene, Method::pinch);
