@@ -155,39 +155,16 @@ void add_population(CLI::App& bench) {
   });
 }
 
-struct Counting {
-  Options options;
-  int scene = -1, growing = -1, size = 0, steps = 0;
-};
-
 void add_instructions(CLI::App& bench) {
-  auto counting = std::make_shared<Counting>();
+  auto options = std::make_shared<Options>();
   CLI::App* command = bench.add_subcommand(
       "instructions", "What a step executes, counted by valgrind: steady where clocks are not");
-  command->add_option("--out", counting->options.out, "Folder for table and page [results]")
+  command->add_option("--out", options->out, "Folder for table and page [results]")
       ->type_name("DIR");
   command->footer("Example:\n  pinchlab bench instructions --out /tmp/instructions");
-  // What the program asks of itself under valgrind.
-  command->add_option("--scene", counting->scene)->group("");
-  command->add_option("--growing", counting->growing)->group("");
-  command->add_option("--size", counting->size)->group("");
-  command->add_option("--steps", counting->steps)->group("");
-  command->callback([counting] {
-    if (counting->scene >= 0) {
-      if (!step_scene(counting->scene, counting->steps)) {
-        throw CLI::ValidationError("--scene", "there is no such scene");
-      }
-      return;
-    }
-    if (counting->growing >= 0) {
-      if (!step_growing_scene(counting->growing, counting->size, counting->steps)) {
-        throw CLI::ValidationError("--growing", "there is no such scene");
-      }
-      return;
-    }
-    counting->options.command =
-        "pinchlab bench instructions --out " + counting->options.out.string();
-    run_instructions(counting->options);
+  command->callback([options] {
+    options->command = "pinchlab bench instructions --out " + options->out.string();
+    run_instructions(*options);
   });
 }
 

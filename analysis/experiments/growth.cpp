@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "demos/scenes/build.h"
+#include "analysis/experiments/counted_scenes.h"
 #include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
@@ -19,71 +19,6 @@ Configuration awake() {
   return configuration;
 }
 
-constexpr double disc_spacing = 4.0, disc_radius = 0.2;  // m
-
-/// Discs in a row, each at a height (m) of its own above the line y = 0.
-template <class Height>
-Scene discs_in_a_row(const char* name, int count, Height height) {
-  Scene scene = disconnected_scene(0, 0);
-  scene.name = name;
-  for (int i = 0; i < count; ++i) {
-    Body disc;
-    disc.name = "disc " + std::to_string(i);
-    disc.radius = disc_radius;
-    disc.position = {disc_spacing * i, disc_radius + height(i)};
-    scene.bodies.push_back(disc);
-  }
-  return scene;
-}
-
-/// Discs that lie on slabs of their own.
-Scene discs_on_walls(int count) {
-  Scene scene = discs_in_a_row("discs-on-walls", count, [](int) { return 0.0; });
-  constexpr double half_slab = 1.0;
-  for (const Body& disc : scene.bodies) {
-    Wall slab;
-    slab.a = {disc.position.x() - half_slab, 0.0};
-    slab.b = {disc.position.x() + half_slab, 0.0};
-    scene.walls.push_back(slab);
-  }
-  return scene;
-}
-
-/// Balls that bounce for ever on one floor, from heights that are all different, so that of many
-/// some land in every step.
-Scene bouncing_balls(int count) {
-  constexpr double golden = 0.6180339887498949;
-  Scene scene = discs_in_a_row("bouncing-balls", count,
-                               [](int i) { return 0.1 + std::fmod(golden * i, 1.0); });
-  for (Body& ball : scene.bodies) ball.restitution = 1.0;
-  Wall floor;
-  floor.a = {-disc_spacing, 0.0};
-  floor.b = {disc_spacing * count, 0.0};
-  scene.walls.push_back(floor);
-  return scene;
-}
-
-/// Discs that fall, each on a taut span of its own, from heights that are all different: for a
-/// second some land in every step.
-Scene discs_on_spans(int count) {
-  constexpr double golden = 0.6180339887498949, half_span = 0.5, half_width = 0.02;  // m
-  Scene scene = discs_in_a_row("discs-on-spans", count,
-                               [](int i) { return 0.1 + 5.0 * std::fmod(golden * i, 1.0); });
-  for (int i = 0; i < count; ++i) {
-    const double x = disc_spacing * i;
-    scene.cables.push_back(
-        build::cable(build::at(x - half_span, 0.0), {}, build::at(x + half_span, 0.0), half_width));
-    scene.cables.back().name = "span " + std::to_string(i);
-  }
-  return scene;
-}
-
-Scene frictionless_chain(int pulleys) {
-  Scene scene = chain_scene(pulleys);
-  for (Body& body : scene.bodies) body.cable_friction = 0.0;
-  return scene;
-}
-
 /// Times one step of a scene that is stepped on.
 class Steps {
  public:
@@ -94,6 +29,7 @@ class Steps {
     }
   }
   void velocities() { velocities_now(scene_, world_, work_); }
+  const World& world() const { return world_; }
 
  private:
   Scene scene_;
@@ -128,43 +64,43 @@ double make_seconds(const Scene& scene, const Effort& effort) {
   return measure_call([&scene] { make_world(scene, awake()); }, effort).seconds.median;
 }
 
+double copy_seconds(const Scene& scene, bool over_old, const Effort& effort) {
+  Steps steps(scene);
+  steps.step();
+  World copy = steps.world();
+  const auto copy_over = [&] { copy = steps.world(); };
+  const auto copy_anew = [&] { World made = steps.world(); };
+  return (over_old ? measure_call(copy_over, effort) : measure_call(copy_anew, effort))
+      .seconds.median;
+}
+
 }  // namespace
 
-const std::vector<GrowingScene>& growing_scenes() {
-  static const std::vector<GrowingScene> scenes{
-      {"swinging cables, a step",
-       {100, 1000, 10000},
-       [](int n) { return disconnected_scene(n, n); }},
-      {"balls that bounce, each by itself, a step", {100, 1000, 10000}, bouncing_balls, 120},
-      {"discs that land on spans of their own, a step", {100, 1000, 10000}, discs_on_spans, 120},
-      {"discs on walls of their own, a step", {100, 1000, 10000}, discs_on_walls},
-      {"pulleys without friction under one cable, a step",
-       {11, 33, 101, 331, 1001},
-       frictionless_chain},
-      {"swinging cables, `make_world`",
-       {100, 1000, 10000},
-       [](int n) { return disconnected_scene(n, n); },
-       0},
-      {"pinched stress scene, `make_world`",
-       {20, 200, 2000},
-       [](int n) { return stress_scene(n, pinched_spacing); },
-       0},
-  };
-  return scenes;
+double GrowthResult::exponent_of(const std::vector<double>& of) const {
+  return growth_exponent({sizes.begin(), sizes.end()}, of);
+}
+
+double GrowthResult::left_by(double most) const {
+  const double times = static_cast<double>(sizes.back()) / sizes.front();
+  return seconds.front() / sizes.front() * (std::pow(times, most - 1.0) - 1.0);
+}
+
+double GrowthResult::taken_by_copy() const {
+  return copy_seconds.back() / sizes.back() - copy_seconds.front() / sizes.front();
 }
 
 std::vector<GrowthResult> measure_growth(const Effort& effort) {
   std::vector<GrowthResult> results;
   for (const GrowingScene& growing : growing_scenes()) {
-    GrowthResult result{growing.what, growing.sizes, {}, 0.0};
+    GrowthResult result{growing.what, growing.sizes, {}, {}};
     for (const int size : growing.sizes) {
       const Scene scene = growing.scene(size);
       result.seconds.push_back(growing.steps == 0 ? make_seconds(scene, effort)
                                : growing.steps == 1
                                    ? step_seconds(scene, effort)
                                    : first_steps_seconds(scene, growing.steps, effort));
+      result.copy_seconds.push_back(copy_seconds(scene, growing.steps > 0, effort));
     }
-    result.exponent = growth_exponent({result.sizes.begin(), result.sizes.end()}, result.seconds);
     results.push_back(std::move(result));
   }
   return results;

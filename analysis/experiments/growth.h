@@ -6,30 +6,27 @@
 #include <vector>
 
 #include "analysis/experiments/step_cost.h"
-#include "sim/scene.h"
 
 namespace pinchlab::experiments {
 
-/// One kind of scene at several sizes, two decades apart: what a step costs, or making the world.
-struct GrowingScene {
-  const char* what;
-  std::vector<int> sizes;
-  Scene (*scene)(int size);
-  int steps = 1;  // timed at once from the start, where what happens differs from step to step;
-                  // 0: its make_world
-};
-
-/// Swinging cables, balls that bounce, discs that land on spans, discs on walls, pulleys without
-/// friction under one cable, and make_world of swinging cables and of the pinched stress scene.
-const std::vector<GrowingScene>& growing_scenes();
-
 /// One kind of scene at several sizes, two decades apart: the processor time of a step, or of
-/// making the world.
+/// making the world. Beside it what memory alone makes of that: of a copy of the World over an old
+/// one, or of a new copy, which reads and writes the state once and does nothing else.
 struct GrowthResult {
   std::string what;
   std::vector<int> sizes;
-  std::vector<double> seconds;  // medians
-  double exponent = 0.0;
+  std::vector<double> seconds;       // medians
+  std::vector<double> copy_seconds;  // medians
+
+  double exponent() const { return exponent_of(seconds); }
+  double copy_exponent() const { return exponent_of(copy_seconds); }
+  /// s a unit, that a growth exponent of `most` leaves from the least size to the greatest.
+  double left_by(double most) const;
+  /// s a unit, by which a copy grows from the least size to the greatest.
+  double taken_by_copy() const;
+
+ private:
+  double exponent_of(const std::vector<double>& of) const;
 };
 
 std::vector<GrowthResult> measure_growth(const Effort& effort);

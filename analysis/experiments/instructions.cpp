@@ -6,45 +6,34 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
-#include "analysis/experiments/growth.h"
-#include "base/at.h"
-#include "demos/scenes/library.h"
-#include "sim/step.h"
+#include "analysis/experiments/counted_scenes.h"
 
 namespace pinchlab::experiments {
 
 namespace {
 
-struct Counted {
-  const char* name;
-  const char* configuration;
-  int segments;
-  Scene (*scene)();
-};
-
-const Counted counted[] = {
-    {"weights over 81 light pulleys, where all moves", "pinch", 82, [] { return chain_scene(81); }},
-    {"a weight that swings beside 81 pulleys", "pinch", 82, [] { return swinging_scene(81); }},
-    {"81 segments over fixed pulleys, where nothing moves", "pinch", 81,
-     [] { return stress_scene(20, free_spacing); }},
-    {"stress scene with pinches, load 20", "pinch", 277,
-     [] { return stress_scene(20, pinched_spacing); }},
-    {"stress scene with pinches, load 20", "thesis", 277,
-     [] { return stress_scene(20, pinched_spacing); }},
-};
+/// The program that makes the steps (count_main.cpp): where this one was built, or as installed.
+std::filesystem::path program_of_steps() {
+  const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const std::filesystem::path built = own / "pinchlab_steps";
+  const std::filesystem::path installed = own / PINCHLAB_STEPS_INSTALLED;
+  for (const std::filesystem::path& path : {built, installed}) {
+    if (std::filesystem::exists(path)) return path;
+  }
+  throw std::runtime_error(fmt::format("there is neither {} nor {}: build or install all of it",
+                                       built.string(), installed.string()));
+}
 
 /// Instructions inside of a function for so many calls of it.
 double count(const char* function, const std::string& what, int calls,
              const std::filesystem::path& file) {
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string command = fmt::format(
       "valgrind --tool=callgrind --callgrind-out-file='{}' --toggle-collect='pinchlab::{}(*' "
-      "'{}' bench instructions {} --steps {}",
-      file.string(), function, program, what, calls);
+      "'{}' {} {}",
+      file.string(), function, program_of_steps().string(), what, calls);
   if (std::system((command + " > /dev/null 2>&1").c_str()) != 0) {
     std::filesystem::remove(file);
     throw std::runtime_error("valgrind cannot run this program here; to see why: " + command);
@@ -63,16 +52,6 @@ double count_each(const char* function, const std::string& what, int few, int ma
   return (count(function, what, many, file) - count(function, what, few, file)) / (many - few);
 }
 
-void step_on(const Scene& scene, const char* name, int steps) {
-  Configuration configuration = *configuration_from_string(name);
-  configuration.sleep = false;
-  World world = make_world(scene, configuration);
-  Workspace work;
-  for (int i = 0; i < steps; ++i) {
-    if (step(scene, world, work) != StepStatus::ok) throw std::runtime_error(world.failure);
-  }
-}
-
 std::string page_of_growth(const std::vector<std::vector<std::string>>& rows) {
   return "\n## Growth\n\nInstructions a unit (cable, disc, pulley, load) at each size, and the "
          "power of the size that the whole grows with: 1 is linear, whatever caches hold.\n\n" +
@@ -88,7 +67,7 @@ std::string count_growth(const std::filesystem::path& file, Csv& csv) {
     std::string sizes, units;
     std::vector<double> counts;
     for (const int size : growing.sizes) {
-      const std::string what = fmt::format("--growing {} --size {}", i, size);
+      const std::string what = fmt::format("growing {} {}", i, size);
       counts.push_back(growing.steps == 0 ? count_each("make_world", what, 1, 2, file)
                                           : count_each("step", what, few, many, file));
       csv.row({std::string(growing.what), std::int64_t{size}, counts.back()});
@@ -107,24 +86,6 @@ bool can_count_instructions() {
   return std::system("valgrind --version > /dev/null 2>&1") == 0;
 }
 
-bool step_scene(int scene, int steps) {
-  if (scene < 0 || scene >= static_cast<int>(std::size(counted))) return false;
-  step_on(counted[scene].scene(), counted[scene].configuration, steps);
-  return true;
-}
-
-bool step_growing_scene(int number, int size, int calls) {
-  if (number < 0 || index(number) >= growing_scenes().size() || size < 1) return false;
-  const GrowingScene& growing = at(growing_scenes(), number);
-  const Scene scene = growing.scene(size);
-  if (growing.steps > 0) {
-    step_on(scene, "pinch", calls);
-    return true;
-  }
-  for (int i = 0; i < calls; ++i) make_world(scene, Method::pinch);
-  return true;
-}
-
 void run_instructions(const Options& options) {
   if (!can_count_instructions()) {
     throw std::runtime_error("instructions are counted by valgrind: apt-get install valgrind");
@@ -134,9 +95,9 @@ void run_instructions(const Options& options) {
   constexpr int few = 50, many = 150;
   Csv csv({"scene", "configuration", "segments", "instructions_per_step"});
   std::vector<std::vector<std::string>> rows;
-  for (int i = 0; i < static_cast<int>(std::size(counted)); ++i) {
-    const Counted& one = counted[i];
-    const double each = count_each("step", fmt::format("--scene {}", i), few, many, file);
+  for (std::size_t i = 0; i < counted_scenes().size(); ++i) {
+    const CountedScene& one = counted_scenes()[i];
+    const double each = count_each("step", fmt::format("scene {}", i), few, many, file);
     csv.row(
         {std::string(one.name), std::string(one.configuration), std::int64_t{one.segments}, each});
     rows.push_back({one.name, fmt::format("`{}`", one.configuration), fmt::format("{:.0f}", each),

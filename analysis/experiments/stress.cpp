@@ -178,11 +178,12 @@ Csv bare_table(const StressResults& results) {
 }
 
 Csv growth_table(const StressResults& results) {
-  Csv csv({"what", "size", "median_s", "per_unit_s", "exponent"});
+  Csv csv({"what", "size", "median_s", "per_unit_s", "exponent", "copy_s", "copy_per_unit_s",
+           "copy_exponent"});
   for (const GrowthResult& r : results.growth) {
     for (std::size_t i = 0; i < r.sizes.size(); ++i) {
-      csv.row(
-          {r.what, std::int64_t{r.sizes[i]}, r.seconds[i], r.seconds[i] / r.sizes[i], r.exponent});
+      csv.row({r.what, std::int64_t{r.sizes[i]}, r.seconds[i], r.seconds[i] / r.sizes[i],
+               r.exponent(), r.copy_seconds[i], r.copy_seconds[i] / r.sizes[i], r.copy_exponent()});
     }
   }
   return csv;

@@ -3,14 +3,17 @@
 #include "analysis/experiments/stress.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
 #include "analysis/experiments/chart.h"
+#include "analysis/experiments/counted_scenes.h"
 #include "analysis/experiments/growth.h"
-#include "analysis/experiments/instructions.h"
 #include "analysis/experiments/pinch_detection.h"
 
 namespace pinchlab::experiments {
@@ -77,6 +80,33 @@ TEST(Growth, EachSceneIsThereAtItsSizes) {
   }
   EXPECT_FALSE(step_growing_scene(static_cast<int>(growing_scenes().size()), 1, 1));
   EXPECT_FALSE(step_growing_scene(0, 0, 1));
+}
+
+// From 100 units of 100 ns to 10000: a copy grows from 10 ns a unit to 40, and an exponent of 1.05
+// leaves 100 ns (100^0.05 - 1) = 25.9 ns.
+TEST(Growth, TellsWhatACopyTakesOfWhatAnExponentLeaves) {
+  const GrowthResult growth{"units", {100, 10000}, {1e-5, 2e-3}, {1e-6, 4e-4}};
+  EXPECT_NEAR(growth.exponent(), 1.0 + std::log10(2.0) / 2.0, 1e-12);
+  EXPECT_NEAR(growth.copy_exponent(), 1.0 + std::log10(4.0) / 2.0, 1e-12);
+  EXPECT_NEAR(growth.taken_by_copy(), 30e-9, 1e-15);
+  EXPECT_NEAR(growth.left_by(1.05), 100e-9 * (std::pow(10.0, 0.1) - 1.0), 1e-15);
+  EXPECT_NEAR(growth.left_by(growth.exponent()), 100e-9, 1e-15);
+}
+
+// Valgrind does not know the instructions of every library that encoders bring with them.
+TEST(Instructions, AreCountedInAProgramOfTheSimulatorAlone) {
+  const std::string program = PINCHLAB_STEPS;
+  const auto status = [](const std::string& command) {
+    return WEXITSTATUS(std::system((command + " > /dev/null 2>&1").c_str()));
+  };
+  EXPECT_EQ(status(program + " scene 0 2"), 0);
+  EXPECT_EQ(status(program + " growing 0 3 2"), 0);
+  for (const char* wrong : {"", " scene", " scene 0", " scene 99 1", " scene 0 -1", " scene 0 1x",
+                            " growing 0 0 1", " growing 0 3", " --help"}) {
+    EXPECT_EQ(status(program + wrong), 2) << wrong;
+  }
+  EXPECT_EQ(status("ldd " + program), 0);
+  EXPECT_NE(status("ldd " + program + " | grep -E 'libav|libhwy|libcairo|libOSMesa'"), 0);
 }
 
 TEST(PinchDetection, WritesTablesFiguresAndPage) {
