@@ -42,13 +42,18 @@ struct Contact {
   int pinch_points = 0;        // cables (or turns of one) that share the contact's force
   int cable_between = -1;      // whose pinch takes the place of bare friction; -1: none
   double pressed_friction =
-      0.0;                // coefficient between a cable that a polygon or layers hold fast and
-                          // what presses it on to them
-  int layers_cable = -1;  // whose layers are pressed, by whose thickness `target` grows; -1: none
-  bool touching = false;  // by the active set
-  bool rebounds = false;  // has just rebounded: bears nothing until it has parted; by impact
-  std::int64_t struck = -1;    // step in which it last did
-  Slip slip = Slip::stick;     // of bare surfaces, by the active set
+      0.0;                  // coefficient between a cable that a polygon or layers hold fast and
+                            // what presses it on to them
+  int layers_cable = -1;    // whose layers are pressed, by whose thickness `target` grows; -1: none
+  int slipping_cable = -1;  // pressed on to a body on which it may slip, without a link of its own
+                            // for what presses; -1: none
+  int slips_on = -1;        // that body, a or b;
+  int slips_corner = -1;    // corner of the cable's link there, or -1;
+  std::int8_t slips_way = 0;  // its orientation
+  bool touching = false;      // by the active set
+  bool rebounds = false;      // has just rebounded: bears nothing until it has parted; by impact
+  std::int64_t struck = -1;   // step in which it last did
+  Slip slip = Slip::stick;  // of b along left(normal), of what has a tangent row; by the active set
   double normal_force = 0.0;   // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
   Curvature curvature{};       // of its normal row, by note_curvatures

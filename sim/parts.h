@@ -49,6 +49,12 @@ inline bool is_idle(const Part& part) {
   return part.asleep || part.waits;
 }
 
+/// A contact that presses a cable which may slip there (Contact::slipping_cable).
+struct Pressing {
+  int contact, cable;
+  bool operator==(const Pressing&) const = default;
+};
+
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
 struct Parts {
   std::vector<Part> list;
@@ -63,11 +69,12 @@ struct Parts {
   bool any_moves = true;       // a body of a part that is awake may change gaps
   std::vector<char> immobile;  // whether the body cannot change gaps
   std::vector<int> movers;     // bodies whose centre can
-  std::vector<int> structure;  // what the parts were found for: pairs in contact
-  int changes = -1;            // and CableState::changes of all cables
-  bool divided = true;         // anew, for the contacts that there are: they may have other places
-  std::vector<int> root;       // of each body's tree while parts are found
-  std::vector<char> taken;     // systems that go on with their parts, while parts are found
+  std::vector<int> structure;  // what the parts were found for: pairs in contact,
+  std::vector<Pressing> pressing;
+  int changes = -1;         // and CableState::changes of all cables
+  bool divided = true;      // anew, for the contacts that there are: they may have other places
+  std::vector<int> root;    // of each body's tree while parts are found
+  std::vector<char> taken;  // systems that go on with their parts, while parts are found
 };
 
 inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {

@@ -47,6 +47,14 @@ double material_at(const CableState& cable, std::size_t i, bool at_head, double 
   return link.material + (turns ? place : laid_near_end(cable.rims[i], at_head, place));
 }
 
+double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
+  const Link& link = cable.links[i];
+  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
+  const double arrives = cable.segments[i].alpha;
+  const double arc = link.orientation * (unwrapped(heading(e), arrives) - arrives);
+  return arc < -arc_tolerance ? arc + 2.0 * std::numbers::pi : arc;
+}
+
 double tail_material(const CableState& cable, std::size_t i, double angle) {
   return material_at(cable, i, false, cable.segments[i].alpha, angle);
 }

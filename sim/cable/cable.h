@@ -160,6 +160,16 @@ inline double target_of(const World& world, const Contact& contact) {
   return cable.least_gap + thickness_of_layers(pressed_layers(world, contact));
 }
 
+/// Arc (rad after the tail) at which the direction `u` from the body's centre meets the cable
+/// stored on link i, in [-tolerance, 2 pi - tolerance); the same plus whole turns up to link.wrap
+/// also do.
+double arc_of_direction(const CableState& cable, std::size_t link, const Vec2& u);
+
+/// rad: what presses at the very end of an arc, where its span leaves, presses it, however that end
+/// moves within a step. About a degree: no other turn, 2 pi away, comes near, and over so much of
+/// an arc a span is off its body by 2e-4 of the radius only.
+constexpr double arc_tolerance = 0.02;
+
 /// Makes it lie in layers, of way_of_layers, the tangents being up to date.
 void begin_layers(const World& world, CableState& cable, std::size_t link, int way);
 

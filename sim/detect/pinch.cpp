@@ -114,16 +114,25 @@ void note_cable_between(const World& world, const CableState& cable, const Link&
   contact.cable_between = static_cast<int>(&cable - world.cables.data());
 }
 
-/// The same for a cable on a link that its body holds without slip, so that what presses it on to
-/// the body rolls on it, or rubs on it as on the body. Where the body lets it slip, too, it is
-/// pressed without friction.
+/// The same for a cable that has no link of its own for what presses it on to a polygon, or with a
+/// polygon, or on to layers. What presses rolls on it, or rubs on it: as on the link's body where
+/// that holds the cable without slip, and else as solve/friction.h has it. Of turns that lie there
+/// one above another, and of the corners at both ends of a side, the first on the cable counts. The
+/// thesis' sweeps and rows, and sleeves, press what may slip without friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
   note_cable_between(world, cable, link, contact);
-  if (link.layers.way != 0) {
-    contact.layers_cable = static_cast<int>(&cable - world.cables.data());
+  const int number = static_cast<int>(&cable - world.cables.data());
+  if (link.layers.way != 0) contact.layers_cable = number;
+  if (at(world.bodies, link.body).cable_friction < infinity) {
+    const Configuration& how = world.configuration;
+    if (how.solver != Solver::direct || how.pinch_rows != PinchRows::one) return;
+    if (is_massed(cable) || link.layers.way != 0 || contact.slipping_cable >= 0) return;
+    contact.slipping_cable = number;
+    contact.slips_on = link.body;
+    contact.slips_way = static_cast<std::int8_t>(link.orientation);
+    contact.slips_corner = link.corner;
   }
-  if (at(world.bodies, link.body).cable_friction < infinity) return;
   const double mu = friction_in_pinch(world, cable, presser);
   contact.pressed_friction = std::max(contact.pressed_friction, mu);
 }
@@ -284,14 +293,6 @@ void list_contacts_of_bodies(const World& world, ContactScratch& scratch) {
 }
 
 }  // namespace
-
-double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
-  const Link& link = cable.links[i];
-  const Vec2 e = link.orientation * left(u);  // direction of the cable at that point of the surface
-  const double arrives = cable.segments[i].alpha;
-  const double arc = link.orientation * (unwrapped(heading(e), arrives) - arrives);
-  return arc < -arc_tolerance ? arc + 2.0 * std::numbers::pi : arc;
-}
 
 void configure_pinches(World& world, Workspace& work) {
   if (world.configuration.method == Method::cable) return;

@@ -162,6 +162,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
   s.cable_begin.assign(1, 0);
   for (Friction& friction : system.frictions) friction.run = -1;  // of a solve before
   if (!part.may_slide) return;
+  list_pressing(world, parts, part, s.pressing);
   const std::span<const int> cables = cables_of(parts, part);
   for (std::size_t place = 0; place < cables.size(); ++place) {
     const int c = cables[place];

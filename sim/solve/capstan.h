@@ -3,6 +3,7 @@
 // Sliding with friction over bodies: the capstan law, with the friction of pinches on the way.
 // Nothing here runs for cables all of whose bodies have infinite friction.
 
+#include <compare>
 #include <vector>
 
 #include "base/at.h"
@@ -49,12 +50,21 @@ struct Shortage {
   bool gives = false;      // impulses on it move something
 };
 
+/// Where a contact presses a link's cable.
+struct ArcCut {
+  double arc;  // rad after the link's tail
+  int contact;
+  auto operator<=>(const ArcCut&) const = default;
+};
+
 /// What of a part slides. Runs, passages and the lists by cables are of find_runs, and stand for a
 /// step's solves; groups and all of theirs of make_groups, anew for each guess of the states; terms
 /// of express_impulses and add_group_equations; speeds, factors and end impulses of slip_speeds.
 struct CapstanScratch {
   std::vector<Run> runs;
   std::vector<Passage> passages;
+  std::vector<int> pressing;              // contacts, by list_pressing
+  std::vector<ArcCut> cuts;               // storage of append_passages
   std::vector<int> segments, run_before;  // rows of the sliding cables' segments, and the run
                                           // before each; -1 at an open cable's start
   std::vector<int> cable_begin;           // into these two, one a sliding cable; and the end

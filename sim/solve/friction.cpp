@@ -32,7 +32,73 @@ void append_pressed_end(const World& world, const SolveScratch& scratch, const S
   passages.push_back(passage);
 }
 
+/// Where on a link (rad after its tail) a contact presses its cable, which may slip there.
+double arc_of_press(const CableState& cable, int link, const Contact& contact, double wrap) {
+  const Vec2 outward = contact.slips_on == contact.a ? contact.normal : Vec2(-contact.normal);
+  return std::clamp(arc_of_direction(cable, index(link), outward), 0.0, wrap);
+}
+
+bool presses(const Contact& contact, int cable, const Link& link) {
+  return contact.slipping_cable == cable && contact.pinch_points == 0 &&
+         contact.slips_on == link.body && contact.slips_corner == link.corner &&
+         contact.slips_way == link.orientation;
+}
+
+/// The pinch that a contact makes, which has no link of its own.
+Passage passage_of_press(const World& world, PartSystem& system, const SolveScratch& scratch,
+                         int contact, double mu, int run) {
+  const Press press = press_of(world, scratch, contact, mu);
+  Passage pinch;
+  pinch.normal = press.normal;
+  pinch.friction = press.friction;
+  if (press.normal < 0) return pinch;
+  const auto next = index(press.normal) + 1;  // its tangent's row, if it has any
+  if (next == system.rows.size() || system.rows[next].index != contact) return pinch;
+  Friction& friction = at(system.frictions, system.rows[next].friction);
+  if (friction.run >= 0) return pinch;  // of another turn, which it rubs on
+  friction.run = run;
+  pinch.middle = static_cast<int>(next);
+  return pinch;
+}
+
+/// A link's arc of `wrap` (rad), cut where contacts press its cable.
+void append_arc(const World& world, PartSystem& system, SolveScratch& scratch, int number, int link,
+                double wrap, int run, std::vector<Passage>& passages) {
+  const CableState& cable = at(world.cables, number);
+  const int body = at(cable.links, link).body;
+  const double mu = at(world.bodies, body).cable_friction;
+  std::vector<ArcCut>& cuts = scratch.capstan.cuts;
+  cuts.clear();
+  for (const int k : scratch.capstan.pressing) {
+    const Contact& contact = at(world.contacts, k);
+    if (!presses(contact, number, at(cable.links, link))) continue;
+    cuts.push_back({arc_of_press(cable, link, contact, wrap), k});
+  }
+  std::sort(cuts.begin(), cuts.end());
+  double passed = 0.0;  // rad
+  const auto pass_until = [&](double arc) {
+    Passage passage;
+    passage.factor = capstan_factor(mu, arc - passed);
+    passages.push_back(passage);
+    passed = arc;
+  };
+  for (const ArcCut& cut : cuts) {
+    pass_until(cut.arc);
+    const double pressed_mu = friction_in_pinch(world, cable, body);
+    passages.push_back(passage_of_press(world, system, scratch, cut.contact, pressed_mu, run));
+  }
+  pass_until(wrap);
+}
+
 }  // namespace
+
+void list_pressing(const World& world, const Parts& parts, const Part& part,
+                   std::vector<int>& pressing) {
+  pressing.clear();
+  for (const int k : contacts_of(parts, part)) {
+    if (at(world.contacts, k).slipping_cable >= 0) pressing.push_back(k);
+  }
+}
 
 double share(double mu, const Contact& contact) {
   return mu / std::max(1, contact.pinch_points);
@@ -150,21 +216,26 @@ void note_wraps(const World& world, const Parts& parts, const Part& part, PartSy
   }
 }
 
-void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch,
+void append_passages(const World& world, PartSystem& system, SolveScratch& scratch,
                      int cable_number, int first, int last, int begin, int run,
                      std::vector<Passage>& passages) {
   const int* row_of_segment = system.row_of_segment.data() + begin;
   const CableState& cable = at(world.cables, cable_number);
-  const double mu = at(world.bodies, at(cable.links, first).body).cable_friction;
   const double pinched_mu = friction_in_pinch(world, cable, at(cable.links, first).body);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
   if (!three) append_pressed_end(world, scratch, at(cable.segments, first), pinched_mu, passages);
   for (int i = first;; i = next_link(cable, i)) {
     const Link& part = at(cable.links, i);
+    if (!part.pinch_middle) {
+      append_arc(world, system, scratch, cable_number, i, at(system.wraps, begin + i), run,
+                 passages);
+      if (i == last) break;
+      continue;
+    }
     Passage passage;
-    if (part.pinch_middle && first == last) {
+    if (first == last) {
       passage.factor = capstan_factor(pinched_mu, middle_arc);
-    } else if (part.pinch_middle) {
+    } else {
       passage.middle = row_of_segment[i];
       if (three) {
         passage.middle_out = row_of_segment[next_link(cable, i)];
@@ -176,8 +247,6 @@ void append_passages(const World& world, PartSystem& system, const SolveScratch&
         passage.normal = press.normal;
         passage.friction = press.friction;
       }
-    } else {
-      passage.factor = capstan_factor(mu, at(system.wraps, begin + i));
     }
     passages.push_back(passage);
     if (i == last) break;

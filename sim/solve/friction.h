@@ -80,6 +80,22 @@ double contact_coefficient(double mu_a, double mu_b);
 /// rows have it.
 double coefficient_of(const World& world, const Contact& contact);
 
+/// +1, or -1: what the force of a contact's tangent row has of that on b along left(normal). Where
+/// the contact presses a cable that may slip, the row is turned as that of a middle body: its force
+/// pulls the body that the cable slips on along the cable, and what presses against it.
+///
+/// Where the cable's link turns by o about that body, its direction below the contact is
+/// o left(outward), outward = +-normal where the body is a or b; pulled along left(normal) is b.
+/// Either way that has the sign -o.
+inline int way_of_row(const Contact& contact) {
+  return contact.slipping_cable >= 0 ? -contact.slips_way : 1;
+}
+
+/// The same state along a row that is turned about, or not.
+inline Slip along(int way, Slip slip) {
+  return static_cast<Slip>(way * static_cast<int>(slip));
+}
+
 /// Friction of a bare contact of the given coefficient, pressed by row `normal`.
 Friction contact_friction(int row, int normal, double coefficient);
 
@@ -127,11 +143,16 @@ void share_among_repeated(PartSystem& system);
 /// the interval's start: where its rows are solved again, at its end, these angles have changed.
 void note_wraps(const World& world, const Parts& parts, const Part& part, PartSystem& system);
 
+/// The contacts of a part that press a cable which may slip there, without a link of its own
+/// (CapstanScratch::pressing).
+void list_pressing(const World& world, const Parts& parts, const Part& part,
+                   std::vector<int>& pressing);
+
 /// Appends the passages of a cable's links first..last, which lie on one body, and of the
 /// transitional pinches at either end. `begin` is where the cable's own begin in row_of_segment and
 /// wraps. With `three` rows a pinch, contacts have no share in friction (thesis), and the middle
 /// body holds the cable like an arc of 1 rad on it.
-void append_passages(const World& world, PartSystem& system, const SolveScratch& scratch, int cable,
+void append_passages(const World& world, PartSystem& system, SolveScratch& scratch, int cable,
                      int first, int last, int begin, int run, std::vector<Passage>& passages);
 
 }  // namespace pinchlab

@@ -137,17 +137,17 @@ inline bool is_of_sleeve(const Row& row) {
 }
 
 /// What bounds the impulse of a friction row, a contact's tangent or the middle body of a pinch:
-/// friction.h.
+/// friction.h. In a pinch is also the tangent of a contact that presses a cable which may slip.
 struct Friction {
   int row = -1;                    // that it bounds
   int normal = -1;                 // row of the force that presses, or -1: see `coefficient`
   double coefficient = 0.0;        // of the row's own body or pair; infinity: no slip, 0: no force
-  double wrapped = infinity;       // pinch_middle: coefficient of the wrapped body
+  double wrapped = infinity;       // in a pinch: coefficient of the wrapped body
   double bound = 0.0;              // |impulse| <= bound * impulse of `normal`, in force
-  int run = -1;                    // pinch_middle: the wrapped body's run, where it may slide
+  int run = -1;                    // in a pinch: the wrapped body's run, where it may slide
   int repeats = -1;                // pinch_middle: the row that this one repeats, or -1
   int repeated = 0;                // pinch_middle: how many rows repeat this one
-  bool in_group_equation = false;  // pinch_middle: its equation is part of its group's
+  bool in_group_equation = false;  // in a pinch: its equation is part of its group's
   bool dropped = false;            // bears nothing in this step
   bool frozen = false;             // keeps its state for this step, whatever its bound
   Slip slid = Slip::stick;         // the way it last slid in this step

@@ -201,6 +201,12 @@ int append_row(PartSystem& s, int a, int b) {
   return static_cast<int>(s.rows.size()) - 1;
 }
 
+/// As the row of a middle body is: what pulls one along the cable pulls the other against it.
+void turn_about(RowBodies& row) {
+  row.ja = -row.ja;
+  row.jb = -row.jb;
+}
+
 void add_friction(PartSystem& s, const Friction& friction) {
   at(s.rows, friction.row).friction = static_cast<int>(s.frictions.size());
   s.frictions.push_back(friction);
@@ -225,14 +231,20 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
   row.index = number;
-  row.slip = contact.slip;
+  row.slip = along(way_of_row(contact), contact.slip);
   if (on_piece) {
     set_bodies_at_piece(world, parts, contact, true, s, tangent);
   } else {
     set_tangent_bodies(world, contact, interval, s.bodies.back());
   }
+  if (way_of_row(contact) < 0) turn_about(s.bodies.back());
   weigh(s, tangent);
-  add_friction(s, contact_friction(tangent, normal, mu));
+  Friction friction = contact_friction(tangent, normal, mu);
+  if (contact.slipping_cable >= 0) {
+    const CableState& cable = at(world.cables, contact.slipping_cable);
+    friction.wrapped = friction_in_pinch(world, cable, contact.slips_on);
+  }
+  add_friction(s, friction);
 }
 
 /// The rows of middle bodies as they are before a solve, by what bounds them.

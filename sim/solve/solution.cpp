@@ -43,8 +43,9 @@ void store_contact_row(const Row& row, double kick, World& world) {
     contact.touching = row.on;
     if (kick > 0.0) contact.normal_force = row.impulse / kick;
   } else {
-    contact.slip = row.slip;
-    if (kick > 0.0) contact.tangent_force = row.impulse / kick;
+    const int way = way_of_row(contact);
+    contact.slip = along(way, row.slip);
+    if (kick > 0.0) contact.tangent_force = way * row.impulse / kick;
   }
 }
 

@@ -41,6 +41,12 @@ void number_unknowns(const PartSystem& s, SolveScratch& set) {
   set.row_of_unknown.resize(index(count));
 }
 
+/// Whether a row's friction may be part of a group's equation: it presses what may slide.
+bool is_in_pinch(const PartSystem& s, const Row& row) {
+  return row.kind == RowKind::pinch_middle ||
+         (row.kind == RowKind::tangent && at(s.frictions, row.friction).run >= 0);
+}
+
 /// p = F z and the equations G, row by row; groups of sliding cables add theirs.
 void express(PartSystem& s, SolveScratch& set) {
   const bool slides = !set.capstan.runs.empty();
@@ -55,7 +61,7 @@ void express(PartSystem& s, SolveScratch& set) {
     set.impulse_begin[r] = static_cast<int>(set.impulse_terms.size());
     if (unknown >= 0 && !grouped) {
       set.impulse_terms.push_back({unknown, 1.0});
-      const bool later = slides && row.kind == RowKind::pinch_middle;
+      const bool later = slides && is_in_pinch(s, row);
       if (!later) set.equation_terms.push_back({unknown, static_cast<int>(r), 1.0});
     } else if (row.on && row.slip != Slip::stick && row.friction >= 0) {
       // Sliding friction opposes the sliding: p = -slip * bound * normal.
@@ -70,10 +76,10 @@ void express(PartSystem& s, SolveScratch& set) {
   for (Friction& friction : s.frictions) friction.in_group_equation = false;
   express_impulses(set);
   add_group_equations(s, set);
-  for (int r = 0; r < s.first_contact_row; ++r) {
-    if (at(s.rows, r).kind == RowKind::pinch_middle && at(set.unknown_of_row, r) >= 0 &&
-        !at(s.frictions, at(s.rows, r).friction).in_group_equation) {
-      set.equation_terms.push_back({at(set.unknown_of_row, r), r, 1.0});
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    if (is_in_pinch(s, s.rows[r]) && set.unknown_of_row[r] >= 0 &&
+        !at(s.frictions, s.rows[r].friction).in_group_equation) {
+      set.equation_terms.push_back({set.unknown_of_row[r], static_cast<int>(r), 1.0});
     }
   }
 }

@@ -49,7 +49,9 @@ inline bool same_contact(const Contact& p, const Contact& q) {
          p.piece == q.piece && p.away == q.away && p.normal == q.normal && p.gap == q.gap &&
          p.target == q.target && p.pinch_points == q.pinch_points &&
          p.cable_between == q.cable_between && p.pressed_friction == q.pressed_friction &&
-         p.layers_cable == q.layers_cable && p.touching == q.touching && p.rebounds == q.rebounds &&
+         p.layers_cable == q.layers_cable && p.slipping_cable == q.slipping_cable &&
+         p.slips_on == q.slips_on && p.slips_way == q.slips_way &&
+         p.slips_corner == q.slips_corner && p.touching == q.touching && p.rebounds == q.rebounds &&
          p.struck == q.struck && p.slip == q.slip && p.normal_force == q.normal_force &&
          p.tangent_force == q.tangent_force && p.curvature == q.curvature;
 }
