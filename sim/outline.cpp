@@ -49,7 +49,7 @@ Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   if (along >= 0.0 && along <= nearest_length) return out;
   const Vec2 end = along < 0.0 ? corners[nearest] : corners[(nearest + 1) % corners.size()];
   const double distance = (point - end).norm();
-  return {distance, (point - end) / distance};
+  return {distance, (point - end) / distance, true};
 }
 
 Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,

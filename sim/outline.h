@@ -43,6 +43,7 @@ inline Vec2 place_of(const Scene& scene, const Attachment& end) {
 struct Outside {
   double distance = 0.0;     // m; below 0: inside, to the nearest side
   Vec2 normal = Vec2(1, 0);  // unit, the way out of the polygon
+  bool round = false;        // the nearest is a corner, or a disc's centre, not a side
 };
 
 /// Of a point from the polygon of these corners, counter-clockwise, all in one frame.

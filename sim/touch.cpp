@@ -116,7 +116,7 @@ Outside outside_of_body(const World& world, int body, const Vec2& point, const T
   const Vec2 from = point - at(world.position, body);
   if (!is_polygon(b)) {
     const double distance = from.norm();
-    return {distance, distance > 0.0 ? Vec2(from / distance) : Vec2(1.0, 0.0)};
+    return {distance, distance > 0.0 ? Vec2(from / distance) : Vec2(1.0, 0.0), true};
   }
   const double angle = at(world.angle, body);
   const Vec2 inside = turned(from, -angle);
@@ -265,6 +265,7 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   meeting.gap = out.distance - radius - other_radius;
   meeting.normal = of_a ? Vec2(-out.normal) : out.normal;
   meeting.point = point - (radius + 0.5 * meeting.gap) * out.normal;
+  meeting.round = out.round;
   return meeting;
 }
 

@@ -114,7 +114,8 @@ void check(const PartSystem& s, SolveScratch& set) {
     const Row& row = s.rows[r];
     const int number = static_cast<int>(r);
     if (is_friction(row)) {
-      const double sliding = row.speed - row.bias + run_speed(s, set.capstan, row);
+      const double made_up = row.kind == RowKind::tangent ? 0.0 : row.bias;
+      const double sliding = row.speed - made_up + run_speed(s, set.capstan, row);
       check_friction(s, row, number, sliding, tolerance, set);
     } else if (row.diagonal > 0.0 && !row.clamped && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {

@@ -78,6 +78,61 @@ void set_tangent_bodies(const World& world, const Contact& contact, const TimeSp
   add_seats(world, contact, bodies);
 }
 
+namespace {
+
+/// Motion of a body, or of the world, as of what carries it.
+struct Course {
+  Vec2 pivot = Vec2::Zero(), velocity = Vec2::Zero();  // m, m/s
+  double turning = 0.0;                                // rad/s
+
+  Vec2 at(const Vec2& point) const { return velocity + turning * left(point - pivot); }
+};
+
+Course course_of(const World& world, int body) {
+  if (body < 0) return {};
+  const int mover = mover_of(world, body);
+  return {pivot_of(world, body), at(world.velocity, mover), at(world.angular_velocity, mover)};
+}
+
+}  // namespace
+
+// At constant velocities, with t = left(n) and P where the surfaces meet,
+//     s  = t . (v_b + om_b left(P - x_b) - v_a - om_a left(P - x_a)),
+//     s' = n . (om_b (P' - v_b) - om_a (P' - v_a)),
+// since t . left(y) = n . y; and t' . (...) = 0, for what slides does so along t. P moves with the
+// point of the one body, and turns about it as n does: with the other body's side, or, where both
+// are round there, as the line from centre to centre.
+double change_of_sliding(const World& world, const Contact& contact, double length) {
+  if (contact.touch == Touch::circles || contact.touch == Touch::piece) return 0.0;
+  const Course a = course_of(world, contact.a), b = course_of(world, contact.b);
+  Vec2 point;
+  Course of_point, of_outline = a;
+  double radii = rim_radius(at(world.bodies, contact.a));
+  if (contact.touch == Touch::end_of_wall) {
+    const Obstacle& wall = at(world.obstacles, contact.wall);
+    point = contact.point == 0 ? wall.a : wall.b;
+    radii += wall.radius;
+  } else {
+    const bool of_a = contact.touch == Touch::point_of_a;
+    point = place_of_point(world, of_a ? contact.a : contact.b, contact.point);
+    of_point = of_a ? a : b;
+    of_outline = of_a ? b : a;
+    if (contact.b >= 0) radii += rim_radius(at(world.bodies, contact.b));
+  }
+  const Meeting meeting = meeting_of(world, contact);
+  const Vec2 from_point = meeting.point - point;
+  double turning = of_outline.turning;  // rad/s, of n
+  if (meeting.round) {
+    const double distance = radii + meeting.gap, off = from_point.norm();
+    if (!(off > 0.0) || !(distance > 0.0)) return 0.0;  // corner on corner, neither rounded
+    const Vec2 way = from_point / off, other = point + distance * way;
+    turning = left(way).dot(of_outline.at(other) - of_point.at(point)) / distance;
+  }
+  const Vec2 moves = of_point.at(point) + turning * left(from_point);
+  const Vec2 sweep = b.turning * (moves - b.velocity) - a.turning * (moves - a.velocity);
+  return 0.5 * length * contact.normal.dot(sweep);
+}
+
 void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,
                          PartSystem& s, int r) {
   const Foot foot = foot_of(world, contact);

@@ -20,6 +20,11 @@ void add_seats(const World& world, const Contact& contact, RowBodies& bodies);
 void set_tangent_bodies(const World& world, const Contact& contact, const TimeSpan& interval,
                         RowBodies& bodies);
 
+/// By how much the speed at which a contact's surfaces slide (m/s, of b along left(normal)) changes
+/// from the start of an interval, where its row stands, to the interval's middle, where it counts:
+/// as the point where they meet moves along an outline that turns. 0 of circles.
+double change_of_sliding(const World& world, const Contact& contact, double length);
+
 /// The three bodies of the row of a contact with a piece: across it, or with `along` of friction,
 /// whose forces both act at one point, as those of other contacts do.
 void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,

@@ -231,13 +231,17 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
   row.index = number;
-  row.slip = along(way_of_row(contact), contact.slip);
   if (on_piece) {
     set_bodies_at_piece(world, parts, contact, true, s, tangent);
   } else {
     set_tangent_bodies(world, contact, interval, s.bodies.back());
   }
-  if (way_of_row(contact) < 0) turn_about(s.bodies.back());
+  const int way = way_of_row(contact);
+  row.slip = along(way, contact.slip);
+  if (way < 0) turn_about(s.bodies.back());
+  if (locates_events(world.configuration)) {
+    row.bias = row.curved = way * change_of_sliding(world, contact, interval.length);
+  }
   weigh(s, tangent);
   Friction friction = contact_friction(tangent, normal, mu);
   if (contact.slipping_cable >= 0) {
