@@ -25,11 +25,6 @@ bool is_same(double p, double q) {
   return std::abs(p - q) <= rounding * q;
 }
 
-/// Whether the interval before was as long as this one (s).
-bool is_even(const Pace& before, double length) {
-  return is_same(before.lag, 0.5 * length);
-}
-
 /// Of a World, const or not, a row's own curvature; or null where its condition is linear. What
 /// spans between circles that have not moved is: lengths stay, and material turns evenly.
 template <typename AnyWorld>
@@ -59,8 +54,12 @@ double least_curvature(const PartSystem& s, double length) {
 
 }  // namespace
 
+bool is_even(double lag, double length) {
+  return is_same(lag, 0.5 * length);
+}
+
 bool is_foreseen(const Pace& pace, double error, const TimeSpan& t) {
-  if (!pace.curved || pace.intervals == 0 || !is_even(pace, t.length)) return false;
+  if (!pace.curved || pace.intervals == 0 || !is_even(pace.lag, t.length)) return false;
   return error == 0.0 || pace.unmeasured < most_unmeasured;
 }
 
@@ -96,7 +95,7 @@ bool note_curvatures(const PartSystem& s, double length, int known, bool curved,
 
 Pace pace_after(const Pace& before, const IntervalDone& done) {
   Pace after{.lag = 0.5 * done.length};
-  if (!is_even(before, done.length)) return after;
+  if (!is_even(before.lag, done.length)) return after;
   const auto one_more = [](int number, int most) {
     return static_cast<std::int8_t>(std::min(number + 1, most));
   };

@@ -57,16 +57,10 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
     const double of_third =
         speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
-    const double force = std::abs(row.impulse);
-    made += row.impulse * (of_a + of_b + of_third);
-    impulse += force;
-    made_up += force * std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
-    if (row.kind == RowKind::tangent) {
-      // What slides before and after the kick differs by as much where nothing has changed.
-      made_up += force * std::abs(row.curved);
-    } else {
-      made += 2.0 * row.impulse * row.curved;
-    }
+    made += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
+    impulse += std::abs(row.impulse);
+    made_up += std::abs(row.impulse) *
+               std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
     fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
   // Ten times active_set.cpp's tolerance: what that has let pass makes no energy.

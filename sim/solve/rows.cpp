@@ -10,6 +10,7 @@
 #include "sim/parts.h"
 #include "sim/solve/contact_bodies.h"
 #include "sim/solve/elastic.h"
+#include "sim/solve/foresight.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
@@ -239,7 +240,10 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);
   if (way < 0) turn_about(s.bodies.back());
-  if (locates_events(world.configuration)) {
+  // Where nothing has happened before it. Else what the way changes would do work: the kick takes as
+  // much before the interval as in it only where both are alike.
+  if (locates_events(world.configuration) && interval.length > 0.0 &&
+      is_even(interval.lag, interval.length)) {
     row.bias = row.curved = way * change_of_sliding(world, contact, interval.length);
   }
   weigh(s, tangent);
