@@ -16,8 +16,8 @@
 
 namespace pinchlab {
 
-/// Whether the interval before was as long as one of `length` (s), with velocities that are `lag` (s)
-/// behind it now.
+/// Whether the interval before was as long as one of `length` (s), where velocities are `lag` (s)
+/// behind now.
 bool is_even(double lag, double length);
 
 /// Whether an interval of a part follows on others of its length whose curvatures tell its own.

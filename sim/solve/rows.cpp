@@ -240,8 +240,8 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);
   if (way < 0) turn_about(s.bodies.back());
-  // Where nothing has happened before it. Else what the way changes would do work: the kick takes as
-  // much before the interval as in it only where both are alike.
+  // Not where something has just happened: only in a kick between two intervals that are alike does
+  // what the way changes do as much work before the middle as after it.
   if (locates_events(world.configuration) && interval.length > 0.0 &&
       is_even(interval.lag, interval.length)) {
     row.bias = row.curved = way * change_of_sliding(world, contact, interval.length);
