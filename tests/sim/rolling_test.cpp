@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "demos/scenes/shape_scenes.h"
+#include "sim/compound.h"
 #include "sim/outline.h"
 #include "tests/sim/scenes.h"
 
@@ -60,14 +61,22 @@ Vec2 place_after(Scene scene, int steps_per_frame, int frames, std::size_t body)
 //   (J + m (h^2 + s^2) + I) th'' - (m h + I / r) s'' = -2 m s s' th' - m g (s cos th - h sin th).
 TEST(Rolling, ADiscOnATurningPlank) {
   const double r = 0.2, thick = 0.2, m = 1.0, I = 0.5 * m * r * r, h = 0.5 * thick + r;
-  Scene scene;
   Body plank = body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0);
   make_polygon(plank, box_corners(3.0, thick), 0.0);
   plank.contact_friction = 2.0;
   const double J = plank.inertia.value();
-  scene.bodies.push_back(plank);
-  scene.bodies.push_back(body("disc", BodyKind::free, 0.4, h, r, m));
-  scene.bodies[1].contact_friction = 2.0;
+  Body disc = body("disc", BodyKind::free, 0.4, h, r, m);
+  disc.contact_friction = 2.0;
+  Scene scene, of_two_boards;
+  scene.bodies = {plank, disc};
+  of_two_boards.bodies = {body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0), disc};
+  std::array<Shape, 2> boards;
+  for (Shape& board : boards) {
+    board.properties.corners = box_corners(1.5, thick);
+    board.properties.contact_friction = 2.0;
+    board.place = {&board == boards.data() ? -0.75 : 0.75, 0.0};
+  }
+  add_shapes(of_two_boards, 0, boards);
   const auto rates = [&](const std::array<double, 4>& x) -> std::array<double, 4> {
     const auto& [s, th, s1, th1] = x;
     const double a = m + I / (r * r), b = -(m * h + I / r);
@@ -80,7 +89,9 @@ TEST(Rolling, ADiscOnATurningPlank) {
   const auto x = integrate<4>({0.4, 0.0, 0.0, 0.0}, 0.5, rates);
   const double c = std::cos(x[1]), sine = std::sin(x[1]);
   const Vec2 exact(x[0] * c - h * sine, x[0] * sine + h * c);
-  expect_second_order([&](int n) { return (place_after(scene, n, 30, 1) - exact).norm(); }, 1e-7);
+  for (const Scene& one : {scene, of_two_boards}) {
+    expect_second_order([&](int n) { return (place_after(one, n, 30, 1) - exact).norm(); }, 1e-7);
+  }
 }
 
 // A box on a fixed disc of radius R, of half height h, that rocks by phi:
