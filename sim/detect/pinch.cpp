@@ -118,7 +118,7 @@ void note_cable_between(const World& world, const CableState& cable, const Link&
 /// polygon, or on to layers. What presses rolls on it, or rubs on it: as on the link's body where
 /// that holds the cable without slip, and else as solve/friction.h has it. Of turns that lie there
 /// one above another, and of the corners at both ends of a side, the first on the cable counts. The
-/// thesis' sweeps and rows, and sleeves, press what may slip without friction.
+/// thesis' sweeps and rows press what may slip without friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
   note_cable_between(world, cable, link, contact);
@@ -127,7 +127,7 @@ void note_cable_held(const World& world, const CableState& cable, const Link& li
   if (at(world.bodies, link.body).cable_friction < infinity) {
     const Configuration& how = world.configuration;
     if (how.solver != Solver::direct || how.pinch_rows != PinchRows::one) return;
-    if (is_massed(cable) || link.layers.way != 0 || contact.slipping_cable >= 0) return;
+    if (link.layers.way != 0 || contact.slipping_cable >= 0) return;
     contact.slipping_cable = number;
     contact.slips_on = link.body;
     contact.slips_way = static_cast<std::int8_t>(link.orientation);

@@ -3,7 +3,6 @@
 // Sliding with friction over bodies: the capstan law, with the friction of pinches on the way.
 // Nothing here runs for cables all of whose bodies have infinite friction.
 
-#include <compare>
 #include <vector>
 
 #include "base/at.h"
@@ -48,13 +47,6 @@ struct Shortage {
   double speed = 0.0;      // m/s, at which it gets less
   double clearance = 0.0;  // m
   bool gives = false;      // impulses on it move something
-};
-
-/// Where a contact presses a link's cable.
-struct ArcCut {
-  double arc;  // rad after the link's tail
-  int contact;
-  auto operator<=>(const ArcCut&) const = default;
 };
 
 /// What of a part slides. Runs, passages and the lists by cables are of find_runs, and stand for a

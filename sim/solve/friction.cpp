@@ -38,12 +38,6 @@ double arc_of_press(const CableState& cable, int link, const Contact& contact, d
   return std::clamp(arc_of_direction(cable, index(link), outward), 0.0, wrap);
 }
 
-bool presses(const Contact& contact, int cable, const Link& link) {
-  return contact.slipping_cable == cable && contact.pinch_points == 0 &&
-         contact.slips_on == link.body && contact.slips_corner == link.corner &&
-         contact.slips_way == link.orientation;
-}
-
 /// The pinch that a contact makes, which has no link of its own.
 Passage passage_of_press(const World& world, PartSystem& system, const SolveScratch& scratch,
                          int contact, double mu, int run) {
@@ -52,12 +46,12 @@ Passage passage_of_press(const World& world, PartSystem& system, const SolveScra
   pinch.normal = press.normal;
   pinch.friction = press.friction;
   if (press.normal < 0) return pinch;
-  const auto next = index(press.normal) + 1;  // its tangent's row, if it has any
-  if (next == system.rows.size() || system.rows[next].index != contact) return pinch;
-  Friction& friction = at(system.frictions, system.rows[next].friction);
+  const int next = tangent_row_of(system, press.normal);
+  if (next < 0) return pinch;
+  Friction& friction = at(system.frictions, at(system.rows, next).friction);
   if (friction.run >= 0) return pinch;  // of another turn, which it rubs on
   friction.run = run;
-  pinch.middle = static_cast<int>(next);
+  pinch.middle = next;
   return pinch;
 }
 
@@ -67,14 +61,7 @@ void append_arc(const World& world, PartSystem& system, SolveScratch& scratch, i
   const CableState& cable = at(world.cables, number);
   const int body = at(cable.links, link).body;
   const double mu = at(world.bodies, body).cable_friction;
-  std::vector<ArcCut>& cuts = scratch.capstan.cuts;
-  cuts.clear();
-  for (const int k : scratch.capstan.pressing) {
-    const Contact& contact = at(world.contacts, k);
-    if (!presses(contact, number, at(cable.links, link))) continue;
-    cuts.push_back({arc_of_press(cable, link, contact, wrap), k});
-  }
-  std::sort(cuts.begin(), cuts.end());
+  find_cuts(world, scratch.capstan.pressing, number, link, wrap, scratch.capstan.cuts);
   double passed = 0.0;  // rad
   const auto pass_until = [&](double arc) {
     Passage passage;
@@ -82,7 +69,7 @@ void append_arc(const World& world, PartSystem& system, SolveScratch& scratch, i
     passages.push_back(passage);
     passed = arc;
   };
-  for (const ArcCut& cut : cuts) {
+  for (const ArcCut& cut : scratch.capstan.cuts) {
     pass_until(cut.arc);
     const double pressed_mu = friction_in_pinch(world, cable, body);
     passages.push_back(passage_of_press(world, system, scratch, cut.contact, pressed_mu, run));
@@ -98,6 +85,30 @@ void list_pressing(const World& world, const Parts& parts, const Part& part,
   for (const int k : contacts_of(parts, part)) {
     if (at(world.contacts, k).slipping_cable >= 0) pressing.push_back(k);
   }
+}
+
+bool presses(const Contact& contact, int cable, const Link& link) {
+  return contact.slipping_cable == cable && contact.pinch_points == 0 &&
+         contact.slips_on == link.body && contact.slips_corner == link.corner &&
+         contact.slips_way == link.orientation;
+}
+
+void find_cuts(const World& world, const std::vector<int>& pressing, int cable, int link,
+               double wrap, std::vector<ArcCut>& cuts) {
+  cuts.clear();
+  const CableState& of = at(world.cables, cable);
+  for (const int k : pressing) {
+    const Contact& contact = at(world.contacts, k);
+    if (!presses(contact, cable, at(of.links, link))) continue;
+    cuts.push_back({arc_of_press(of, link, contact, wrap), k});
+  }
+  std::sort(cuts.begin(), cuts.end());
+}
+
+int tangent_row_of(const PartSystem& system, int normal) {
+  const auto next = index(normal) + 1;
+  const bool has = next < system.rows.size() && system.rows[next].kind == RowKind::tangent;
+  return has ? static_cast<int>(next) : -1;
 }
 
 double share(double mu, const Contact& contact) {

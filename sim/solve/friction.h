@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <vector>
 
 #include "sim/solve/part_system.h"
@@ -20,6 +21,7 @@
 namespace pinchlab {
 
 struct CableState;
+struct Link;
 struct Part;
 struct Parts;
 struct SolveScratch;
@@ -147,6 +149,24 @@ void note_wraps(const World& world, const Parts& parts, const Part& part, PartSy
 /// (CapstanScratch::pressing).
 void list_pressing(const World& world, const Parts& parts, const Part& part,
                    std::vector<int>& pressing);
+
+/// Whether a contact presses a cable on that link, where it may slip.
+bool presses(const Contact& contact, int cable, const Link& link);
+
+/// Where a contact presses a link's cable.
+struct ArcCut {
+  double arc;  // rad after the link's tail
+  int contact;
+  auto operator<=>(const ArcCut&) const = default;
+};
+
+/// The places on a link of a cable at which contacts press it, in their order, within its `wrap`
+/// (rad).
+void find_cuts(const World& world, const std::vector<int>& pressing, int cable, int link,
+               double wrap, std::vector<ArcCut>& cuts);
+
+/// The row of a contact's tangent, of that of its normal; or -1.
+int tangent_row_of(const PartSystem& system, int normal);
 
 /// Appends the passages of a cable's links first..last, which lie on one body, and of the
 /// transitional pinches at either end. `begin` is where the cable's own begin in row_of_segment and

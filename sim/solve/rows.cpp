@@ -41,6 +41,17 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
   return sleeve >= 0 ? at(s.sleeves, sleeve).place : body;
 }
 
+/// The sleeve's that a contact presses, or -1: what presses a rope that slips rubs on that.
+int place_of_pressed_sleeve(const World& world, const PartSystem& s, const Contact& contact) {
+  if (contact.slipping_cable < 0) return -1;
+  const int cable = contact.slipping_cable;
+  const std::vector<Link>& links = at(world.cables, cable).links;
+  for (int i = 0; index(i) < links.size(); ++i) {
+    if (presses(contact, cable, at(links, i))) return place_of_sleeve(world, s, cable, i, -1);
+  }
+  return -1;
+}
+
 bool has_fixed_lever(const World& world, const Link& link) {
   return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
 }
@@ -228,7 +239,10 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
 
   const double mu = coefficient_of(world, contact);
   if (mu == 0.0 || only_turns_one(world, contact)) return;
-  const int tangent = append_row(s, a, b);
+  const int sleeve = s.sleeves.empty() ? -1 : place_of_pressed_sleeve(world, s, contact);
+  const bool on_a = contact.slips_on == contact.a;
+  const int tangent =
+      append_row(s, sleeve >= 0 && on_a ? sleeve : a, sleeve >= 0 && !on_a ? sleeve : b);
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
   row.index = number;
@@ -433,7 +447,9 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
   }
   s.same_rows = s.same_segments && index(s.first_contact_row) == s.rows.size();
   s.rows_stand = s.rows_stand && s.same_rows && s.segments_stand;
-  if (!s.sleeves.empty()) make_sleeve_rows(scene, world, interval, s, scratch);
+  if (!s.sleeves.empty()) {
+    make_sleeve_rows(scene, world, parts, part, interval, s, scratch);
+  }
   if (interval.clamps) {
     for (const int r : s.pressed) clamp_in_pinch(world, scratch, at(s.rows, r));
   }

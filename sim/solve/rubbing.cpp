@@ -125,9 +125,8 @@ struct Way {
 };
 
 /// Goes on by an arc of `angle` (rad) with friction m, forward positive.
-void pass_arc(const CableState& cable, const Link& link, const Vec2& e_in, const Vec2& e_out,
-              double mu, RubLaw& law, Way& way, std::vector<Term>& terms) {
-  const double angle = std::max(link.wrap, 0.0);
+void pass_arc(const CableState& cable, const Link& link, double angle, const Vec2& e_in,
+              const Vec2& e_out, double mu, RubLaw& law, Way& way, std::vector<Term>& terms) {
   const double o = link.orientation, mass = cable.density * link.radius;  // kg a rad
   const double m =
       angle > 0.0
@@ -152,8 +151,31 @@ void pass_pinch(const World& world, const SolveScratch& scratch, int contact, do
   if (press.normal >= 0 && mu != 0.0) terms.push_back({press.normal, press.friction});
 }
 
+/// Goes on by a link, whose arc is cut where contacts press it that have no link of their own.
+void pass_link(const World& world, SolveScratch& scratch, const SleevePlace& one, int i, double mu,
+               double pinched, PartSystem& s, RubLaw& law, Way& way) {
+  const CableState& cable = at(world.cables, one.sleeve.cable);
+  const Link& link = at(cable.links, i);
+  const double wrap = std::max(link.wrap, 0.0);
+  find_cuts(world, scratch.capstan.pressing, one.sleeve.cable, i, wrap, scratch.capstan.cuts);
+  Vec2 e = at(cable.segments, i).direction;
+  double passed = 0.0;
+  for (const ArcCut& cut : scratch.capstan.cuts) {
+    const Vec2 there = turned(at(cable.segments, i).direction, link.orientation * cut.arc);
+    pass_arc(cable, link, cut.arc - passed, e, there, mu, law, way, s.rub_terms);
+    pass_pinch(world, scratch, cut.contact, pinched, s.rub_terms);
+    const int normal = at(scratch.normal_row_of_contact, cut.contact);
+    const int tangent = normal >= 0 ? tangent_row_of(s, normal) : -1;
+    if (tangent >= 0) s.rub_terms.push_back({tangent, -1.0});
+    e = there;
+    passed = cut.arc;
+  }
+  const Vec2& leaves = at(cable.segments, next_link(cable, i)).direction;
+  pass_arc(cable, link, wrap - passed, e, leaves, mu, law, way, s.rub_terms);
+}
+
 /// The law for slipping forward (sign = 1) or backward (-1).
-void find_law(const World& world, const SolveScratch& scratch, const SleevePlace& one, int sign,
+void find_law(const World& world, SolveScratch& scratch, const SleevePlace& one, int sign,
               PartSystem& s, RubLaw& law) {
   const CableState& cable = at(world.cables, one.sleeve.cable);
   const double mu = sign * at(world.bodies, one.sleeve.body).cable_friction;
@@ -170,8 +192,7 @@ void find_law(const World& world, const SolveScratch& scratch, const SleevePlace
       pass_pinch(world, scratch, link.contact, pinched, terms);
       terms.push_back({row_of_segment(s, one, i), -1.0});
     } else {
-      pass_arc(cable, link, at(cable.segments, i).direction, at(cable.segments, after).direction,
-               mu, law, way, terms);
+      pass_link(world, scratch, one, i, mu, pinched, s, law, way);
     }
     if (i != one.sleeve.last) continue;
     pass_pinch(world, scratch, at(cable.segments, after).contact, pinched, terms);
@@ -191,7 +212,7 @@ void find_law(const World& world, const SolveScratch& scratch, const SleevePlace
                 (m_o * out.direction + m_i * in.direction + way.first);
   for (int t = law.terms_begin; t < law.terms_end; ++t) {
     Term& term = at(terms, t);
-    const bool middle = at(s.rows, term.index).kind == RowKind::pinch_middle;
+    const bool middle = at(s.rows, term.index).kind != RowKind::normal;
     term.coefficient = share * term.coefficient + (middle ? 1.0 : 0.0);
   }
 }
@@ -231,8 +252,9 @@ bool slips(const Row& row) {
 
 }  // namespace
 
-void make_sleeve_rows(const Scene& scene, const World& world, const TimeSpan& interval,
-                      PartSystem& s, const SolveScratch& scratch) {
+void make_sleeve_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                      const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
+  list_pressing(world, parts, part, scratch.capstan.pressing);
   s.rub_terms.clear();
   s.rub_kick = interval.kick;
   s.rub_fall = interval.kick * scene.gravity;

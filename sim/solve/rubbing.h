@@ -52,8 +52,8 @@ void note_flow(PartSystem& system, std::span<const Eigen::Vector3d> velocities);
 void append_sleeve_rows(const World& world, PartSystem& system);
 
 /// Makes them what they are before a solve, with the laws of friction.
-void make_sleeve_rows(const Scene& scene, const World& world, const TimeSpan& interval,
-                      PartSystem& system, const SolveScratch& scratch);
+void make_sleeve_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                      const TimeSpan& interval, PartSystem& system, SolveScratch& scratch);
 
 /// Before a solve: friction that is left out bears nothing.
 void drop_rubbing(PartSystem& system);

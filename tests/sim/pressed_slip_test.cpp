@@ -185,21 +185,46 @@ TEST(PressedSlip, APinchInTheMiddleOfACornerCutsItsArc) {
   }
 }
 
+/// A drum in place of the beam, with the same top, and a press that does not turn.
+Scene on_a_drum(const Pressed& with, double mass_per_metre) {
+  Scene scene = scene_of(with);
+  scene.bodies[0] = body("drum", BodyKind::fixed, 0.0, top - 0.83, 0.83, 1.0);
+  scene.bodies[0].cable_friction = with.mu;
+  scene.bodies[3].inertia = 1e9;
+  scene.cables[0].mass_per_metre = mass_per_metre;
+  return scene;
+}
+
 // On a disc a box has no link, and a disc has one; both press it in the same way:
-// m (g - a) = k (k light (g + a) + mu N).
+// m (g - a) = k (k light (g + a) + (mu + grip) N).
 TEST(PressedSlip, OnADiscABoxPressesAsADiscDoes) {
-  for (const bool box : {false, true}) {
+  for (const double grip : {0.0, 0.2}) {
+    for (const bool box : {false, true}) {
+      Pressed with;
+      with.grip = grip;
+      with.box = box;
+      const World world = after_half_a_second(on_a_drum(with, 0.0));
+      EXPECT_EQ(world.cables[0].links.size(), box ? 3U : 5U);
+      EXPECT_EQ(world.diagnostics.fallbacks, 0);
+      const double a = with.acceleration((with.mu + grip) * with.mass * g);
+      EXPECT_NEAR(acceleration(world, sunk(world)), a, 1e-9) << grip << " " << box;
+    }
+  }
+}
+
+// A rope with mass that may slip on the drum, under a box that does not turn and on which nothing
+// slips: it stays, until the box is lifted.
+TEST(PressedSlip, ABoxHoldsARopeOnADisc) {
+  for (const double mass_per_metre : {0.0, 0.5}) {
     Pressed with;
-    with.box = box;
-    with.grip = 0.0;
-    Scene scene = scene_of(with);
-    Body& drum = scene.bodies[0];
-    drum = body("drum", BodyKind::fixed, 0.0, top - 0.83, 0.83, 1.0);
-    drum.cable_friction = with.mu;
-    const World world = after_half_a_second(scene);
-    EXPECT_EQ(world.cables[0].links.size(), box ? 3U : 5U);
-    const double a = with.acceleration(with.mu * with.mass * g);
-    EXPECT_NEAR(acceleration(world, sunk(world)), a, 1e-9) << box;
+    with.grip = infinity;
+    for (const bool box : {false, true}) {
+      with.box = box;
+      Scene scene = on_a_drum(with, mass_per_metre);
+      EXPECT_NEAR(sunk(after_half_a_second(scene)), 0.0, 1e-9) << mass_per_metre << " " << box;
+      scene.bodies[3].velocity.y() = 3.0;  // away for 0.6 s
+      EXPECT_GT(sunk(after_half_a_second(scene)), 0.1) << mass_per_metre << " " << box;
+    }
   }
 }
 
