@@ -42,8 +42,8 @@ struct Contact {
   int pinch_points = 0;        // cables (or turns of one) that share the contact's force
   int cable_between = -1;      // whose pinch takes the place of bare friction; -1: none
   double pressed_friction =
-      0.0;                  // coefficient between a cable that a polygon or layers hold fast and
-                            // what presses it on to them
+      0.0;                  // coefficient between a cable and what presses it without a link of its
+                            // own: on to a polygon, with one, or on to layers
   int layers_cable = -1;    // whose layers are pressed, by whose thickness `target` grows; -1: none
   int slipping_cable = -1;  // pressed on to a body on which it may slip, without a link of its own
                             // for what presses; -1: none

@@ -114,6 +114,7 @@ void check(const PartSystem& s, SolveScratch& set) {
     const Row& row = s.rows[r];
     const int number = static_cast<int>(r);
     if (is_friction(row)) {
+      // A middle body's is what it missed while it stuck; a contact's is part of how it slides.
       const double made_up = row.kind == RowKind::tangent ? 0.0 : row.bias;
       const double sliding = row.speed - made_up + run_speed(s, set.capstan, row);
       check_friction(s, row, number, sliding, tolerance, set);
