@@ -90,6 +90,11 @@ std::vector<Ladder> climb_all(bool quick, Progress& progress) {
       "a square drum turns under a bob", [&](int n) { return turning_drum(square, 2.5, n); }, 1.6,
       nullptr, finest, rungs));
   progress.done(1.0);
+  ladders.push_back(
+      climb("a disc rolls on a turning plank", disc_on_plank, 0.5, nullptr, finest, rungs));
+  ladders.push_back(climb("a box rocks on a disc", box_on_disc, 1.0, nullptr, finest, rungs));
+  ladders.push_back(climb("a roller presses a cable that slips on a turning drum of six corners",
+                          pressed_drum, 0.6, nullptr, finest, rungs));
   ladders.push_back(climb(
       "a load on a drum in layers", [](int n) { return layered_hoist(8, 0.02, n); }, 1.0, nullptr,
       finest, rungs));
@@ -415,7 +420,8 @@ std::string page_text(const Shapes& shapes) {
       "other kinds "
       "(demos/scenes/shape_scenes.h has the scenes; sim/README.md the models).\n\n"
       "## Order\n\nLargest steps first. A corner that the cable leaves or meets is an event at its "
-      "time.\n\n{}\n"
+      "time; where friction begins to slip or to stick is not, so that the roller's orders differ "
+      "from rung to rung.\n\n{}\n"
       "## A polygon of n corners against its disc\n\n"
       "Both with the same inertia, a bob hanging from each; distance of the bobs after a "
       "second.\n\n{}\n"

@@ -123,6 +123,45 @@ Scene turning_drum(double radius, double speed, int steps_per_frame) {
   return with_bob(drum_of(radius, speed), {0, {-radius - cable_half_width, 0.0}}, steps_per_frame);
 }
 
+Scene disc_on_plank(int steps_per_frame) {
+  constexpr double thick = 0.2, radius = 0.2;
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0));
+  make_polygon(scene.bodies[0], box_corners(3.0, thick), 0.0);
+  scene.bodies.push_back(body("disc", BodyKind::free, 0.4, 0.5 * thick + radius, radius, 1.0));
+  for (Body& b : scene.bodies) b.contact_friction = 2.0;
+  return scene;
+}
+
+Scene box_on_disc(int steps_per_frame) {
+  constexpr double radius = 0.6, half_height = 0.1, leans = 0.4;
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("disc", BodyKind::fixed, 0.0, 0.0, radius, 1.0));
+  const Vec2 out(std::sin(leans), std::cos(leans)), along(std::cos(leans), -std::sin(leans));
+  const Vec2 place = (radius + half_height) * out - radius * leans * along;
+  scene.bodies.push_back(body("box", BodyKind::free, place.x(), place.y(), 1.0, 2.0));
+  make_polygon(scene.bodies[1], box_corners(1.2, 2.0 * half_height), 0.0);
+  scene.bodies[1].angle = -leans;
+  for (Body& b : scene.bodies) b.contact_friction = 2.0;
+  return scene;
+}
+
+Scene pressed_drum(int steps_per_frame) {
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 3.0));
+  make_polygon(scene.bodies[0], regular_corners(6, 0.5), 0.02);
+  scene.bodies.push_back(body("heavy", BodyKind::free, 0.6, -2.0, 0.1, 5.0));
+  scene.bodies.push_back(body("light", BodyKind::free, -0.6, -3.0, 0.1, 2.0));
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.05, 0.9, 0.2, 1.0));
+  scene.bodies[0].cable_friction = 0.3;
+  scene.bodies[3].cable_friction = 0.2;
+  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(1), 0.03));
+  return scene;
+}
+
 Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there) {
   Scene scene;
   scene.steps_per_frame = steps_per_frame;

@@ -38,6 +38,17 @@ struct SquareDrum {
 Scene turning_drum(const std::vector<Vec2>& corners, double speed, int steps_per_frame);
 Scene turning_drum(double radius, double speed, int steps_per_frame);
 
+/// A disc of 1 kg, body 1, at rest on a plank that turns about its middle, body 0; neither slips.
+Scene disc_on_plank(int steps_per_frame);
+
+/// A box of 2 kg, body 1, that rocks on a fixed disc, body 0, from where it leans by 0.4 rad on;
+/// neither slips.
+Scene box_on_disc(int steps_per_frame);
+
+/// A weight of 5 kg, body 1, and another on a cable over a drum of six corners, on which it may
+/// slip; a roller on a rail falls on to it there and presses it.
+Scene pressed_drum(int steps_per_frame);
+
 /// A load of 2 kg, body 1, on a rail below a drum of 0.2 m with so many turns in layers. The cable
 /// begins on the drum, or ends there.
 Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there = true);

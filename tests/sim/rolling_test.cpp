@@ -14,6 +14,8 @@ namespace pinchlab::testing {
 namespace {
 
 using build::box_corners;
+using build::box_on_disc;
+using build::disc_on_plank;
 
 /// By Runge's and Kutta's method of fourth order, in steps of some 0.1 ms.
 template <std::size_t n>
@@ -61,15 +63,10 @@ Vec2 place_after(Scene scene, int steps_per_frame, int frames, std::size_t body)
 //   (J + m (h^2 + s^2) + I) th'' - (m h + I / r) s'' = -2 m s s' th' - m g (s cos th - h sin th).
 TEST(Rolling, ADiscOnATurningPlank) {
   const double r = 0.2, thick = 0.2, m = 1.0, I = 0.5 * m * r * r, h = 0.5 * thick + r;
-  Body plank = body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0);
-  make_polygon(plank, box_corners(3.0, thick), 0.0);
-  plank.contact_friction = 2.0;
-  const double J = plank.inertia.value();
-  Body disc = body("disc", BodyKind::free, 0.4, h, r, m);
-  disc.contact_friction = 2.0;
-  Scene scene, of_two_boards;
-  scene.bodies = {plank, disc};
-  of_two_boards.bodies = {body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0), disc};
+  const Scene scene = disc_on_plank(1);
+  const double J = scene.bodies[0].inertia.value();
+  Scene of_two_boards;
+  of_two_boards.bodies = {body("plank", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 5.0), scene.bodies[1]};
   std::array<Shape, 2> boards;
   for (Shape& board : boards) {
     board.properties.corners = box_corners(1.5, thick);
@@ -98,19 +95,12 @@ TEST(Rolling, ADiscOnATurningPlank) {
 //   (I + m h^2 + m R^2 phi^2) phi'' = m g (h sin phi - R phi cos phi) - m R^2 phi phi'^2.
 TEST(Rolling, ABoxThatRocksOnADisc) {
   const double R = 0.6, h = 0.1, m = 2.0, start = 0.4;
-  Scene scene;
-  scene.bodies.push_back(body("disc", BodyKind::fixed, 0.0, 0.0, R, 1.0));
-  Body box = body("box", BodyKind::free, 0.0, 0.0, 1.0, m);
-  make_polygon(box, box_corners(1.2, 2.0 * h), 0.0);
+  const Scene scene = box_on_disc(1);
+  const double I = scene.bodies[1].inertia.value();
   const auto place = [&](double phi) {
     const Vec2 out(std::sin(phi), std::cos(phi)), along(std::cos(phi), -std::sin(phi));
     return Vec2((R + h) * out - R * phi * along);
   };
-  box.position = place(start);
-  box.angle = -start;
-  const double I = box.inertia.value();
-  scene.bodies.push_back(box);
-  for (Body& b : scene.bodies) b.contact_friction = 2.0;
   const auto rates = [&](const std::array<double, 2>& x) -> std::array<double, 2> {
     const auto& [phi, speed] = x;
     const double force = m * g * (h * std::sin(phi) - R * phi * std::cos(phi));
