@@ -50,11 +50,11 @@ struct Contact {
   int slips_on = -1;        // that body, a or b;
   int slips_corner = -1;    // corner of the cable's link there, or -1;
   std::int8_t slips_way = 0;  // its orientation
+  Slip slip = Slip::stick;    // of b along left(normal), where there is friction; by the active set
   bool touching = false;      // by the active set
   bool rebounds = false;      // has just rebounded: bears nothing until it has parted; by impact
   std::int64_t struck = -1;   // step in which it last did
-  Slip slip = Slip::stick;  // of b along left(normal), of what has a tangent row; by the active set
-  double normal_force = 0.0;   // N, of the last step, >= 0
+  double normal_force = 0.0;  // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)
   Curvature curvature{};       // of its normal row, by note_curvatures
 };

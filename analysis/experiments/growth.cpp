@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -69,7 +70,8 @@ double copy_seconds(const Scene& scene, bool over_old, const Effort& effort) {
   steps.step();
   World copy = steps.world();
   const auto copy_over = [&] { copy = steps.world(); };
-  const auto copy_anew = [&] { World made = steps.world(); };
+  std::optional<World> made;
+  const auto copy_anew = [&] { made.emplace(steps.world()); };
   return (over_old ? measure_call(copy_over, effort) : measure_call(copy_anew, effort))
       .seconds.median;
 }

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <vector>
 
 #include "sim/solve/part_system.h"
@@ -157,7 +156,9 @@ bool presses(const Contact& contact, int cable, const Link& link);
 struct ArcCut {
   double arc;  // rad after the link's tail
   int contact;
-  auto operator<=>(const ArcCut&) const = default;
+  bool operator<(const ArcCut& other) const {
+    return arc != other.arc ? arc < other.arc : contact < other.contact;
+  }
 };
 
 /// The places on a link of a cable at which contacts press it, in their order, within its `wrap`
