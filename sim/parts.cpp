@@ -22,31 +22,18 @@ namespace {
 /// or swings is as slow as what rests for a moment only, where it turns round.
 constexpr double rest_time = 0.5;
 
-/// The pairs in contact, what presses which cable that may slip, and the changes of all cables;
-/// false if they are those of the last time, as contacts are that were kept.
+/// The pairs in contact, the cables that may slip where these press them, and the changes of all
+/// cables; false if they are those of the last time, as contacts are that were kept.
 bool structure_changed(const World& world, bool contacts_kept, Parts& parts) {
   const int changes = world.changes;
-  const std::size_t count = world.contacts.size();
-  bool same = changes == parts.changes && parts.structure.size() == 2 * count;
-  std::size_t pressing = 0;
-  for (std::size_t i = 0; same && !contacts_kept && i < count; ++i) {
-    const Contact& contact = world.contacts[i];
-    same = parts.structure[2 * i] == contact.a && parts.structure[2 * i + 1] == contact.b;
-    if (contact.slipping_cable < 0) continue;
-    same = same && pressing < parts.pressing.size() &&
-           parts.pressing[pressing++] == Pressing{static_cast<int>(i), contact.slipping_cable};
+  bool same = changes == parts.changes && parts.structure.size() == world.contacts.size();
+  for (std::size_t i = 0; same && !contacts_kept && i < world.contacts.size(); ++i) {
+    same = parts.structure[i] == Joined(world.contacts[i]);
   }
-  if (same && (contacts_kept || pressing == parts.pressing.size())) return false;
+  if (same) return false;
   parts.changes = changes;
   parts.structure.clear();
-  parts.pressing.clear();
-  for (std::size_t i = 0; i < count; ++i) {
-    const Contact& contact = world.contacts[i];
-    parts.structure.push_back(contact.a);
-    parts.structure.push_back(contact.b);
-    if (contact.slipping_cable < 0) continue;
-    parts.pressing.push_back({static_cast<int>(i), contact.slipping_cable});
-  }
+  for (const Contact& contact : world.contacts) parts.structure.emplace_back(contact);
   return true;
 }
 
@@ -62,7 +49,7 @@ int body_of_cable(const World& world, const CableState& cable) {
   return -1;
 }
 
-void join_bodies(const World& world, const std::vector<Pressing>& all, std::vector<int>& root) {
+void join_bodies(const World& world, std::vector<int>& root) {
   root.resize(world.bodies.size());
   std::iota(root.begin(), root.end(), 0);
   for (const int shape : world.carried) {
@@ -77,16 +64,16 @@ void join_bodies(const World& world, const std::vector<Pressing>& all, std::vect
     }
   }
   for (const Contact& contact : world.contacts) {
+    if (contact.slipping_cable >= 0) {
+      const int moved = body_of_cable(world, at(world.cables, contact.slipping_cable));
+      const int presser = body_of_contact(world, contact);
+      if (moved >= 0 && !is_static(at(world.bodies, presser))) join(root, moved, presser);
+    }
     if (contact.b < 0 || is_static(at(world.bodies, contact.a)) ||
         is_static(at(world.bodies, contact.b))) {
       continue;
     }
     join(root, contact.a, contact.b);
-  }
-  for (const Pressing& pressing : all) {
-    const int moved = body_of_cable(world, at(world.cables, pressing.cable));
-    const int presser = body_of_contact(world, at(world.contacts, pressing.contact));
-    if (moved >= 0 && !is_static(at(world.bodies, presser))) join(root, moved, presser);
   }
 }
 
@@ -114,7 +101,7 @@ void list_by_part(std::vector<Part>& list, int count, PartOf part_of, int Part::
 /// Which part each body and each cable is in; returns how many parts there are. Their order is that
 /// of their first bodies, then of cables without any, then of all that are dormant.
 int number_parts(const World& world, Parts& parts) {
-  join_bodies(world, parts.pressing, parts.root);
+  join_bodies(world, parts.root);
   const int bodies = static_cast<int>(world.bodies.size());
   int count = 0;
   parts.of_body.assign(index(bodies), -1);

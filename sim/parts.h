@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/at.h"
+#include "sim/contact.h"
 #include "sim/scene.h"
 
 namespace pinchlab {
@@ -49,10 +50,13 @@ inline bool is_idle(const Part& part) {
   return part.asleep || part.waits;
 }
 
-/// A contact that presses a cable which may slip there (Contact::slipping_cable).
-struct Pressing {
-  int contact, cable;
-  bool operator==(const Pressing&) const = default;
+/// What a contact joins into one part: its bodies, and a cable that may slip where it is pressed.
+struct Joined {
+  int a, b, cable;
+
+  explicit Joined(const Contact& contact)
+      : a(contact.a), b(contact.b), cable(contact.slipping_cable) {}
+  bool operator==(const Joined&) const = default;
 };
 
 /// Lists of all parts, one after another; a part's own are given by bodies_of and so on.
@@ -69,9 +73,8 @@ struct Parts {
   bool any_moves = true;       // a body of a part that is awake may change gaps
   std::vector<char> immobile;  // whether the body cannot change gaps
   std::vector<int> movers;     // bodies whose centre can
-  std::vector<int> structure;  // what the parts were found for: pairs in contact,
-  std::vector<Pressing> pressing;
-  int changes = -1;         // and CableState::changes of all cables
+  std::vector<Joined> structure;  // what the parts were found for: contacts,
+  int changes = -1;               // and CableState::changes of all cables
   bool divided = true;      // anew, for the contacts that there are: they may have other places
   std::vector<int> root;    // of each body's tree while parts are found
   std::vector<char> taken;  // systems that go on with their parts, while parts are found

@@ -265,7 +265,7 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   meeting.gap = out.distance - radius - other_radius;
   meeting.normal = of_a ? Vec2(-out.normal) : out.normal;
   meeting.point = point - (radius + 0.5 * meeting.gap) * out.normal;
-  meeting.round = out.round;
+  if (out.round) meeting.apart = out.distance;
   return meeting;
 }
 

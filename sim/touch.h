@@ -30,7 +30,7 @@ struct Meeting {
   double gap = 0.0;            // m, below 0: they overlap
   Vec2 normal = Vec2::Zero();  // unit, from a towards b
   Vec2 point = Vec2::Zero();   // m, midway between the surfaces
-  bool round = false;          // both are round there: the normal is from centre to centre
+  double apart = 0.0;          // m, where both are round there: between their centres; else 0
 };
 
 /// Whether it is with the end of a cable that is held in the world.

@@ -58,7 +58,7 @@ std::string page_of_growth(const std::vector<std::vector<std::string>>& rows) {
          markdown_table({"what", "sizes", "instructions a unit", "exponent"}, rows);
 }
 
-/// The scenes of the stress test that grow (growth.h).
+/// The scenes of the stress test that grow.
 std::string count_growth(const std::filesystem::path& file, Csv& csv) {
   constexpr int few = 5, many = 15;  // steps of scenes that move
   std::vector<std::vector<std::string>> rows;

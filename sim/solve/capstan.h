@@ -56,7 +56,7 @@ struct CapstanScratch {
   std::vector<Run> runs;
   std::vector<Passage> passages;
   std::vector<int> pressing;              // contacts, by list_pressing
-  std::vector<ArcCut> cuts;               // storage of append_passages
+  std::vector<ArcCut> cuts;               // storage, by find_cuts
   std::vector<int> segments, run_before;  // rows of the sliding cables' segments, and the run
                                           // before each; -1 at an open cable's start
   std::vector<int> cable_begin;           // into these two, one a sliding cable; and the end

@@ -107,26 +107,23 @@ double change_of_sliding(const World& world, const Contact& contact, double leng
   const Course a = course_of(world, contact.a), b = course_of(world, contact.b);
   Vec2 point;
   Course of_point, of_outline = a;
-  double radii = rim_radius(at(world.bodies, contact.a));
   if (contact.touch == Touch::end_of_wall) {
     const Obstacle& wall = at(world.obstacles, contact.wall);
     point = contact.point == 0 ? wall.a : wall.b;
-    radii += wall.radius;
   } else {
     const bool of_a = contact.touch == Touch::point_of_a;
     point = place_of_point(world, of_a ? contact.a : contact.b, contact.point);
     of_point = of_a ? a : b;
     of_outline = of_a ? b : a;
-    if (contact.b >= 0) radii += rim_radius(at(world.bodies, contact.b));
   }
   const Meeting meeting = meeting_of(world, contact);
   const Vec2 from_point = meeting.point - point;
   double turning = of_outline.turning;  // rad/s, of n
-  if (meeting.round) {
-    const double distance = radii + meeting.gap, off = from_point.norm();
-    if (!(off > 0.0) || !(distance > 0.0)) return 0.0;  // corner on corner, neither rounded
-    const Vec2 way = from_point / off, other = point + distance * way;
-    turning = left(way).dot(of_outline.at(other) - of_point.at(point)) / distance;
+  if (meeting.apart > 0.0) {
+    const double off = from_point.norm();
+    if (!(off > 0.0)) return 0.0;  // corner on corner, neither rounded
+    const Vec2 way = from_point / off, other = point + meeting.apart * way;
+    turning = left(way).dot(of_outline.at(other) - of_point.at(point)) / meeting.apart;
   }
   const Vec2 moves = of_point.at(point) + turning * left(from_point);
   const Vec2 sweep = b.turning * (moves - b.velocity) - a.turning * (moves - a.velocity);

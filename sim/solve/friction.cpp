@@ -234,32 +234,34 @@ void append_passages(const World& world, PartSystem& system, SolveScratch& scrat
   const CableState& cable = at(world.cables, cable_number);
   const double pinched_mu = friction_in_pinch(world, cable, at(cable.links, first).body);
   const bool three = world.configuration.pinch_rows == PinchRows::three;
-  if (!three) append_pressed_end(world, scratch, at(cable.segments, first), pinched_mu, passages);
-  for (int i = first;; i = next_link(cable, i)) {
-    const Link& part = at(cable.links, i);
-    if (!part.pinch_middle) {
-      append_arc(world, system, scratch, cable_number, i, at(system.wraps, begin + i), run,
-                 passages);
-      if (i == last) break;
-      continue;
-    }
+  const auto passage_of_middle = [&](int i) {
+    const Link& middle = at(cable.links, i);
     Passage passage;
     if (first == last) {
       passage.factor = capstan_factor(pinched_mu, middle_arc);
-    } else {
-      passage.middle = row_of_segment[i];
-      if (three) {
-        passage.middle_out = row_of_segment[next_link(cable, i)];
-        passage.middle_factor =
-            capstan_factor(friction_in_pinch(world, cable, part.body), middle_arc);
-      } else {
-        at(system.frictions, at(system.rows, passage.middle).friction).run = run;
-        const Press press = press_of(world, scratch, part.contact, pinched_mu);
-        passage.normal = press.normal;
-        passage.friction = press.friction;
-      }
+      return passage;
     }
-    passages.push_back(passage);
+    passage.middle = row_of_segment[i];
+    if (three) {
+      passage.middle_out = row_of_segment[next_link(cable, i)];
+      passage.middle_factor =
+          capstan_factor(friction_in_pinch(world, cable, middle.body), middle_arc);
+    } else {
+      at(system.frictions, at(system.rows, passage.middle).friction).run = run;
+      const Press press = press_of(world, scratch, middle.contact, pinched_mu);
+      passage.normal = press.normal;
+      passage.friction = press.friction;
+    }
+    return passage;
+  };
+  if (!three) append_pressed_end(world, scratch, at(cable.segments, first), pinched_mu, passages);
+  for (int i = first;; i = next_link(cable, i)) {
+    if (at(cable.links, i).pinch_middle) {
+      passages.push_back(passage_of_middle(i));
+    } else {
+      append_arc(world, system, scratch, cable_number, i, at(system.wraps, begin + i), run,
+                 passages);
+    }
     if (i == last) break;
   }
   if (three) return;

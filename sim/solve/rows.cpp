@@ -41,17 +41,6 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
   return sleeve >= 0 ? at(s.sleeves, sleeve).place : body;
 }
 
-/// The sleeve's that a contact presses, or -1: what presses a rope that slips rubs on that.
-int place_of_pressed_sleeve(const World& world, const PartSystem& s, const Contact& contact) {
-  if (contact.slipping_cable < 0) return -1;
-  const int cable = contact.slipping_cable;
-  const std::vector<Link>& links = at(world.cables, cable).links;
-  for (int i = 0; index(i) < links.size(); ++i) {
-    if (presses(contact, cable, at(links, i))) return place_of_sleeve(world, s, cable, i, -1);
-  }
-  return -1;
-}
-
 bool has_fixed_lever(const World& world, const Link& link) {
   return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
 }
@@ -224,29 +213,34 @@ void add_friction(PartSystem& s, const Friction& friction) {
   s.frictions.push_back(friction);
 }
 
-/// The rows of a contact that can give way.
-void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
-                         const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
-  const Contact& contact = at(world.contacts, number);
-  const int a = place_of(parts, s, contact.a), b = place_of(parts, s, contact.b);
-  const int normal = append_row(s, a, b);
-  at(scratch.normal_row_of_contact, number) = normal;
-  s.rows.back().index = number;
-  set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
-  const bool on_piece = contact.touch == Touch::piece;
-  if (on_piece) set_bodies_at_piece(world, parts, contact, false, s, normal);
-  weigh(s, normal);
+/// The place of the sleeve that a contact presses, or else of the body `slips_on`: what presses a
+/// rope that slips rubs on its sleeve.
+int place_that_is_pressed(const World& world, const PartSystem& s, const Contact& contact,
+                          int body) {
+  if (s.sleeves.empty()) return body;
+  const int cable = contact.slipping_cable;
+  const std::vector<Link>& links = at(world.cables, cable).links;
+  for (int i = 0; index(i) < links.size(); ++i) {
+    if (presses(contact, cable, at(links, i))) return place_of_sleeve(world, s, cable, i, body);
+  }
+  return body;
+}
 
-  const double mu = coefficient_of(world, contact);
-  if (mu == 0.0 || only_turns_one(world, contact)) return;
-  const int sleeve = s.sleeves.empty() ? -1 : place_of_pressed_sleeve(world, s, contact);
-  const bool on_a = contact.slips_on == contact.a;
-  const int tangent =
-      append_row(s, sleeve >= 0 && on_a ? sleeve : a, sleeve >= 0 && !on_a ? sleeve : b);
+/// The friction of a contact of coefficient mu, whose normal row that is.
+void append_tangent_row(const World& world, const Parts& parts, int normal, double mu,
+                        const TimeSpan& interval, PartSystem& s) {
+  const Contact& contact = at(world.contacts, at(s.rows, normal).index);
+  const bool in_pinch = contact.slipping_cable >= 0;
+  int a = at(s.bodies, normal).a, b = at(s.bodies, normal).b;
+  if (in_pinch) {
+    int& pressed = contact.slips_on == contact.a ? a : b;
+    pressed = place_that_is_pressed(world, s, contact, pressed);
+  }
+  const int tangent = append_row(s, a, b);
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
-  row.index = number;
-  if (on_piece) {
+  row.index = at(s.rows, normal).index;
+  if (contact.touch == Touch::piece) {
     set_bodies_at_piece(world, parts, contact, true, s, tangent);
   } else {
     set_tangent_bodies(world, contact, interval, s.bodies.back());
@@ -262,11 +256,28 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   }
   weigh(s, tangent);
   Friction friction = contact_friction(tangent, normal, mu);
-  if (contact.slipping_cable >= 0) {
+  if (in_pinch) {
     const CableState& cable = at(world.cables, contact.slipping_cable);
     friction.wrapped = friction_in_pinch(world, cable, contact.slips_on);
   }
   add_friction(s, friction);
+}
+
+/// The rows of a contact that can give way.
+void append_contact_rows(const Scene& scene, const World& world, const Parts& parts, int number,
+                         const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
+  const Contact& contact = at(world.contacts, number);
+  const int normal = append_row(s, place_of(parts, s, contact.a), place_of(parts, s, contact.b));
+  at(scratch.normal_row_of_contact, number) = normal;
+  s.rows.back().index = number;
+  set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
+  if (contact.touch == Touch::piece) {
+    set_bodies_at_piece(world, parts, contact, false, s, normal);
+  }
+  weigh(s, normal);
+  const double mu = coefficient_of(world, contact);
+  if (mu == 0.0 || only_turns_one(world, contact)) return;
+  append_tangent_row(world, parts, normal, mu, interval, s);
 }
 
 /// The rows of middle bodies as they are before a solve, by what bounds them.
