@@ -52,6 +52,32 @@ Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   return {distance, (point - end) / distance, true};
 }
 
+double along_side(std::span<const Vec2> corners, const Vec2& point) {
+  const std::size_t count = corners.size();
+  std::size_t nearest = 0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    double length = 0.0;
+    const double distance = way_out(corners, i, length).dot(point - corners[i]);
+    if (distance <= most) continue;
+    most = distance;
+    nearest = i;
+  }
+  if (most == 0.0) return infinity;
+  // From either end, inwards; of the side beyond the one that it is beyond likewise.
+  const auto from_ends = [&](std::size_t i) {
+    double length = 0.0;
+    const double along = left(way_out(corners, i, length)).dot(point - corners[i]);
+    return std::min(along, length - along);
+  };
+  const double here = from_ends(nearest);
+  if (here >= 0.0) return here;
+  double length = 0.0;
+  const bool before = left(way_out(corners, nearest, length)).dot(point - corners[nearest]) < 0.0;
+  const double there = from_ends((nearest + (before ? count - 1 : 1)) % count);
+  return std::max(here, there);
+}
+
 Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
                          double most) {
   Outside out;

@@ -49,8 +49,13 @@ struct Outside {
 /// Of a point from the polygon of these corners, counter-clockwise, all in one frame.
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point);
 
-/// The same from the polygon's sides whose ways out make an angle with `way` whose cosine is at
-/// most `most`, gone on with to both ends: below 0 where the point is behind all of them.
+/// How far the polygon's point that is nearest to one outside of it is from where its side ends,
+/// along it (m); below 0 it is a corner, and the one outside is so far beyond the nearer of the two
+/// sides that meet there. Infinity inside.
+double along_side(std::span<const Vec2> corners, const Vec2& point);
+
+/// As outside_of, from the polygon's sides whose ways out make an angle with `way` whose cosine is
+/// at most `most`, gone on with to both ends: below 0 where the point is behind all of them.
 Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
                          double most);
 

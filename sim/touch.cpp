@@ -269,6 +269,24 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   return meeting;
 }
 
+double on_straight(const World& world, const Contact& contact, const std::vector<Vec2>& position,
+                   const std::vector<double>& angle) {
+  if (contact.touch == Touch::circles && contact.b < 0 && !is_end_of_cable(world, contact)) {
+    const Obstacle& wall = at(world.obstacles, contact.wall);
+    const Vec2 way = wall.b - wall.a;
+    const double length = way.norm();
+    const double along = way.dot(at(position, contact.a) - wall.a) / length;
+    return std::min(along, length - along);
+  }
+  const bool of_a = contact.touch == Touch::point_of_a;
+  if (contact.b < 0 || (!of_a && contact.touch != Touch::point_of_b)) return infinity;
+  const int disc = of_a ? contact.a : contact.b, other = of_a ? contact.b : contact.a;
+  const BodyProperties& outline = at(world.bodies, other);
+  if (is_polygon(at(world.bodies, disc)) || !is_polygon(outline)) return infinity;
+  const Vec2 from = at(position, disc) - at(position, other);
+  return along_side(outline.corners, turned(from, -at(angle, other)));
+}
+
 void append_touches(const World& world, int a, int b, int wall, double most,
                     std::vector<Contact>& to) {
   const auto first = static_cast<std::ptrdiff_t>(to.size());

@@ -47,6 +47,12 @@ Vec2 place_of_point(const World& world, int body, int point);
 /// other's touches.
 Vec2 nearest_place(const World& world, const Contact& contact, int body);
 
+/// How far the place where a disc touches a wall or polygon is from where its outline begins to
+/// bend, for such places of bodies (m and rad, as of World): above 0 on a straight part of it,
+/// below 0 round a corner. Infinity for contacts of anything else.
+double on_straight(const World& world, const Contact& contact, const std::vector<Vec2>& position,
+                   const std::vector<double>& angle);
+
 /// Brings a contact's gap and normal up to the bodies' present positions.
 void measure(const World& world, Contact& contact);
 

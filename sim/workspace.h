@@ -23,23 +23,26 @@ struct Release {
   int cable, body, orientation;
 };
 
-/// What may happen within an interval, and then ends it: advance.h.
-enum class EventKind : std::int8_t { catches, link_gone, hit };
+/// What may happen within an interval, and then ends it: events.h. The last two are jumps.h's.
+enum class EventKind : std::int8_t { catches, link_gone, hit, halts, turns };
 
 struct Happening {
   EventKind kind;
-  int part = -1;        // catches: of its row
-  int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight
-  int cable = -1;       // link_gone, hit
+  int part = -1;        // catches, halts, turns
+  int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight;
+                        // halts, turns: a contact, if it is one
+  int cable = -1;       // link_gone, hit; halts, of one
   int item = -1;        // link; or span
-  int body = -1;        // hit
+  int body = -1;        // hit; halts, turns: whose motor it is, if it is one
   int corner = -1;      // hit: of the body, if it is a polygon
   int orientation = 0;  // hit
   bool beside = false;  // hit: the body is beside the span when the first trial ends
   double clearance =
-      0.0;             // m, that was left of it at the end of the last trial; negative: too late
-  double reach = 0.0;  // m, to within which it must be met
-  bool seen = false;   // in the last trial
+      0.0;             // m, that was left of it at the end of the last trial; negative: too late.
+                       // Of what slides the way that it would make in a step; s, of a motor's table
+  double reach = 0.0;  // likewise, to within which it must be met
+  double before = infinity;  // likewise, that was left when the interval began, where it is known
+  bool seen = false;         // in the last trial
 };
 
 /// Where things were when an interval began: by begin_interval.
@@ -49,6 +52,7 @@ struct Start {
   std::vector<double> angle, angular_velocity;
   std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
                                        // m, and m/s
+  std::vector<Slip> contact_slip;      // of World::contacts, where they are of what moves
   std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 

@@ -7,6 +7,8 @@
 
 #include "analysis/experiments/references.h"
 #include "demos/scenes/build.h"
+#include "demos/scenes/shape_scenes.h"
+#include "sim/outline.h"
 
 namespace pinchlab::experiments {
 
@@ -202,9 +204,95 @@ Problem looping_pendulum() {
                     });
 }
 
+// Up with v' = -g (sin th + mu cos th), down with v' = -g (sin th - mu cos th).
+Problem box_on_a_slope() {
+  constexpr double slope = 0.5, friction = 0.3, speed = 2.0, high = 0.2;
+  const Vec2 along(std::cos(slope), std::sin(slope)), up(-along.y(), along.x());
+  Scene scene;
+  scene.walls.push_back({-5.0 * along, 5.0 * along, friction, 0.0});
+  Body box = body("box", BodyKind::free, 0.5 * high * up, 1.0);
+  make_polygon(box, build::box_corners(2.0 * high, high), 0.0);
+  box.angle = slope;
+  box.velocity = speed * along;
+  box.contact_friction = friction;
+  scene.bodies.push_back(box);
+  const double braked = g * (along.y() + friction * along.x());
+  const double driven = g * (along.y() - friction * along.x());
+  const double rests = speed / braked;  // s
+  return known("box-on-a-slope", "A box that slides up a slope and down again", scene, 54,
+               [&](double t, std::size_t) -> Vec2 {
+                 const double before = std::min(t, rests), after = t - before;
+                 const double way =
+                     speed * before - 0.5 * braked * before * before - 0.5 * driven * after * after;
+                 return box.position + way * along;
+               });
+}
+
+// Round the edge it would go with v^2 / R > g, and so flies off it.
+Problem ball_off_a_table() {
+  constexpr double R = 0.2, speed = 2.0, way = 0.513;
+  Scene scene;
+  Body table = body("table", BodyKind::fixed, -1.0, -0.1, 1.0);
+  make_polygon(table, build::box_corners(2.0, 0.2), 0.0);
+  scene.bodies.push_back(table);
+  Body ball = body("ball", BodyKind::free, -way, R, R);
+  ball.velocity = {speed, 0.0};
+  ball.angular_velocity = -speed / R;
+  scene.bodies.push_back(ball);
+  return known("ball-off-a-table", "A ball that rolls off a table's edge", scene, 60,
+               [&](double t, std::size_t b) -> Vec2 {
+                 if (b == 0) return table.position;
+                 const double falls = std::max(0.0, t - way / speed);
+                 return {speed * t - way, R - 0.5 * g * falls * falls};
+               });
+}
+
+// Between equal loads on a drum on which their cable slips all the time, v' = +-g (k - 1) / (k + 1)
+// with k = exp(mu pi), towards the rim's speed u; that changes too fast for them to follow.
+Problem slip_on_a_drum() {
+  constexpr double radius = 0.5, friction = 0.2, low = -3.0;
+  const double R = radius + build::cable_half_width;
+  const double k = std::exp(friction * std::numbers::pi), a = g * (k - 1.0) / (k + 1.0);
+  Scene scene;
+  Body drum = body("drum", BodyKind::fixed_axle, 0.0, 0.0, radius);
+  drum.cable_friction = friction;
+  drum.motor = {{0.0, 6.0}, {0.503, -6.0}, {1.01, 6.0}, {1.497, -6.0}, {2.1, 6.0}};
+  drum.driven_angular_velocity = drum.angular_velocity = drum.motor[0].value;
+  scene.bodies.push_back(drum);
+  for (const double side : {-1.0, 1.0}) {
+    scene.bodies.push_back(body(side < 0.0 ? "left" : "right", BodyKind::rail, side * R, low, 0.1));
+  }
+  scene.cables.push_back(build::cable(build::on(1), {{0, -1, 0}}, build::on(2)));
+  const auto raised = [&](double t) {  // m, of the right one
+    double v = 0.0, way = 0.0;
+    for (std::size_t i = 0; i + 1 < drum.motor.size() && drum.motor[i].time < t; ++i) {
+      const MotorPoint &from = drum.motor[i], &to = drum.motor[i + 1];
+      const double change = R * (to.value - from.value) / (to.time - from.time);
+      double left = std::min(t, to.time) - from.time, slip = R * from.value - v;
+      const double until =
+          slip * change < 0.0 ? slip / ((slip > 0.0 ? a : -a) - change) : infinity;  // s, to rest
+      const auto pass = [&](double time, double rate) {
+        way += (v + 0.5 * rate * time) * time;
+        v += rate * time;
+      };
+      const double first = std::min(left, until);
+      pass(first, slip > 0.0 ? a : -a);
+      pass(left - first, change > 0.0 ? a : -a);
+    }
+    return way;
+  };
+  return known("slip-on-a-drum", "A cable slips to and fro on a drum whose motor swings", scene,
+               120, [&](double t, std::size_t b) -> Vec2 {
+                 if (b == 0) return Vec2::Zero();
+                 const double side = b == 1 ? -1.0 : 1.0;
+                 return {side * R, low + side * raised(t)};
+               });
+}
+
 std::vector<Problem> event_problems() {
-  return {bouncing_ball(),      ball_between_walls(), caught_load(),     caught_over_a_peg(),
-          two_on_slack_cable(), galileos_peg(),       looping_pendulum()};
+  return {bouncing_ball(),      ball_between_walls(), caught_load(),      caught_over_a_peg(),
+          two_on_slack_cable(), galileos_peg(),       looping_pendulum(), box_on_a_slope(),
+          ball_off_a_table(),   slip_on_a_drum()};
 }
 
 }  // namespace pinchlab::experiments

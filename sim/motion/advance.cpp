@@ -31,6 +31,8 @@ namespace {
 // end lies still for the other half of those that are located. Both bound what a step may cost.
 constexpr int most_rebounds = 24;
 constexpr int most_events = 48;
+// Beside these: friction that turns round and back without end is a jam's.
+constexpr int most_jumps = 8;
 
 // Of links, in one step: 500, and ten a body. Where more come and go, spans are being wound round
 // what they are in without end, each change making more, and steps last minutes.
@@ -191,6 +193,23 @@ Pace note_ways(World& world, const Workspace& work, const Part& part, const Inte
   return after;
 }
 
+/// Whether forces jump by these, and nothing meets or comes off.
+bool only_jump(const std::vector<Happening>& events) {
+  bool any = false;
+  for (const Happening& event : events) {
+    if (event.clearance > event.reach) continue;
+    if (event.kind < EventKind::halts) return false;
+    any = true;
+  }
+  return any;
+}
+
+/// What moves by the next interval of neighbourhood `n`.
+Movers movers_of(const Neighbourhoods& near, int n) {
+  const Neighbourhood& course = at(near.list, n);
+  return {parts_of(near, n), course.crept, course.jumps < most_jumps};
+}
+
 /// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
 void finish_interval(const Scene& scene, World& world, Workspace& work, int n, double length,
                      bool met) {
@@ -214,7 +233,7 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   course.violated = !met || work.trial.violated;
   if (!met) ++course.events;
   if (!course.happened) return;
-  ++course.events;
+  ++(only_jump(work.events) ? course.jumps : course.events);
   ++d.events;
   catch_up(scene, world, parts, course.time, work);
   change_courses(world, work);
@@ -260,11 +279,12 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
 
 /// Moves a neighbourhood by less than the interval of `length` (s) that was just tried in vain; how
 /// long. `met` as for shorten_interval.
-double shorten(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+double shorten(const Scene& scene, World& world, Workspace& work, Movers& movers,
                Neighbourhood& course, double length, bool& met, Stopwatch& watch) {
   constexpr double next_to_nothing = 1e-2;  // halvings for other reasons end at a 32nd
   const double shorter = shorten_interval(scene, world, work, movers, length, met, watch);
   course.crept = work.events.empty() && shorter < next_to_nothing * length;
+  if (!movers.jumps) course.jumps = most_jumps;
   return shorter;
 }
 
@@ -288,7 +308,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, const Round&
           Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
   Neighbourhood& course = at(near.list, n);
-  const Movers movers{parts_of(near, n), course.crept};
+  Movers movers = movers_of(near, n);
   near.moving = movers.parts;
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
   // What may be divided into neighbourhoods is tried as a whole.
@@ -339,7 +359,7 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
   for (int n = 0; index(n) < near.list.size(); ++n) {
     Neighbourhood& course = at(near.list, n);
     if (course.left == 0.0) continue;
-    const Movers movers{parts_of(near, n)};
+    Movers movers = movers_of(near, n);
     const auto events =
         slice(near.events.items, at(near.events.begin, n), at(near.events.begin, n + 1));
     work.events.clear();

@@ -14,6 +14,7 @@
 #include "sim/detect/detect.h"
 #include "sim/detect/span_hits.h"
 #include "sim/motion/clearance.h"
+#include "sim/motion/jumps.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -32,16 +33,6 @@ Happening* find(Workspace& work, const Happening& key) {
       [&work](int e, const Happening& k) { return key_of(at(work.events, e)) < key_of(k); });
   if (it == known.end() || key_of(at(work.events, *it)) != key_of(key)) return nullptr;
   return &at(work.events, *it);
-}
-
-/// Notes what is left of an event; a new one only where it is late by `late` or more (m; below 0:
-/// or nearly there).
-void measure(Workspace& work, const Happening& key, double clearance, double late) {
-  Happening* event = find(work, key);
-  if (!event && clearance >= -late) return;
-  if (!event) event = &work.events.emplace_back(key);
-  event->clearance = clearance;
-  event->seen = true;
 }
 
 /// Takes a node in, and the cable off a rim beside it where the node had bent it away from that.
@@ -100,6 +91,14 @@ void begin_trial(Workspace& work) {
   for (Happening& event : work.events) event.seen = false;
 }
 
+void measure(Workspace& work, const Happening& key, double clearance, double late) {
+  Happening* event = find(work, key);
+  if (!event && clearance >= -late) return;
+  if (!event) event = &work.events.emplace_back(key);
+  event->clearance = clearance;
+  event->seen = true;
+}
+
 void find_catches(const World& world, Workspace& work, int number) {
   const Part& part = at(work.parts.list, number);
   const PartSystem& s = at(work.systems, part.system);
@@ -120,6 +119,7 @@ void find_catches(const World& world, Workspace& work, int number) {
     const double late_by = !releases && row.clearance > s.reach ? -s.reach : late;
     if (!any_known && clearance >= -late_by) continue;  // as most: no search for these
     key.row = static_cast<int>(r);
+    key.before = releases ? -row.clearance : row.clearance;
     measure(work, key, clearance, late_by);
   }
   if (!slides) return;
@@ -133,6 +133,7 @@ void find_catches(const World& world, Workspace& work, int number) {
         now += clearance_of(world, row);
       }
       key.row = at(capstan.members, group.begin);
+      key.before = -before;
       if (before < -s.reach) measure(work, key, -now, late);
       continue;
     }
@@ -143,6 +144,7 @@ void find_catches(const World& world, Workspace& work, int number) {
       now += term.coefficient * clearance_of(world, row);
     }
     key.row = at(capstan.members, group.slack);
+    key.before = before;
     if (before > s.reach) measure(work, key, now, -s.reach);
   }
 }
@@ -192,11 +194,36 @@ void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
   work.events.resize(kept);
 }
 
+namespace {
+
+/// Where an event is aimed at, over its reach.
+double aim_of(const Happening& event) {
+  return event.kind == EventKind::catches ? aim : -aim;
+}
+
+/// Of its reaches, until where it is aimed at.
+double left_until(const Happening& event) {
+  return event.clearance / event.reach - aim_of(event);
+}
+
+}  // namespace
+
 double least_clearance(const std::vector<Happening>& events) {
   double least = infinity;
+  for (const Happening& event : events) least = std::min(least, left_until(event));
+  return least;
+}
+
+bool is_jump_first(const std::vector<Happening>& events) {
+  const auto first = std::ranges::min_element(events, {}, left_until);
+  return first != events.end() && first->kind >= EventKind::halts;
+}
+
+double least_before(const std::vector<Happening>& events) {
+  double least = infinity;
   for (const Happening& event : events) {
-    const double wanted = event.kind == EventKind::catches ? aim : -aim;
-    least = std::min(least, event.clearance / event.reach - wanted);
+    if (event.before == infinity) return infinity;
+    least = std::min(least, event.before / event.reach - aim_of(event));
   }
   return least;
 }
@@ -208,7 +235,9 @@ void change_courses(World& world, Workspace& work) {
   });
   int cable_changed = -1, item_changed = -1;
   for (const Happening& event : work.events) {
-    if (event.cable < 0 || event.clearance > event.reach) continue;
+    if (event.kind == EventKind::halts && event.clearance <= event.reach) halt(world, event);
+    if (event.kind >= EventKind::halts || event.cable < 0 || event.clearance > event.reach)
+      continue;
     CableState& cable = at(world.cables, event.cable);
     if (event.cable == cable_changed && item_changed - event.item < 2) continue;
     cable_changed = event.cable;

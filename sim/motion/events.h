@@ -14,6 +14,10 @@ struct Workspace;
 /// Another trial of the interval begins.
 void begin_trial(Workspace& work);
 
+/// Notes what is left of an event in this trial (m; below 0: too late); a new one only where it is
+/// late by `late` or more (below 0: or nearly there).
+void measure(Workspace& work, const Happening& key, double clearance, double late);
+
 /// Catches of a part: rows that idle and would have to bear force at the present positions,
 /// contacts that close and cables that are pulled tight. New ones are listed, known ones measured
 /// anew.
@@ -33,6 +37,12 @@ constexpr double aim = 0.25;
 
 /// Of the events the one of least clearance, over its reach; 0 where it is aimed at.
 double least_clearance(const std::vector<Happening>& events);
+
+/// The same when the interval began; infinity where that is not known of any.
+double least_before(const std::vector<Happening>& events);
+
+/// Whether that one is a jump (jumps.h).
+bool is_jump_first(const std::vector<Happening>& events);
 
 /// Changes the cables' courses as the events have it that have been met.
 void change_courses(World& world, Workspace& work);

@@ -10,6 +10,7 @@
 #include "sim/cable/waves.h"
 #include "sim/compound.h"
 #include "sim/motion/events.h"
+#include "sim/motion/jumps.h"
 #include "sim/motion/missed.h"
 #include "sim/motion/turning.h"
 #include "sim/motion/vanishing.h"
@@ -241,6 +242,7 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     if (!attempt.locates) continue;
     find_catches(world, work, p);
     find_gone_links(world, work, p);
+    if (movers.jumps) find_jumps(scene, world, work, p, attempt.length);
   }
   if (attempt.locates) find_span_hits(scene, world, work);
   for (Happening& event : work.events) {
@@ -350,28 +352,35 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
 }
 
 /// Shortens the interval that was tried last, of `length`, to the first of its events. Returns its
-/// length; `met`: as for shorten_interval.
+/// length; `met`: as for shorten_interval. By the Illinois method: of false position, where an end
+/// that stays counts half.
 double locate_first_event(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                           double length, bool& met, Stopwatch& watch) {
   double late = length, early = 0.0;
-  double late_by = least_clearance(work.events), early_by = infinity;
+  double late_by = least_clearance(work.events), early_by = least_before(work.events);
+  if (!(early_by > 0.0)) early_by = infinity;  // as good as not known
   double tried = length;
+  bool was_late = false, was_early = false;  // the trial before
   for (int trial = 0; trial < most_trials; ++trial) {
     const double least = least_clearance(work.events);
     if (std::abs(least) <= 0.5 * aim) break;
     if (least < 0.0) {
-      if (trial > 0 && late_by < 0.0 && early_by < infinity) early_by *= 0.5;  // Illinois
+      if (was_late) early_by *= 0.5;
       late = tried;
       late_by = least;
     } else {
+      if (was_early) late_by *= 0.5;
       early = tried;
       early_by = least;
     }
+    was_late = least < 0.0;
+    was_early = !was_late;
     double share = 0.5;
     if (early_by < infinity && early_by > 0.0) share = early_by / (early_by - late_by);
     // Not so near to an end that the trial tells nothing new.
     const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
-    if (!(next > early && next < late) || late - early <= 1e-15 * length) break;
+    const double narrow = is_jump_first(work.events) ? 1e-9 : 1e-15;
+    if (!(next > early && next < late) || late - early <= narrow * length) break;
     tried = next;
     try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
     met = work.trial.met && met;
@@ -394,8 +403,10 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
   start.slip.clear();
   work.events.clear();
   if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
+  start.contact_slip.resize(world.contacts.size());
   for (const int p : movers.parts) {
     const Part& part = at(work.parts.list, p);
+    note_sliding(world, part, work);
     const bool slides = can_slide(part);
     for (const int c : cables_of(work.parts, part)) {
       at(work.first_link, c) = slides ? static_cast<int>(start.material.size()) : -1;
@@ -455,13 +466,25 @@ bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const
   return is_sound(world, work.trial, length) && work.events.empty();
 }
 
-double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+double shorten_interval(const Scene& scene, World& world, Workspace& work, Movers& movers,
                         double length, bool& met, Stopwatch& watch) {
+  const double whole = length;
   for (;;) {
     length = find_sound_interval(scene, world, work, movers, length, watch);
     met = work.trial.met;
     if (work.events.empty()) return length;
     length = locate_first_event(scene, world, work, movers, length, met, watch);
+    // What is thrown round as soon as forces act does not come to rest, however short the interval.
+    const auto is_thrown = [](const Happening& event) {
+      return event.kind >= EventKind::halts && event.clearance < -event.reach;
+    };
+    if (movers.jumps && std::ranges::any_of(work.events, is_thrown)) {
+      movers.jumps = false;
+      length = whole;
+      work.events.clear();
+      try_again(scene, world, work, movers, {length}, watch);
+      continue;
+    }
     // A node swings the faster the nearer it comes to the rim that takes it in.
     if (!is_outrun(world, work.trial, length)) return length;
     length *= next_share(interval_for(world, work.trial.wave) / length);

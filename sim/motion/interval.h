@@ -22,6 +22,7 @@ constexpr double share_of_error = 4e-5;
 struct Movers {
   std::span<const int> parts;
   bool crept = false;  // Neighbourhood::crept
+  bool jumps = true;   // jumps.h are events
 };
 
 /// Notes that an interval of these begins at `time` (s), with the world as it is: Workspace::start.
@@ -35,8 +36,8 @@ bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const
 
 /// Moves them, where a whole interval of `length` has just been tried in vain, by the longest in
 /// which nothing happens but at its end; what happens there is in Workspace::events. Returns its
-/// length. `met`: lengths and gaps are exact there.
-double shorten_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
+/// length. `met`: lengths and gaps are exact there. Clears Movers::jumps where one cannot be found.
+double shorten_interval(const Scene& scene, World& world, Workspace& work, Movers& movers,
                         double length, bool& met, Stopwatch& watch);
 
 /// Moves them by an interval of `length` (s), shortened to what waves ask for, whatever happens in

@@ -27,6 +27,7 @@ struct Neighbourhood {
   double left = 0.0;      // s, of the step
   double time = 0.0;      // s, that it has come to
   int events = 0;         // of this step, and intervals that could not be met
+  int jumps = 0;          // of this step: events that are nothing else (jumps.h)
   bool moved = false;     // in this round
   bool located = false;   // what happens in its last interval
   bool happened = false;  // something has, at the end of it

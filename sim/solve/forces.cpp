@@ -50,12 +50,15 @@ void make_system(const Scene& scene, const World& world, std::span<const int> bo
   s.span_masses.clear();
   s.forcing.clear();
   s.extent_of_still = 0.0;
+  s.has_tables = false;
   for (const int b : bodies) {
     const BodyProperties& body = at(world.bodies, b);
     s.mobility.push_back(mobility_of(body, kick));
     s.mobile.push_back(is_mobile(body));
     Forcing& f = s.forcing.emplace_back(forcing_of(scene, body, kick));
-    f.has_motor = body.driven_angular_velocity || !at(scene.bodies, b).motor.empty();
+    const bool has_table = !at(scene.bodies, b).motor.empty();
+    f.has_motor = body.driven_angular_velocity || has_table;
+    s.has_tables = s.has_tables || has_table;
     if (f.moves) continue;
     s.extent_of_still = std::max(s.extent_of_still, at(world.position, b).cwiseAbs().maxCoeff());
   }
@@ -71,12 +74,14 @@ void make_system(const Scene& scene, const World& world, std::span<const int> bo
 /// The body with what its motor's table says for the interval: the angular velocity of the motion
 /// that follows, or the torque of the kick, each the mean over its time. Both are exact integrals.
 BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties now) {
-  constexpr double instant = 1e-9;  // s: an instant's mean is the value at its time
+  const auto drive = [&body](double begin, double time) {
+    const double end = begin + time;
+    return end > begin ? mean_drive(body.motor, begin, end) : drive_at(body.motor, begin);
+  };
   if (now.driven_angular_velocity) {
-    const double length = t.length > 0.0 ? t.length : instant;
-    now.driven_angular_velocity = mean_drive(body.motor, t.start, t.start + length);
+    now.driven_angular_velocity = drive(t.start, t.length);
   } else if (t.kick > 0.0) {
-    now.torque = mean_drive(body.motor, t.start - t.lag, t.start - t.lag + t.kick);
+    now.torque = drive(t.start - t.lag, t.kick);
   }
   return now;
 }

@@ -44,7 +44,8 @@ void store_contact_row(const Row& row, double kick, World& world) {
     if (kick > 0.0) contact.normal_force = row.impulse / kick;
   } else {
     const int way = way_of_row(contact);
-    contact.slip = along(way, row.slip);
+    // No blow stops what it does not rub on.
+    if (kick > 0.0 || row.impulse != 0.0) contact.slip = along(way, row.slip);
     if (kick > 0.0) contact.tangent_force = way * row.impulse / kick;
   }
 }

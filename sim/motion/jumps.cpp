@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/jumps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/compound.h"
+#include "sim/motion/events.h"
+#include "sim/solve/contact_bodies.h"
+#include "sim/solve/friction.h"
+#include "sim/touch.h"
+#include "sim/workspace.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// What changes evenly in the kick of an interval.
+struct Ramp {
+  double before = 0.0, after = 0.0;  // of the kick, in its units
+
+  double at(double share) const { return before + share * (after - before); }
+};
+
+/// The interval that has been tried, in shares of its kick.
+struct Moments {
+  double start = 0.0, end = 1.0;  // of the interval
+  double length = 0.0;            // s
+
+  Moments(double lag, double of_length)
+      : start(lag / (lag + 0.5 * of_length)),
+        end(start + of_length / (lag + 0.5 * of_length)),
+        length(of_length) {}
+};
+
+/// The velocity of what carries a body, or of the world, at some share of the kick.
+Eigen::Vector3d velocity_at(const World& world, const Start& start, int body, double share) {
+  if (body < 0) return Eigen::Vector3d::Zero();
+  const int mover = mover_of(world, body);
+  const Vec2& before = at(start.velocity, mover);
+  const Vec2 v = before + share * (at(world.velocity, mover) - before);
+  const Ramp turning{at(start.angular_velocity, mover), at(world.angular_velocity, mover)};
+  return {v.x(), v.y(), turning.at(share)};
+}
+
+double sliding_at(const World& world, const Start& start, const Contact& contact,
+                  const RowBodies& bodies, double share) {
+  return dot(bodies.ja, velocity_at(world, start, contact.a, share)) +
+         dot(bodies.jb, velocity_at(world, start, contact.b, share));
+}
+
+/// Whether a contact's friction is one that may turn round at an event of its own. A node's of a
+/// cable that hangs is not: hardly anything depends on when, and a cable that lies down has one
+/// after another of them.
+bool may_halt(const World& world, const Contact& contact) {
+  if (!contact.touching || contact.normal_force == 0.0) return false;
+  if (contact.touch == Touch::piece) return false;
+  if (at(world.bodies, contact.a).node) return false;
+  return contact.b < 0 || !at(world.bodies, contact.b).node;
+}
+
+/// A part's interval that has just been tried.
+struct Tried {
+  const World& world;
+  Workspace& work;
+  const PartSystem& s;
+  Moments moments;
+  Happening key{EventKind::halts};
+
+  /// Of what slides that way by `then` (m/s) as the interval begins, and would by `now` at its end.
+  void note(double way, double then, double now) {
+    constexpr double at_once = 1e-4;  // of the interval: what rests so soon does at its start
+    constexpr double crawl = 100.0;   // reaches in a step: far above what solves leave of sticking
+    constexpr double at_rest = 1e-8;  // of the speed
+    const double h = world.step_length, before = way > 0.0 ? then : -then;  // s, m/s
+    const bool slides = h * before > crawl * s.reach && before > at_once * std::abs(then - now);
+    key.before = h * before;
+    key.reach = at_rest * key.before;
+    measure(work, key, way > 0.0 ? h * now : -h * now, slides ? 0.5 * key.reach : infinity);
+  }
+
+  /// How fast a link's cable slides (m/s).
+  Ramp sliding_of(int cable, int link) const {
+    const int first = at(work.first_link, cable);
+    if (first < 0) return {};
+    return {at(work.start.slip, first + link), at(at(world.cables, cable).links, link).slip_speed};
+  }
+
+  /// The same of the cable that a contact presses.
+  Ramp sliding_under(const Contact& contact) const {
+    if (contact.slipping_cable < 0) return {};
+    const std::vector<Link>& links = at(world.cables, contact.slipping_cable).links;
+    for (int i = 0; index(i) < links.size(); ++i) {
+      if (presses(contact, contact.slipping_cable, at(links, i))) {
+        return sliding_of(contact.slipping_cable, i);
+      }
+    }
+    return {};
+  }
+
+  void find_contacts_that_halt();
+  void find_links_that_halt(int cable);
+  void find_motors_that_catch_up(const Scene& scene, std::span<const int> bodies);
+};
+
+void Tried::find_contacts_that_halt() {
+  for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
+    if (s.rows[r].kind != RowKind::tangent) continue;
+    key.row = s.rows[r].index;
+    const int slid = static_cast<int>(at(work.start.contact_slip, key.row));
+    if (slid == 0) continue;
+    Contact contact = at(world.contacts, key.row);
+    if (!may_halt(world, contact)) continue;
+    const int way = way_of_row(contact);
+    const Ramp cable = sliding_under(contact);
+    const double then = way * (sliding_at(world, work.start, contact, s.bodies[r], moments.start) +
+                               cable.at(moments.start));
+    measure(world, contact);
+    RowBodies bodies;
+    set_tangent_bodies(world, contact, {}, bodies);
+    note(slid, then,
+         sliding_at(world, work.start, contact, bodies, moments.end) + way * cable.at(moments.end));
+  }
+  key.row = -1;
+}
+
+void Tried::find_links_that_halt(int number) {
+  const CableState& cable = at(world.cables, number);
+  // What stretches loses its tensions' difference as it comes to rest, little by little.
+  if (at(work.first_link, number) < 0 || cable.elastic) return;
+  key.cable = number;
+  for (key.item = 0; index(key.item) < cable.links.size(); ++key.item) {
+    const Ramp sliding = sliding_of(number, key.item);
+    const double then = sliding.at(moments.start);
+    // Without tension cable slides as it is shared out, and nothing brakes it.
+    const int after = next_link(cable, key.item);
+    const bool bears = at(cable.segments, key.item).tension != 0.0 ||
+                       (after > key.item && at(cable.segments, after).tension != 0.0);
+    if (sliding.before == 0.0 || !bears) continue;
+    if (at(world.bodies, at(cable.links, key.item).body).cable_friction == 0.0) continue;
+    note(sliding.before, then, sliding.at(moments.end));
+  }
+  key.cable = key.item = -1;
+}
+
+void Tried::find_motors_that_catch_up(const Scene& scene, std::span<const int> bodies) {
+  // A blow throws a motor with a limit back as if there were none. One that makes up for that in
+  // next to no time does so at the interval's start.
+  constexpr double at_once = 1e-3;  // of a step
+  const double begun = work.start.time;
+  for (const Motor& motor : s.motors) {
+    if (motor.most == infinity) continue;
+    key.body = at(bodies, motor.place);
+    const Body& body = at(scene.bodies, key.body);
+    const auto asked = [&](double time) {
+      return body.motor.empty() ? *body.driven_angular_velocity : drive_at(body.motor, time);
+    };
+    const Ramp turning{motor.before, at(world.angular_velocity, key.body)};
+    const double then = turning.at(moments.start) - asked(begun);
+    const double least_time = motor.inertia * std::abs(then) / body.torque_limit;  // s
+    if (least_time <= at_once * world.step_length) continue;
+    const double now = turning.at(moments.end) - asked(begun + moments.length);
+    note(then, body.radius * then, body.radius * now);
+  }
+  key.body = -1;
+}
+
+void find_corners_of_tables(const Scene& scene, const World& world, Workspace& work, int number,
+                            double ended) {
+  constexpr double rounding = 1e-9;  // of a step
+  Happening key{EventKind::turns};
+  key.part = number;
+  key.reach = rounding * world.step_length;
+  for (const int b : bodies_of(work.parts, at(work.parts.list, number))) {
+    const std::vector<MotorPoint>& motor = at(scene.bodies, b).motor;
+    const auto next =
+        std::ranges::upper_bound(motor, work.start.time + key.reach, {}, &MotorPoint::time);
+    if (next == motor.end()) continue;
+    key.body = b;
+    key.before = next->time - work.start.time;
+    measure(work, key, next->time - ended, -key.reach);
+  }
+}
+
+/// Whether a contact is of a disc and a wall whose ends that has been nowhere near in an interval
+/// of `length` (s), as most are.
+bool stays_straight(const World& world, const Contact& contact, double length) {
+  if (contact.touch != Touch::circles) return false;
+  if (contact.b >= 0) return true;
+  const Obstacle& wall = at(world.obstacles, contact.wall);
+  const Vec2 way = wall.b - wall.a;
+  const double along = way.dot(at(world.position, contact.a) - wall.a);
+  const double moved = length * std::abs(way.dot(at(world.velocity, mover_of(world, contact.a))));
+  return along > moved && way.squaredNorm() - along > moved;
+}
+
+void find_halts(const Scene& scene, const World& world, Workspace& work, int number,
+                double length) {
+  const Part& part = at(work.parts.list, number);
+  const double lag = pace_of(world, work.parts, part).lag;
+  Tried tried{world, work, at(work.systems, part.system), Moments(lag, length)};
+  tried.key.part = number;
+  tried.find_contacts_that_halt();
+  if (!tried.s.motors.empty()) {
+    tried.find_motors_that_catch_up(scene, bodies_of(work.parts, part));
+  }
+  if (!can_slide(part)) return;
+  for (const int c : cables_of(work.parts, part)) tried.find_links_that_halt(c);
+}
+
+void find_turns(const Scene& scene, const World& world, Workspace& work, int number,
+                double length) {
+  const Part& part = at(work.parts.list, number);
+  if (at(work.systems, part.system).has_tables) {
+    find_corners_of_tables(scene, world, work, number, work.start.time + length);
+  }
+  const double reach = at(work.systems, part.system).reach;
+  Happening key{EventKind::turns};
+  key.part = number;
+  key.reach = reach;
+  for (const int c : contacts_of(work.parts, part)) {
+    const Contact& contact = at(world.contacts, c);
+    if (!contact.touching || stays_straight(world, contact, length)) continue;
+    const double before = on_straight(world, contact, work.start.position, work.start.angle);
+    if (!(std::abs(before) > reach && std::abs(before) < infinity)) continue;
+    const double now = on_straight(world, contact, world.position, world.angle);
+    key.row = c;
+    key.before = std::abs(before);
+    measure(work, key, before > 0.0 ? now : -now, 0.5 * reach);
+  }
+}
+
+}  // namespace
+
+void note_sliding(const World& world, const Part& part, Workspace& work) {
+  for (const int c : contacts_of(work.parts, part)) {
+    at(work.start.contact_slip, c) = at(world.contacts, c).slip;
+  }
+}
+
+void find_jumps(const Scene& scene, const World& world, Workspace& work, int part, double length) {
+  find_halts(scene, world, work, part, length);
+  find_turns(scene, world, work, part, length);
+}
+
+void halt(World& world, const Happening& event) {
+  if (event.body >= 0) return;  // a motor's state follows from its speed
+  if (event.row >= 0) {
+    at(world.contacts, event.row).slip = Slip::stick;
+    return;
+  }
+  CableState& cable = at(world.cables, event.cable);
+  if (index(event.item) >= cable.links.size()) return;
+  at(cable.links, event.item).slip = Slip::stick;
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Where forces jump though nothing meets. In the middle of an interval that is an error of the
+// first order in its length (of velocity: as much as the jump does in it), at its end one of the
+// second. So these are events:
+//
+//   EventKind::halts   what slides comes to rest, and friction turns round or holds; a motor with a
+//                      limit has come to its speed
+//   EventKind::turns   a motor's time table has a corner; a disc comes on to a corner of what it
+//                      lies on, or off it, where its way begins or ceases to bend
+//
+// Friction that begins to slide does not jump, nor does what a motor gives as it comes to its
+// limit.
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+struct Happening;
+struct Part;
+struct Workspace;
+
+/// Notes which contacts of a part slide as an interval begins: Start::contact_slip.
+void note_sliding(const World& world, const Part& part, Workspace& work);
+
+/// What comes to rest or turns in a part's interval, which has just been tried with that `length`
+/// (s), added to Workspace::events or measured anew.
+void find_jumps(const Scene& scene, const World& world, Workspace& work, int part, double length);
+
+/// What has come to rest, by such an event, does not slide when the next interval begins.
+void halt(World& world, const Happening& event);
+
+}  // namespace pinchlab

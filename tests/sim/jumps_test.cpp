@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces that jump though nothing meets, at their time: friction where what slides comes to rest,
+// motors where their table has a corner or their limit ends, discs that come to a corner. Where
+// motion is straight in between it is exact. (Boxes on slopes, balls that roll off tables and
+// cables that slip to and fro: tests/analysis/experiments/convergence_test.cpp.)
+
+#include <array>
+#include <functional>
+#include <numbers>
+
+#include "demos/scenes/shape_scenes.h"
+#include "sim/joints.h"
+#include "sim/outline.h"
+#include "tests/sim/scenes.h"
+
+namespace pinchlab::testing {
+namespace {
+
+World moved(Scene scene, int steps_per_frame, double seconds) {
+  scene.steps_per_frame = steps_per_frame;
+  World world = make_world(scene, measured());
+  run(scene, world, static_cast<int>(std::lround(seconds * 60.0 * steps_per_frame)));
+  EXPECT_EQ(world.diagnostics.fallbacks, 0) << steps_per_frame;
+  return world;
+}
+
+/// Loads on a cable over a drum, body 0 of `scene`: bodies 1 and 2.
+void hang_loads(Scene& scene, double left, double right, double mass_per_metre = 0.0) {
+  const double R = scene.bodies[0].radius + build::cable_half_width;
+  scene.bodies.push_back(body("left", BodyKind::rail, -R, -3.0, 0.1, left));
+  scene.bodies.push_back(body("right", BodyKind::rail, R, -3.0, 0.1, right));
+  scene.cables.push_back(cable(on(1), {{0, -1, 0}}, on(2)));
+  scene.cables[0].mass_per_metre = mass_per_metre;
+}
+
+/// A drum whose motor swings to and fro, the cable with friction `mu` on it.
+Scene swinging_drum(double mu) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 5.0));
+  Body& drum = scene.bodies[0];
+  drum.motor = {{0.0, 6.0}, {0.503, -6.0}, {1.01, 6.0}, {1.497, -6.0}};
+  drum.driven_angular_velocity = 6.0;
+  drum.cable_friction = mu;
+  return scene;
+}
+
+// With backspin omega a disc slides with v' = -mu g and omega' = -2 mu g / r (I = m r^2 / 2) until
+// v = -omega r, at t = (v + omega r) / (3 mu g), and then rolls.
+TEST(Jumps, ADiscWithBackspinSlidesAndThenRolls) {
+  const double r = 0.2, mu = 0.3, v = 1.0, omega = 20.0;
+  Scene scene;
+  scene.walls.push_back({{-5.0, 0.0}, {5.0, 0.0}, mu, 0.0});
+  scene.bodies.push_back(body("disc", BodyKind::free, 0.0, r, r));
+  Body& disc = scene.bodies[0];
+  disc.contact_friction = mu;
+  disc.velocity = {v, 0.0};
+  disc.angular_velocity = omega;
+  const double slides = (v + omega * r) / (3.0 * mu * g), rolls = v - mu * g * slides;
+  const double way = v * slides - 0.5 * mu * g * slides * slides + rolls * (1.0 - slides);
+  for (const int n : {1, 4, 16, 64}) {
+    const World world = moved(scene, n, 1.0);
+    EXPECT_NEAR(world.position[0].x(), way, 1e-10) << n;
+    EXPECT_NEAR(world.velocity[0].x(), rolls, 1e-9) << n;
+  }
+}
+
+// On a spring a box that slides swings about places that lie mu m g / k off the middle, now to this
+// side, now to that, and stays where it comes to rest within both.
+TEST(Jumps, ABoxOnASpringSwingsWithFrictionAndStays) {
+  const double k = 40.0, m = 1.0, mu = 0.3, start = 0.5;
+  Scene scene;
+  scene.walls.push_back({{-5.0, 0.0}, {5.0, 0.0}, mu, 0.0});
+  Body box = body("box", BodyKind::free, start, 0.1, 1.0, m);
+  make_polygon(box, build::box_corners(0.4, 0.2), 0.0);
+  box.contact_friction = mu;
+  scene.bodies.push_back(box);
+  add_spring(scene, "spring", on(0), at(-1.0, 0.1), k, 1.0, 0.0);
+  const double off = mu * m * g / k, half_period = std::numbers::pi * std::sqrt(m / k);
+  const auto place = [&](double t) {
+    double from = start;
+    while (std::abs(from) > off) {
+      const double middle = from > 0.0 ? off : -off;
+      if (t < half_period) return middle + (from - middle) * std::cos(t * std::sqrt(k / m));
+      t -= half_period;
+      from = 2.0 * middle - from;
+    }
+    return from;
+  };
+  EXPECT_LT(half_period, 1.0);
+  double before = 0.0;
+  for (int n = 1; n <= 32; n *= 2) {
+    double error = 0.0;
+    for (const double t : {0.3, 0.7, 1.1}) {
+      error = std::max(error, std::abs(moved(scene, n, t).position[0].x() - place(t)));
+    }
+    if (n > 1) {
+      EXPECT_GT(std::log2(before / error), 1.9) << n << " steps a frame, " << error << " m";
+    }
+    before = error;
+    EXPECT_NEAR(moved(scene, n, 3.0).position[0].x(), place(3.0), 1e-6) << n;
+  }
+  EXPECT_LT(before, 1e-5);
+}
+
+// A motor that gives torque M at most brings drum and loads to its speed with
+// (I + (m1 + m2) R^2) alpha = M - (m2 - m1) g R.
+TEST(Jumps, AMotorWithALimitComesToItsSpeed) {
+  const double M = 8.0, I = 0.625, m1 = 1.0, m2 = 1.2, speed = 3.0;
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.5, 5.0));
+  scene.bodies[0].inertia = I;
+  scene.bodies[0].driven_angular_velocity = speed;
+  scene.bodies[0].torque_limit = M;
+  hang_loads(scene, m1, m2);
+  const double R = 0.5 + build::cable_half_width;
+  const double alpha = (M - (m2 - m1) * g * R) / (I + (m1 + m2) * R * R), comes = speed / alpha;
+  EXPECT_GT(comes, 0.3);
+  const double turned = 0.5 * alpha * comes * comes + speed * (1.0 - comes);
+  for (const int n : {1, 4, 16}) {
+    const World world = moved(scene, n, 1.0);
+    EXPECT_NEAR(world.angle[0], turned, 1e-10) << n;
+    EXPECT_NEAR(world.position[2].y(), -3.0 + R * turned, 1e-10) << n;
+  }
+}
+
+// Corners of the table and the limit together: what is straight between is exact at every step.
+TEST(Jumps, AMotorsTableTurnsWithinSteps) {
+  Scene scene = swinging_drum(infinity);
+  scene.bodies[0].torque_limit = 8.0;
+  hang_loads(scene, 1.0, 1.2);
+  const World reference = moved(scene, 64, 2.0);
+  for (const int n : {1, 3, 4, 16}) {
+    const World world = moved(scene, n, 2.0);
+    EXPECT_NEAR(world.position[1].y(), reference.position[1].y(), 1e-7) << n;
+    EXPECT_NEAR(world.angle[0], reference.angle[0], 1e-7) << n;
+  }
+}
+
+// Where the motor turns round, a blow of nothing is solved for. Its round-off is no energy made:
+// else the cable would be held on the drum for that, and throw the loads.
+TEST(Jumps, ACableSlipsOnUnderAPinchThroughAnEvent) {
+  Scene scene = swinging_drum(0.2);
+  hang_loads(scene, 1.0, 1.0);
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, 0.8, 0.2));
+  scene.bodies[3].cable_friction = 0.2;
+  const World reference = moved(scene, 64, 2.0);
+  EXPECT_LT(std::abs(reference.velocity[1].y()), 2.5);
+  for (const int n : {1, 2, 3, 4, 8, 16}) {
+    const World world = moved(scene, n, 2.0);
+    EXPECT_NEAR(world.position[1].y(), reference.position[1].y(), 1e-7) << n;
+    EXPECT_NEAR(world.angle[3], reference.angle[3], 1e-6) << n;
+  }
+}
+
+// 5 to 9 cm apart where nothing is located.
+TEST(Jumps, ARopeWithMassSlipsToAndFro) {
+  Scene scene = swinging_drum(0.2);
+  hang_loads(scene, 1.0, 1.0, 0.2);
+  const World reference = moved(scene, 64, 2.0);
+  for (const int n : {2, 4, 8}) {
+    const World world = moved(scene, n, 2.0);
+    EXPECT_NEAR(world.position[1].y(), reference.position[1].y(), 1e-4 / n) << n;
+  }
+}
+
+// What presses a cable on a polygon is thrown off by its corners.
+TEST(Jumps, ARollerIsThrownByADrumOfSixCorners) {
+  Scene scene = swinging_drum(0.2);
+  make_polygon(scene.bodies[0], build::regular_corners(6, 0.5, 0.0), 0.0);
+  hang_loads(scene, 1.0, 1.0);
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, 0.5 * std::sqrt(0.75) + 0.3, 0.2));
+  scene.bodies[3].cable_friction = 0.2;
+  const World reference = moved(scene, 64, 0.45);
+  for (const int n : {4, 8, 16}) {
+    const World world = moved(scene, n, 0.45);
+    for (std::size_t b = 1; b < 4; ++b) {
+      EXPECT_LT((world.position[b] - reference.position[b]).norm(), 2e-3 / n) << n << ' ' << b;
+    }
+  }
+}
+
+/// Of a ball that rolls over an edge at `speed`, in J: the most that it has gained.
+double gained(Scene scene, int steps_per_frame) {
+  scene.steps_per_frame = steps_per_frame;
+  World world = make_world(scene, measured());
+  return play(scene, world, 0.6).energy_gain;
+}
+
+TEST(Jumps, RollingOverAnEdgeMakesNoEnergy) {
+  Scene on_wall;
+  Body ball = body("ball", BodyKind::free, -0.513, 0.2, 0.2);
+  ball.velocity = {2.0, 0.0};
+  ball.angular_velocity = -10.0;
+  on_wall.bodies.push_back(ball);
+  on_wall.walls.push_back({{-5.0, 0.0}, {0.0, 0.0}, 0.8, 0.0});
+  Scene on_table;
+  Body table = body("table", BodyKind::fixed, -1.0, -0.1, 1.0);
+  make_polygon(table, build::box_corners(2.0, 0.2), 0.0);
+  on_table.bodies = {table, ball};
+  for (const int n : {1, 4, 16}) {
+    EXPECT_LT(gained(on_wall, n), 1e-11) << n;
+    EXPECT_LT(gained(on_table, n), 1e-11) << n;
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
