@@ -168,6 +168,7 @@ void Tried::find_motors_that_catch_up(const Scene& scene, std::span<const int> b
   key.body = -1;
 }
 
+/// Of motors, by the time at which the interval has `ended` (s).
 void find_corners_of_tables(const Scene& scene, const World& world, Workspace& work, int number,
                             double ended) {
   constexpr double rounding = 1e-9;  // of a step
@@ -197,6 +198,7 @@ bool stays_straight(const World& world, const Contact& contact, double length) {
   return along > moved && way.squaredNorm() - along > moved;
 }
 
+/// What comes to rest: contacts, motors, cable.
 void find_halts(const Scene& scene, const World& world, Workspace& work, int number,
                 double length) {
   const Part& part = at(work.parts.list, number);
@@ -211,26 +213,30 @@ void find_halts(const Scene& scene, const World& world, Workspace& work, int num
   for (const int c : cables_of(work.parts, part)) tried.find_links_that_halt(c);
 }
 
-void find_turns(const Scene& scene, const World& world, Workspace& work, int number,
-                double length) {
+/// Discs that come to corners.
+void find_turns(const World& world, Workspace& work, int number, double length) {
   const Part& part = at(work.parts.list, number);
-  if (at(work.systems, part.system).has_tables) {
-    find_corners_of_tables(scene, world, work, number, work.start.time + length);
-  }
   const double reach = at(work.systems, part.system).reach;
-  Happening key{EventKind::turns};
-  key.part = number;
-  key.reach = reach;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
     if (!contact.touching || stays_straight(world, contact, length)) continue;
     const double before = on_straight(world, contact, work.start.position, work.start.angle);
     if (!(std::abs(before) > reach && std::abs(before) < infinity)) continue;
     const double now = on_straight(world, contact, world.position, world.angle);
+    Happening key{EventKind::turns};
+    key.part = number;
     key.row = c;
+    key.reach = reach;
     key.before = std::abs(before);
     measure(work, key, before > 0.0 ? now : -now, 0.5 * reach);
   }
+}
+
+/// Whether anything of a part did when the interval began.
+bool slid(const Workspace& work, const Part& part) {
+  return std::ranges::any_of(contacts_of(work.parts, part), [&work](int c) {
+    return at(work.start.contact_slip, c) != Slip::stick;
+  });
 }
 
 }  // namespace
@@ -241,9 +247,15 @@ void note_sliding(const World& world, const Part& part, Workspace& work) {
   }
 }
 
-void find_jumps(const Scene& scene, const World& world, Workspace& work, int part, double length) {
-  find_halts(scene, world, work, part, length);
-  find_turns(scene, world, work, part, length);
+void find_jumps(const Scene& scene, const World& world, Workspace& work, int number,
+                double length) {
+  const Part& part = at(work.parts.list, number);
+  const PartSystem& s = at(work.systems, part.system);
+  if (can_slide(part) || !s.motors.empty() || slid(work, part)) {
+    find_halts(scene, world, work, number, length);
+  }
+  if (s.has_tables) find_corners_of_tables(scene, world, work, number, work.start.time + length);
+  if (has_contacts(part)) find_turns(world, work, number, length);
 }
 
 void halt(World& world, const Happening& event) {

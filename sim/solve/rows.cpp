@@ -10,7 +10,6 @@
 #include "sim/parts.h"
 #include "sim/solve/contact_bodies.h"
 #include "sim/solve/elastic.h"
-#include "sim/solve/foresight.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
@@ -248,10 +247,7 @@ void append_tangent_row(const World& world, const Parts& parts, int normal, doub
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);
   if (way < 0) turn_about(s.bodies.back());
-  // Not where something has just happened: only in a kick between two intervals that are alike does
-  // what the way changes do as much work before the middle as after it.
-  if (locates_events(world.configuration) && interval.length > 0.0 &&
-      is_even(interval.lag, interval.length)) {
+  if (locates_events(world.configuration) && interval.length > 0.0) {
     row.bias = row.curved = way * change_of_sliding(world, contact, interval.length);
   }
   weigh(s, tangent);
