@@ -34,6 +34,8 @@ struct Part {
   bool waits = false;                        // by list_parts: for others to come to its time
   bool can_slip = false;                     // a contact of it presses a cable that may slip there
   bool slides = false;                       // by solve_parts: cable may slide over bodies
+  bool slid = false;                         // a contact of it did when the interval began; one may
+  bool may_turn = false;                     // come to a corner: both by note_sliding
 };
 
 inline bool has_contacts(const Part& part) {

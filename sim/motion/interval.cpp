@@ -5,51 +5,26 @@
 #include <cmath>
 
 #include "base/at.h"
-#include "sim/cable/cable.h"
-#include "sim/cable/mass.h"
 #include "sim/cable/waves.h"
-#include "sim/compound.h"
 #include "sim/motion/events.h"
 #include "sim/motion/jumps.h"
-#include "sim/motion/missed.h"
+#include "sim/motion/part_trial.h"
 #include "sim/motion/turning.h"
 #include "sim/motion/vanishing.h"
-#include "sim/solve/active_set.h"
-#include "sim/solve/forces.h"
-#include "sim/solve/foresight.h"
-#include "sim/solve/motors.h"
-#include "sim/solve/passive.h"
-#include "sim/solve/rows.h"
-#include "sim/solve/solution.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
 
 namespace {
 
-// Shares of a step, far below what any error that is asked for needs: that an allowed error divides
-// it into, and that bodies move so little in that only round-off would be corrected.
+// Of a step, that an allowed error divides it into: far below what any that is asked for needs.
 constexpr double shortest = 1e-4;
-constexpr double shortest_corrected = 1e-6;
 // So short an interval turns hardly anything far; where it does, shorter ones would as well, but
 // for nodes, which a jerk whips about in far less.
 constexpr double shortest_for_turns = 1.0 / 32.0;
 constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cycles: nobody sees it
-// Of a step, whose impulses tell forces: in shorter ones what round-off of positions asks for, as
-// much however short they are, is no small part of them.
-constexpr double shortest_told = 1e-3;
-constexpr int shake_rounds = 12;  // each gains at least a factor 2 (move_part), mostly 100
-constexpr int most_trials = 60;   // of an interval's length, which has 53 bits to be halved for
-constexpr int most_halvings = 5;  // of one that does not converge: on a 32nd ways hardly bend
-
-/// How an interval is tried.
-struct Attempt {
-  double length;                   // s
-  int most_rounds = shake_rounds;  // of corrections
-  bool begins = false;             // it is the first since begin_interval
-  bool locates = true;    // what happens in it; else constraints bear force as early as it takes
-  bool foresees = false;  // what is to be corrected, where the intervals before tell
-};
+constexpr int most_trials = 60;       // of an interval's length, which has 53 bits to be halved for
+constexpr int most_halvings = 5;      // of one that does not converge: on a 32nd ways hardly bend
 
 /// omega^2 (1/s^2) of the fastest wave on a part's cables with mass.
 double wave_on(const World& world, const Parts& parts, const Part& part) {
@@ -59,125 +34,6 @@ double wave_on(const World& world, const Parts& parts, const Part& part) {
     fastest = std::max(fastest, wave_of(world, at(world.cables, c)));
   }
   return fastest;
-}
-
-/// Everything that moves of a part, `length` seconds after the interval's start.
-void place_part(World& world, Workspace& work, const Part& part, double length, bool begins) {
-  const Start& start = work.start;
-  for (const int number : bodies_of(work.parts, part)) {
-    const auto b = index(number);
-    if (!work.parts.immobile[b]) {
-      world.position[b] = start.position[b] + length * world.velocity[b];
-    }
-    world.angle[b] = start.angle[b] + length * world.angular_velocity[b];
-  }
-  carry(world, carried_of(work.parts, part));
-  for (const int c : cables_of(work.parts, part)) {
-    CableState& cable = at(world.cables, c);
-    if (part.slides) {
-      const auto first = index(at(work.first_link, c));
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material = start.material[first + i] - length * cable.links[i].slip_speed;
-      }
-    }
-    const bool moved = update_cable(world, cable, begins, is_known(work));
-    work.spans_moved = work.spans_moved || moved;
-  }
-}
-
-/// Puts a part back to where its interval began.
-void put_back(World& world, Workspace& work, const Part& part) {
-  const Start& start = work.start;
-  const auto put_body = [&](int body) {
-    at(world.position, body) = at(start.position, body);
-    at(world.velocity, body) = at(start.velocity, body);
-    at(world.angle, body) = at(start.angle, body);
-    at(world.angular_velocity, body) = at(start.angular_velocity, body);
-  };
-  for (const int body : bodies_of(work.parts, part)) put_body(body);
-  for (const int shape : carried_of(work.parts, part)) put_body(shape);
-  for (const int c : cables_of(work.parts, part)) {
-    CableState& cable = at(world.cables, c);
-    if (const int first = at(work.first_link, c); first >= 0) {
-      for (std::size_t i = 0; i < cable.links.size(); ++i) {
-        cable.links[i].material = start.material[index(first) + i];
-        if (is_massed(cable)) cable.links[i].slip_speed = start.slip[index(first) + i];
-      }
-    }
-    update_cable(world, cable, false, is_known(work));
-  }
-}
-
-/// Solves and moves a part, with at most so many changes of what its motors do; whether its lengths
-/// and gaps are exact then.
-bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               const Attempt& attempt, int changes_of_motors, IntervalTrial& trial,
-               Stopwatch& watch) {
-  PartSystem& s = at(work.systems, part.system);
-  SolveScratch& set = work.solve;
-  bool settled = solve_steadily(scene, world, work, part, t, changes_of_motors, watch);
-  double last = infinity, before_last = infinity;
-  const std::span<const int> bodies = bodies_of(work.parts, part);
-  Diagnostics& d = world.diagnostics;
-  for (int round = 0;; ++round) {
-    if (round > 0) settled = solve_again(world, work.parts, part, s, set);
-    if (set.froze) ++d.fallbacks;
-    const double round_off = s.tolerance() / t.repair;  // m/s, over a step
-    if (round > 0 && bends_too_far(world, bodies, work.linear_velocity, s.velocity, round_off)) {
-      trial.missed = infinity;
-      return false;
-    }
-    trial.settled = trial.settled && settled;
-    trial.froze = trial.froze || set.froze;
-    d.active_set_solves = std::max(d.active_set_solves, set.solves);
-    const bool tells_forces = t.kick > shortest_told * t.repair;
-    store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
-    part.slides = !set.capstan.runs.empty() || part.can_slip || !s.sleeves.empty();
-    watch.lap(Stage::solve);
-    place_part(world, work, part, t.length, attempt.begins && round == 0);
-    watch.lap(Stage::move_bodies);
-    // SHAKE's first correction is the curvature of the way, and the second what the constraints'
-    // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(world, set, t, s, trial);
-    const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
-    if (follows) follow_flow(scene, work.start, work.parts, part, t, s);
-    watch.lap(Stage::update_segments);
-    // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
-    if (round == 1 || t.foreseen) trial.local_error = std::max(trial.local_error, missed);
-    trial.curves = trial.curves || missed > s.tolerance();
-    // In so short an interval there is nothing to correct but round-off.
-    const bool meets = missed <= s.tolerance() || t.length < shortest_corrected * t.repair;
-    if (meets && !follows) {
-      if (round > 0) trial.turned = turned_square(world, bodies, t.length, s);
-      return true;
-    }
-    // Where states flip it may get worse for a round.
-    trial.missed = std::max(trial.missed, missed / s.extent);
-    trial.excess = std::max(trial.excess, missed / s.tolerance());
-    trial.contradicts = trial.contradicts || (round > 0 && !settled);
-    if (round == attempt.most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
-      return false;
-    before_last = last;
-    last = missed;
-    if (round == 0) work.linear_velocity = s.velocity;
-  }
-}
-
-/// The same, with motors that are within their limits then. The first solution, whose constraints
-/// are those of the interval's start, does not know half of the force that a curved way takes.
-bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, const TimeSpan& t,
-               const Attempt& attempt, IntervalTrial& trial, Stopwatch& watch) {
-  constexpr int most_turns = 3;  // each motor to its limit, back, and no third time
-  PartSystem& s = at(work.systems, part.system);
-  bool met = move_part(scene, world, work, part, t, attempt, most_motor_changes, trial, watch);
-  for (int turn = 0; met && turn < most_turns && change_limited_motors(s); ++turn) {
-    put_back(world, work, part);
-    s.free_velocity = s.unconstrained;
-    drive(s);
-    trial = IntervalTrial{};
-    met = move_part(scene, world, work, part, t, attempt, 0, trial, watch);
-  }
-  return met;
 }
 
 void add(const IntervalTrial& one, IntervalTrial& all) {
@@ -192,30 +48,6 @@ void add(const IntervalTrial& one, IntervalTrial& all) {
   all.longest = std::min(all.longest, one.longest);
   all.wave = std::max(all.wave, one.wave);
   all.turned = std::max(all.turned, one.turned);
-}
-
-/// Tries an interval of one part.
-IntervalTrial try_part(const Scene& scene, World& world, Workspace& work, Part& part,
-                       const Attempt& attempt, Stopwatch& watch) {
-  PartSystem& s = at(work.systems, part.system);
-  const Pace pace = pace_of(world, work.parts, part);
-  TimeSpan t;
-  t.length = attempt.length;
-  t.repair = world.step_length;
-  t.lag = pace.lag;
-  t.clamps = true;
-  t.kick = pace.lag + 0.5 * t.length;
-  t.start = work.start.time;
-  apply_forces(scene, world, t, work.parts, part, s);
-  watch.lap(Stage::apply_forces);
-  t.made_up = s.reach;
-  t.foreseen =
-      attempt.foresees && s.carried.empty() && is_foreseen(pace, world.configuration.error, t);
-  t.reach = attempt.locates ? s.reach : infinity;
-  IntervalTrial trial;
-  trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);
-  trial.foreseen = t.foreseen;
-  return trial;
 }
 
 /// Tries an interval from where the last began: Workspace::trial, and what has happened in it.
@@ -242,7 +74,9 @@ void try_interval(const Scene& scene, World& world, Workspace& work, const Mover
     if (!attempt.locates) continue;
     find_catches(world, work, p);
     find_gone_links(world, work, p);
-    if (movers.jumps) find_jumps(scene, world, work, p, attempt.length);
+    if (movers.jumps && may_jump(part, at(work.systems, part.system))) {
+      find_jumps(scene, world, work, p, attempt.length);
+    }
   }
   if (attempt.locates) find_span_hits(scene, world, work);
   for (Happening& event : work.events) {
@@ -292,7 +126,7 @@ double sound_length(const World& world, const IntervalTrial& trial, double lengt
 /// far in that the cable's directions tell, and lengths are exact only if that is next to nothing:
 /// an interval is taken up to there. Another in succession would not help.
 double share_to_try(const IntervalTrial& trial, const Movers& movers) {
-  // No less than what corrections can tell (shortest_corrected), and of the share that would just
+  // No less than what corrections can tell (part_trial.cpp), and of the share that would just
   // do somewhat less, lest the next trial misses by a hair.
   constexpr double half = 0.5, least = 1e-6, safety = 0.7;
   if (!trial.contradicts || movers.crept || !(trial.excess < infinity)) return half;
@@ -405,7 +239,7 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
   if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
   start.contact_slip.resize(world.contacts.size());
   for (const int p : movers.parts) {
-    const Part& part = at(work.parts.list, p);
+    Part& part = at(work.parts.list, p);
     note_sliding(world, part, work);
     const bool slides = can_slide(part);
     for (const int c : cables_of(work.parts, part)) {

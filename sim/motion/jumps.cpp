@@ -134,14 +134,14 @@ void Tried::find_links_that_halt(int number) {
   key.cable = number;
   for (key.item = 0; index(key.item) < cable.links.size(); ++key.item) {
     const Ramp sliding = sliding_of(number, key.item);
-    const double then = sliding.at(moments.start);
+    if (sliding.before == 0.0) continue;
+    if (at(world.bodies, at(cable.links, key.item).body).cable_friction == 0.0) continue;
     // Without tension cable slides as it is shared out, and nothing brakes it.
     const int after = next_link(cable, key.item);
     const bool bears = at(cable.segments, key.item).tension != 0.0 ||
                        (after > key.item && at(cable.segments, after).tension != 0.0);
-    if (sliding.before == 0.0 || !bears) continue;
-    if (at(world.bodies, at(cable.links, key.item).body).cable_friction == 0.0) continue;
-    note(sliding.before, then, sliding.at(moments.end));
+    if (!bears) continue;
+    note(sliding.before, sliding.at(moments.start), sliding.at(moments.end));
   }
   key.cable = key.item = -1;
 }
@@ -232,18 +232,15 @@ void find_turns(const World& world, Workspace& work, int number, double length) 
   }
 }
 
-/// Whether anything of a part did when the interval began.
-bool slid(const Workspace& work, const Part& part) {
-  return std::ranges::any_of(contacts_of(work.parts, part), [&work](int c) {
-    return at(work.start.contact_slip, c) != Slip::stick;
-  });
-}
-
 }  // namespace
 
-void note_sliding(const World& world, const Part& part, Workspace& work) {
+void note_sliding(const World& world, Part& part, Workspace& work) {
+  part.slid = part.may_turn = false;
   for (const int c : contacts_of(work.parts, part)) {
-    at(work.start.contact_slip, c) = at(world.contacts, c).slip;
+    const Contact& contact = at(world.contacts, c);
+    at(work.start.contact_slip, c) = contact.slip;
+    part.slid = part.slid || contact.slip != Slip::stick;
+    part.may_turn = part.may_turn || contact.b < 0 || contact.touch != Touch::circles;
   }
 }
 
@@ -251,11 +248,11 @@ void find_jumps(const Scene& scene, const World& world, Workspace& work, int num
                 double length) {
   const Part& part = at(work.parts.list, number);
   const PartSystem& s = at(work.systems, part.system);
-  if (can_slide(part) || !s.motors.empty() || slid(work, part)) {
+  if (can_slide(part) || !s.motors.empty() || part.slid) {
     find_halts(scene, world, work, number, length);
   }
   if (s.has_tables) find_corners_of_tables(scene, world, work, number, work.start.time + length);
-  if (has_contacts(part)) find_turns(world, work, number, length);
+  if (part.may_turn) find_turns(world, work, number, length);
 }
 
 void halt(World& world, const Happening& event) {

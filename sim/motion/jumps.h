@@ -12,16 +12,23 @@
 // Friction that begins to slide does not jump, nor does what a motor gives as it comes to its
 // limit.
 
+#include "sim/parts.h"
+#include "sim/solve/part_system.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
 struct Happening;
-struct Part;
 struct Workspace;
 
-/// Notes which contacts of a part slide as an interval begins: Start::contact_slip.
-void note_sliding(const World& world, const Part& part, Workspace& work);
+/// Notes which contacts of a part slide as an interval begins (Start::contact_slip), and whether
+/// any does, or may come to a corner.
+void note_sliding(const World& world, Part& part, Workspace& work);
+
+/// Whether anything of a part can jump at all.
+inline bool may_jump(const Part& part, const PartSystem& s) {
+  return can_slide(part) || part.slid || part.may_turn || !s.motors.empty() || s.has_tables;
+}
 
 /// What comes to rest or turns in a part's interval, which has just been tried with that `length`
 /// (s), added to Workspace::events or measured anew.
