@@ -62,6 +62,22 @@ bool may_halt(const World& world, const Contact& contact) {
   return contact.b < 0 || !at(world.bodies, contact.b).node;
 }
 
+/// Whether it is between two discs, on which nothing turns.
+bool is_of_discs(const Contact& contact) {
+  return contact.touch == Touch::circles && contact.b >= 0;
+}
+
+/// Whether a contact is of a disc and a wall whose ends that has been nowhere near in an interval
+/// of `length` (s), as most are.
+bool stays_on_wall(const World& world, const Contact& contact, double length) {
+  if (contact.touch != Touch::circles || contact.b >= 0) return false;
+  const Obstacle& wall = at(world.obstacles, contact.wall);
+  const Vec2 way = wall.b - wall.a;
+  const double along = way.dot(at(world.position, contact.a) - wall.a);
+  const double moved = length * std::abs(way.dot(at(world.velocity, mover_of(world, contact.a))));
+  return along > moved && way.squaredNorm() - along > moved;
+}
+
 /// A part's interval that has just been tried.
 struct Tried {
   const World& world;
@@ -107,22 +123,30 @@ struct Tried {
 };
 
 void Tried::find_contacts_that_halt() {
+  const Start& start = work.start;
   for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
     if (s.rows[r].kind != RowKind::tangent) continue;
     key.row = s.rows[r].index;
-    const int slid = static_cast<int>(at(work.start.contact_slip, key.row));
-    if (slid == 0) continue;
-    Contact contact = at(world.contacts, key.row);
-    if (!may_halt(world, contact)) continue;
+    const int slid = static_cast<int>(at(start.contact_slip, key.row));
+    const Contact& contact = at(world.contacts, key.row);
+    if (slid == 0 || !may_halt(world, contact)) continue;
     const int way = way_of_row(contact);
     const Ramp cable = sliding_under(contact);
-    const double then = way * (sliding_at(world, work.start, contact, s.bodies[r], moments.start) +
-                               cable.at(moments.start));
-    measure(world, contact);
+    const auto sliding = [&](const RowBodies& bodies, double share) {
+      return sliding_at(world, start, contact, bodies, share) + cable.at(share);
+    };
+    const double then = way * sliding(s.bodies[r], moments.start);
+    // A wall stands where it stood, and so does what is seen of a disc on it.
+    if (stays_on_wall(world, contact, moments.length)) {
+      note(slid, then, sliding(s.bodies[r], moments.end));
+      continue;
+    }
+    Contact at_end = contact;
+    measure(world, at_end);
     RowBodies bodies;
-    set_tangent_bodies(world, contact, {}, bodies);
+    set_tangent_bodies(world, at_end, {}, bodies);
     note(slid, then,
-         sliding_at(world, work.start, contact, bodies, moments.end) + way * cable.at(moments.end));
+         sliding_at(world, start, contact, bodies, moments.end) + way * cable.at(moments.end));
   }
   key.row = -1;
 }
@@ -186,18 +210,6 @@ void find_corners_of_tables(const Scene& scene, const World& world, Workspace& w
   }
 }
 
-/// Whether a contact is of a disc and a wall whose ends that has been nowhere near in an interval
-/// of `length` (s), as most are.
-bool stays_straight(const World& world, const Contact& contact, double length) {
-  if (contact.touch != Touch::circles) return false;
-  if (contact.b >= 0) return true;
-  const Obstacle& wall = at(world.obstacles, contact.wall);
-  const Vec2 way = wall.b - wall.a;
-  const double along = way.dot(at(world.position, contact.a) - wall.a);
-  const double moved = length * std::abs(way.dot(at(world.velocity, mover_of(world, contact.a))));
-  return along > moved && way.squaredNorm() - along > moved;
-}
-
 /// What comes to rest: contacts, motors, cable.
 void find_halts(const Scene& scene, const World& world, Workspace& work, int number,
                 double length) {
@@ -219,7 +231,8 @@ void find_turns(const World& world, Workspace& work, int number, double length) 
   const double reach = at(work.systems, part.system).reach;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
-    if (!contact.touching || stays_straight(world, contact, length)) continue;
+    if (!contact.touching || is_of_discs(contact) || stays_on_wall(world, contact, length))
+      continue;
     const double before = on_straight(world, contact, work.start.position, work.start.angle);
     if (!(std::abs(before) > reach && std::abs(before) < infinity)) continue;
     const double now = on_straight(world, contact, world.position, world.angle);
@@ -240,7 +253,7 @@ void note_sliding(const World& world, Part& part, Workspace& work) {
     const Contact& contact = at(world.contacts, c);
     at(work.start.contact_slip, c) = contact.slip;
     part.slid = part.slid || contact.slip != Slip::stick;
-    part.may_turn = part.may_turn || contact.b < 0 || contact.touch != Touch::circles;
+    part.may_turn = part.may_turn || !is_of_discs(contact);
   }
 }
 

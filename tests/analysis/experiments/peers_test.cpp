@@ -104,8 +104,13 @@ TEST(Peers, EventScenesTakeWhoCan) {
   for (const Problem& problem : event_problems()) {
     const std::vector<Cable>& cables = problem.scene.cables;
     const bool slack = !cables.empty() && cables[0].slack > 0.0;
+    const bool driven = std::ranges::any_of(problem.scene.bodies, [](const Body& body) {
+      return body.driven_angular_velocity.has_value();
+    });
     if (box2d.present()) {
-      EXPECT_EQ(box2d.cannot(problem), slack ? "slack cables are not built" : "");
+      EXPECT_EQ(box2d.cannot(problem), slack    ? "slack cables are not built"
+                                       : driven ? "drives, torques and drag are not built"
+                                                : "");
     }
     if (mujoco.present()) {
       EXPECT_NE(mujoco.cannot(problem), "") << problem.name;
