@@ -19,7 +19,7 @@ Problem galileos_peg();        ///< a pendulum whose cable meets a peg, winds ro
 Problem
 looping_pendulum();  ///< a bob that winds its cable up on a rod, and so holds 3 times its mass
 
-Problem box_on_a_slope();   ///< slides up it, comes to rest, and slides down again
+Problem box_on_a_slope();    ///< slides up it, comes to rest, and slides down again
 Problem ball_off_a_table();  ///< rolls over its edge, too fast to stay on it
 Problem slip_on_a_drum();    ///< of a cable, there and back, as the drum's motor swings
 
