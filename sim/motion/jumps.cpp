@@ -163,7 +163,7 @@ void Tried::find_links_that_halt(int number) {
     // Without tension cable slides as it is shared out, and nothing brakes it.
     const int after = next_link(cable, key.item);
     const bool bears = at(cable.segments, key.item).tension != 0.0 ||
-                       (after > key.item && at(cable.segments, after).tension != 0.0);
+                       (after >= 0 && at(cable.segments, after).tension != 0.0);
     if (!bears) continue;
     note(sliding.before, sliding.at(moments.start), sliding.at(moments.end));
   }
@@ -192,7 +192,8 @@ void Tried::find_motors_that_catch_up(const Scene& scene, std::span<const int> b
   key.body = -1;
 }
 
-/// Of motors, by the time at which the interval has `ended` (s).
+/// Of speeds that motors hold, by the time at which the interval has `ended` (s). Those of torques
+/// only turn what does not jump.
 void find_corners_of_tables(const Scene& scene, const World& world, Workspace& work, int number,
                             double ended) {
   constexpr double rounding = 1e-9;  // of a step
@@ -200,6 +201,7 @@ void find_corners_of_tables(const Scene& scene, const World& world, Workspace& w
   key.part = number;
   key.reach = rounding * world.step_length;
   for (const int b : bodies_of(work.parts, at(work.parts.list, number))) {
+    if (!at(scene.bodies, b).driven_angular_velocity) continue;
     const std::vector<MotorPoint>& motor = at(scene.bodies, b).motor;
     const auto next =
         std::ranges::upper_bound(motor, work.start.time + key.reach, {}, &MotorPoint::time);

@@ -58,7 +58,7 @@ void make_system(const Scene& scene, const World& world, std::span<const int> bo
     Forcing& f = s.forcing.emplace_back(forcing_of(scene, body, kick));
     const bool has_table = !at(scene.bodies, b).motor.empty();
     f.has_motor = body.driven_angular_velocity || has_table;
-    s.has_tables = s.has_tables || has_table;
+    s.has_tables = s.has_tables || (has_table && body.driven_angular_velocity);
     if (f.moves) continue;
     s.extent_of_still = std::max(s.extent_of_still, at(world.position, b).cwiseAbs().maxCoeff());
   }

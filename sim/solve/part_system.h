@@ -238,7 +238,7 @@ struct PartSystem {
   double extent = 0.0;                         // m, coordinates and cable lengths at most
   double reach = 0.0;                          // m, TimeSpan::reach where events are located
   bool mobility_changed = true;                // since the step before
-  bool has_tables = false;                     // of its bodies' motors
+  bool has_tables = false;                     // of speeds, of its bodies' motors
 
   // Rows: of cables, then of contacts; by make_segment_rows and make_contact_rows.
   std::vector<RowBodies> bodies;
