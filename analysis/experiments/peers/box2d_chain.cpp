@@ -84,7 +84,8 @@ class ChainWorld {
     for (const std::size_t b : problem_.watched) {
       const b2Vec2 p = bodies_[b]->GetPosition();
       places.push_back({Vec2(p.x, p.y) / settings_.scale,
-                        bodies_[b]->GetAngle() * problem_.scene.bodies[b].radius});
+                        (bodies_[b]->GetAngle() - problem_.scene.bodies[b].angle) *
+                            problem_.scene.bodies[b].radius});
     }
     return places;
   }
@@ -106,6 +107,7 @@ class ChainWorld {
     b2BodyDef def;
     def.type = body.kind == BodyKind::fixed ? b2_staticBody : b2_dynamicBody;
     def.position = vec(body.position, scale);
+    def.angle = static_cast<float>(body.angle);
     def.linearVelocity = vec(body.velocity, scale);
     def.angularVelocity = static_cast<float>(body.angular_velocity);
     def.fixedRotation = body.node;
@@ -128,9 +130,11 @@ class ChainWorld {
     }
     fixture.density = 1.0f;
     // Box2D takes the root of the product of both coefficients; that of links is 1. "No slip" is a
-    // coefficient that no force here overcomes.
+    // coefficient that no force here overcomes. Where there are no links bodies rub on each other
+    // and on walls, for which that root is our law as well.
     const double mu = std::min(body.cable_friction, 10.0);
-    fixture.friction = static_cast<float>(mu * mu);
+    fixture.friction =
+        static_cast<float>(problem_.scene.cables.empty() ? body.contact_friction : mu * mu);
     const bool load = is_load(body);
     fixture.filter.categoryBits = load ? of_loads : of_bodies;
     fixture.filter.maskBits = load ? of_bodies : of_bodies | of_links | of_loads;
