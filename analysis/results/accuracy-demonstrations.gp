@@ -24,13 +24,13 @@ set format y '1e%T'
 set mxtics 10
 set mytics 1
 set multiplot layout 3,3
-set yrange [1e-11:10000]
+set yrange [1e-12:10000]
 set xrange [10:*]
 set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.389416058639656e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -41,7 +41,7 @@ plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.905129246580075e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -52,7 +52,7 @@ plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '03-drop' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.9809606728355157e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -63,7 +63,7 @@ plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.6148151979198225e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -74,7 +74,7 @@ plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.561593072114093e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -85,7 +85,7 @@ plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 8.070347720116964e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -96,7 +96,7 @@ plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.8151770769237e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -107,7 +107,7 @@ plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 9.108391318513585e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 9.474725155821059e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -152,13 +152,13 @@ set format y '1e%T'
 set mxtics 10
 set mytics 1
 set multiplot layout 3,3
-set yrange [1e-11:10000]
+set yrange [1e-12:10000]
 set xrange [10:*]
 set key off
 set title '01-roll-over' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.389416058639656e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '01-roll-over' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -169,7 +169,7 @@ plot 3.312538656695321e-09 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '02-stack' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 3.905129246580075e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '02-stack' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -180,7 +180,7 @@ plot 3.9058463463375196e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '03-drop' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 1.9809606728355157e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '03-drop' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -191,7 +191,7 @@ plot 1.1395069273871647e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '04-two-blocking' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel ' '
-plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.6148151979198225e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '04-two-blocking' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -202,7 +202,7 @@ plot 2.907083455026758e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.561593072114093e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -213,7 +213,7 @@ plot 4.562438114484287e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '06-windlass' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 8.070347720116964e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '06-windlass' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -224,7 +224,7 @@ plot 7.737903046760037e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '07-driven-roller' tc rgb '#333333'
 set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
-plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 7.8151770769237e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '07-driven-roller' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -235,7 +235,7 @@ plot 4.77713107167817e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '08-driven-roller-weights' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
-plot 9.108391318513585e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 9.474725155821059e-12 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '08-driven-roller-weights' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \

@@ -28,7 +28,7 @@ set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
 set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 2.5809429460794796e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.580849342942611e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with points ls 5 ps 0.25 notitle, \
@@ -70,7 +70,7 @@ set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
 set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 2.5809429460794796e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 2.580849342942611e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'folded-chain' && strcol('engine') eq 'MuJoCo' ? column('error') : NaN))) with points ls 5 ps 0.25 notitle, \

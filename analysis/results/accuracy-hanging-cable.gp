@@ -26,7 +26,7 @@ set mytics 1
 set title 'A cable with mass that hangs at rest' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the cable''s length'
-set yrange [1e-12:1]
+set yrange [1e-17:1]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
@@ -67,7 +67,7 @@ set mytics 1
 set title 'A cable with mass that hangs at rest' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the cable''s length'
-set yrange [1e-12:1]
+set yrange [1e-17:1]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'hanging-cable' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \

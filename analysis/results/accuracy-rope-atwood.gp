@@ -26,7 +26,7 @@ set mytics 1
 set title 'Atwood''s machine with a heavy rope' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the way of the weights'
-set yrange [1e-10:10]
+set yrange [1e-15:10]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
@@ -65,7 +65,7 @@ set mytics 1
 set title 'Atwood''s machine with a heavy rope' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the way of the weights'
-set yrange [1e-10:10]
+set yrange [1e-15:10]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'rope-atwood' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
