@@ -4,8 +4,7 @@
 // motion is straight in between it is exact. (Boxes on slopes, balls that roll off tables and
 // cables that slip to and fro: tests/analysis/experiments/convergence_test.cpp.)
 
-#include <array>
-#include <functional>
+#include <algorithm>
 #include <numbers>
 
 #include "demos/scenes/shape_scenes.h"
@@ -152,7 +151,7 @@ TEST(Jumps, ACableSlipsOnUnderAPinchThroughAnEvent) {
   }
 }
 
-// 5 to 9 cm apart where nothing is located.
+// 2 to 9 cm off where nothing is located.
 TEST(Jumps, ARopeWithMassSlipsToAndFro) {
   Scene scene = swinging_drum(0.2);
   hang_loads(scene, 1.0, 1.0, 0.2);
@@ -200,7 +199,7 @@ TEST(Jumps, ARollerOnCornersThatPassIsOfSecondOrder) {
   EXPECT_LT(before, 1e-7);
 }
 
-/// Of a ball that rolls over an edge at `speed`, in J: the most that it has gained.
+/// The most energy that what rolls over an edge gains (J).
 double gained(Scene scene, int steps_per_frame) {
   scene.steps_per_frame = steps_per_frame;
   World world = make_world(scene, measured());

@@ -108,14 +108,15 @@ TEST(Population, NoBodySinksBesideARim) {
 
 // Motors that wind in what cannot give: those that had thrown weights when they held their speed
 // did so again, as stalling left the cable stretched, if a thousandth as fast. They were 914 m and
-// 78 m from their cables, and in the other two wound them in by 5 and 1.5 mm. What no repair can
-// meet, jammed between axles, may be some 0.01 mm too long until the next step.
+// 78 m from their cables, and in the other two wound them in by 5 and 1.5 mm. Of one run a
+// repair fails for a step in which all is jammed: a span is 0.015 mm too long at its end.
 TEST(Population, MotorsThatThrowStayStalled) {
   for (const int seed : {11, 1018, 1190, 1229}) {
     for (const int steps : {1, 4, 16}) {
       const Soundness run =
           run_scene(dropped_discs(static_cast<std::uint64_t>(seed)), watched(), steps, 60);
-      EXPECT_LE(run.loose_span, 1e-4) << seed << " at " << steps;
+      const bool jams = seed == 1229 && steps == 16;
+      EXPECT_LE(run.loose_span, jams ? 2e-5 : 1e-6) << seed << " at " << steps;
       for (const Vec2& position : run.positions) {
         EXPECT_LT(position.norm(), 100.0) << seed << " at " << steps;
       }
