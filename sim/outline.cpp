@@ -18,6 +18,25 @@ Vec2 way_out(std::span<const Vec2> corners, std::size_t i, double& length) {
   return -left(side) / length;
 }
 
+/// The side that a point is furthest in front of.
+struct Front {
+  std::size_t side = 0;          // from that corner on
+  double distance = -infinity;   // m; below 0: behind it
+  Vec2 normal = Vec2(1.0, 0.0);  // unit, out of it
+  double length = 0.0;           // m
+};
+
+Front front_of(std::span<const Vec2> corners, const Vec2& point) {
+  Front front;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    double length = 0.0;
+    const Vec2 normal = way_out(corners, i, length);
+    const double distance = normal.dot(point - corners[i]);
+    if (distance > front.distance) front = {i, distance, normal, length};
+  }
+  return front;
+}
+
 /// Adds a part of the plate to it, moments about the origin: `moment` is the part's about its own
 /// centre.
 void add(Plate& plate, double area, const Vec2& centre, double moment) {
@@ -29,53 +48,29 @@ void add(Plate& plate, double area, const Vec2& centre, double moment) {
 }  // namespace
 
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
-  Outside out;
-  out.distance = -infinity;
-  std::size_t nearest = 0;
-  double nearest_length = 0.0;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    double length = 0.0;
-    const Vec2 normal = way_out(corners, i, length);
-    const double distance = normal.dot(point - corners[i]);
-    if (distance <= out.distance) continue;
-    out = {distance, normal};
-    nearest = i;
-    nearest_length = length;
-  }
+  const auto [side, in_front, normal, length] = front_of(corners, point);
+  const Outside out{in_front, normal};
   if (out.distance <= 0.0) return out;
   // Of all sides that the point is in front of, the one that it is furthest from holds the nearest
   // point of the polygon, within it or at one of its ends.
-  const double along = left(out.normal).dot(point - corners[nearest]);
-  if (along >= 0.0 && along <= nearest_length) return out;
-  const Vec2 end = along < 0.0 ? corners[nearest] : corners[(nearest + 1) % corners.size()];
+  const double along = left(normal).dot(point - corners[side]);
+  if (along >= 0.0 && along <= length) return out;
+  const Vec2 end = along < 0.0 ? corners[side] : corners[(side + 1) % corners.size()];
   const double distance = (point - end).norm();
   return {distance, (point - end) / distance, true};
 }
 
 double along_side(std::span<const Vec2> corners, const Vec2& point) {
-  const std::size_t count = corners.size();
-  std::size_t nearest = 0;
-  double most = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    double length = 0.0;
-    const double distance = way_out(corners, i, length).dot(point - corners[i]);
-    if (distance <= most) continue;
-    most = distance;
-    nearest = i;
-  }
-  if (most == 0.0) return infinity;
-  // From either end, inwards; of the side beyond the one that it is beyond likewise.
-  const auto from_ends = [&](std::size_t i) {
-    double length = 0.0;
-    const double along = left(way_out(corners, i, length)).dot(point - corners[i]);
-    return std::min(along, length - along);
-  };
-  const double here = from_ends(nearest);
+  const auto [side, in_front, normal, length] = front_of(corners, point);
+  if (in_front <= 0.0) return infinity;
+  const double along = left(normal).dot(point - corners[side]);
+  const double here = std::min(along, length - along);
   if (here >= 0.0) return here;
-  double length = 0.0;
-  const bool before = left(way_out(corners, nearest, length)).dot(point - corners[nearest]) < 0.0;
-  const double there = from_ends((nearest + (before ? count - 1 : 1)) % count);
-  return std::max(here, there);
+  // Beyond an end: so it may be of the side that begins, or ends, there.
+  const std::size_t count = corners.size(), next = (side + (along < 0.0 ? count - 1 : 1)) % count;
+  double next_length = 0.0;
+  const double along_next = left(way_out(corners, next, next_length)).dot(point - corners[next]);
+  return std::max(here, std::min(along_next, next_length - along_next));
 }
 
 Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
