@@ -2,6 +2,7 @@
 // The front door: reads the command line and calls one function a command.
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -457,5 +458,8 @@ int with_results_written(int exit_code) {
 
 int main(int argc, char** argv) {
   using namespace pinchlab;
+  // What a large World leaves is joined block by block as it is freed, not all at once, when no
+  // cache has it any more, by the next large allocation.
+  mallopt(M_MXFAST, 0);
   return with_results_written(run_and_tell(argc, argv));
 }

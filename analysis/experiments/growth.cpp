@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiments/growth.h"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "analysis/experiments/counted_scenes.h"
+#include "base/at.h"
 #include "demos/scenes/library.h"
 
 namespace pinchlab::experiments {
@@ -61,6 +66,55 @@ double first_steps_seconds(const Scene& scene, int count, const Effort& effort) 
   return spread(samples).median;
 }
 
+/// Leaves nothing of what was read before in any cache of the processor.
+class EmptyCaches {
+ public:
+  void operator()() {
+    constexpr std::size_t line = 64;
+    for (std::size_t i = 0; i < bytes_.size(); i += line) ++bytes_[i];
+  }
+
+ private:
+  static std::size_t size() {
+    constexpr long least = 96L << 20;  // B: what a virtual machine tells may be too little
+    return static_cast<std::size_t>(std::max(3 * sysconf(_SC_LEVEL3_CACHE_SIZE), least));
+  }
+  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(size());
+};
+
+/// Of a call on a scene that finds its memory in no cache: a step, the mean of the first
+/// `growing.steps`, or make_world. The program's code is there, and the processor has seen its
+/// branches: the least scene has just done the same.
+double cold_seconds(const GrowingScene& growing, int size, const Effort& effort) {
+  constexpr std::size_t most_samples = 15;
+  const Scene scene = growing.scene(size), least = growing.scene(growing.sizes.front());
+  EmptyCaches empty_caches;
+  const auto timed = [&](const auto& before, const auto& call) {
+    empty_caches();
+    before();
+    const double start = cpu_seconds();
+    call();
+    return cpu_seconds() - start;
+  };
+  std::vector<double> samples;
+  const std::size_t count = std::min(effort.samples, most_samples);
+  if (growing.steps == 0) {
+    while (samples.size() < count) {
+      samples.push_back(timed([&least] { make_world(least, awake()); },
+                              [&scene] { make_world(scene, awake()); }));
+    }
+    return spread(samples).median;
+  }
+  Steps steps(scene), before(least);
+  steps.step();  // its storage is not there yet
+  const std::size_t first = index(growing.steps - 1);
+  while (samples.size() < (first > 0 ? first : count)) {
+    samples.push_back(timed([&before] { before.step(); }, [&steps] { steps.step(); }));
+  }
+  if (first == 0) return spread(samples).median;
+  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(first);
+}
+
 double make_seconds(const Scene& scene, const Effort& effort) {
   return measure_call([&scene] { make_world(scene, awake()); }, effort).seconds.median;
 }
@@ -94,13 +148,14 @@ double GrowthResult::taken_by_copy() const {
 std::vector<GrowthResult> measure_growth(const Effort& effort) {
   std::vector<GrowthResult> results;
   for (const GrowingScene& growing : growing_scenes()) {
-    GrowthResult result{growing.what, growing.sizes, {}, {}};
+    GrowthResult result{growing.what, growing.sizes, {}, {}, {}};
     for (const int size : growing.sizes) {
       const Scene scene = growing.scene(size);
       result.seconds.push_back(growing.steps == 0 ? make_seconds(scene, effort)
                                : growing.steps == 1
                                    ? step_seconds(scene, effort)
                                    : first_steps_seconds(scene, growing.steps, effort));
+      result.cold_seconds.push_back(cold_seconds(growing, size, effort));
       result.copy_seconds.push_back(copy_seconds(scene, growing.steps > 0, effort));
     }
     results.push_back(std::move(result));

@@ -10,16 +10,19 @@
 namespace pinchlab::experiments {
 
 /// One kind of scene at several sizes, two decades apart: the processor time of a step, or of
-/// making the world. Beside it what memory alone makes of that: of a copy of the World over an old
-/// one, or of a new copy, which reads and writes the state once and does nothing else.
+/// making the world. Beside it the same where every call finds its memory in no cache, so that
+/// small scenes wait for theirs as large ones do; and what memory alone takes: of a copy of the
+/// World over an old one, or of a new copy, which reads and writes the state once and does nothing
+/// else.
 struct GrowthResult {
   std::string what;
   std::vector<int> sizes;
-  std::vector<double> seconds;       // medians
-  std::vector<double> copy_seconds;  // medians
+  std::vector<double> seconds;       // medians, as are all
+  std::vector<double> cold_seconds;  // in no cache
+  std::vector<double> copy_seconds;
 
   double exponent() const { return exponent_of(seconds); }
-  double copy_exponent() const { return exponent_of(copy_seconds); }
+  double cold_exponent() const { return exponent_of(cold_seconds); }
   /// s a unit, that a growth exponent of `most` leaves from the least size to the greatest.
   double left_by(double most) const;
   /// s a unit, by which a copy grows from the least size to the greatest.

@@ -178,12 +178,13 @@ Csv bare_table(const StressResults& results) {
 }
 
 Csv growth_table(const StressResults& results) {
-  Csv csv({"what", "size", "median_s", "per_unit_s", "exponent", "copy_s", "copy_per_unit_s",
-           "copy_exponent"});
+  Csv csv({"what", "size", "median_s", "per_unit_s", "exponent", "cold_s", "cold_per_unit_s",
+           "cold_exponent", "copy_s", "copy_per_unit_s"});
   for (const GrowthResult& r : results.growth) {
     for (std::size_t i = 0; i < r.sizes.size(); ++i) {
       csv.row({r.what, std::int64_t{r.sizes[i]}, r.seconds[i], r.seconds[i] / r.sizes[i],
-               r.exponent(), r.copy_seconds[i], r.copy_seconds[i] / r.sizes[i], r.copy_exponent()});
+               r.exponent(), r.cold_seconds[i], r.cold_seconds[i] / r.sizes[i], r.cold_exponent(),
+               r.copy_seconds[i], r.copy_seconds[i] / r.sizes[i]});
     }
   }
   return csv;
