@@ -49,7 +49,7 @@ void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
 
 struct Made {
   std::string frames_hash;  // of the raw frames (RGBA, top row first, one after the other)
-  ordered_json accuracy;    // of the methods whose error was asked for
+  std::vector<ordered_json> accuracy;  // of the methods whose error was asked for
   std::vector<std::string> broken_promises;
 };
 
@@ -65,9 +65,9 @@ Fineness find_fineness(const ClipPlan& plan, const Configuration& method,
   const Fineness found =
       find_fineness(*plan.source, plan.scene, method, plan.scene.frame_count - 1, time_limit);
   if (found.believed) {
-    made.accuracy.push_back({{"method", to_string(method)},
-                             {"steps_per_frame", found.steps_per_frame},
-                             {"believed_error_m", *found.believed}});
+    made.accuracy.push_back(ordered_json{{"method", to_string(method)},
+                                         {"steps_per_frame", found.steps_per_frame},
+                                         {"believed_error_m", *found.believed}});
     std::vector<std::string> missed;
     add_missed_error(found, method, missed);
     add_new(missed, made.broken_promises);

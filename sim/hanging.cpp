@@ -67,7 +67,8 @@ Hanging hang(const std::vector<Vec2>& weights, const std::vector<double>& length
   const Vec2 d = touch_down(head, head.direction).point - touch_down(tail, tail.direction).point;
   std::fill(hanging.directions.begin(), hanging.directions.end(), head.direction);
   Vec2 start = 0.5 * total + total.norm() * d / std::max(d.norm(), 1e-3 * length);
-  for (double share = roundest; share >= sharpest; share *= sharper) {
+  double share = roundest;
+  while (share >= sharpest) {
     rounding = share * total.norm();
     double value = lay(start);
     for (int round = 0; round < most_rounds; ++round) {
@@ -94,6 +95,7 @@ Hanging hang(const std::vector<Vec2>& weights, const std::vector<double>& length
       start += taken * step;
       value = next;
     }
+    share *= sharper;
   }
   // What a slack piece has next to no tension for is better known from all the others.
   const auto slackest = static_cast<std::size_t>(

@@ -146,7 +146,7 @@ double hung_mass_over_bodies(const Cable& cable, const Held& held) {
     if (body >= 0) roots.push_back(held.root_of(body));
   }
   std::ranges::sort(roots);
-  roots.erase(std::ranges::unique(roots).begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
   double heaviest = 0.0, all = 0.0;
   for (const int root : roots) {
     all += held.mass(root);

@@ -49,7 +49,7 @@ void add(Plate& plate, double area, const Vec2& centre, double moment) {
 
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   const auto [side, in_front, normal, length] = front_of(corners, point);
-  const Outside out{in_front, normal};
+  Outside out{in_front, normal};
   if (out.distance <= 0.0) return out;
   // Of all sides that the point is in front of, the one that it is furthest from holds the nearest
   // point of the polygon, within it or at one of its ends.

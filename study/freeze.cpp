@@ -136,7 +136,7 @@ void check_nothing_is_there(const FreezeOptions& options) {
 // nothing. A text that may be registered is never made anew.
 json begun_before(const fs::path& out, const json& design) {
   if (!fs::exists(out / design_file)) return design;
-  const json before = read_json_file(out / design_file, largest_design);
+  json before = read_json_file(out / design_file, largest_design);
   json same = design;
   if (before.is_object()) same["frozen_utc"] = before.value("frozen_utc", json());
   same["sha256"] = design_hash(same);

@@ -283,6 +283,7 @@ std::string features_text(const std::vector<FeatureCost>& costs) {
 
 std::string copies_text(const std::vector<CopyCost>& copies) {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(copies.size());
   for (const CopyCost& c : copies) {
     rows.push_back({c.scene, time_text(c.anew_s), time_text(c.over_s), time_text(c.step_s),
                     share_text(c.over_s / c.step_s)});

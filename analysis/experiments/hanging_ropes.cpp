@@ -88,6 +88,7 @@ void add_rows(const std::vector<HangingRope>& ropes, Csv& csv) {
 
 std::string hanging_ropes_text(const std::vector<HangingRope>& ropes) {
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(ropes.size());
   for (const HangingRope& r : ropes) {
     rows.push_back(
         {r.nodes == 0 ? "straight" : fmt::format("{}{}", r.nodes, r.chosen ? " (chosen)" : ""),

@@ -197,6 +197,7 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
   if (spans.size() < 2) return false;
   const std::size_t first = spans.front(), last = spans.back();
   std::vector<double> lengths;
+  lengths.reserve(spans.size());
   for (const std::size_t s : spans) lengths.push_back(cable.segments[s].rest_length);
   const Vec2 d = cable.segments[last].head - cable.segments[first].tail;
   const double free = std::accumulate(lengths.begin(), lengths.end(), 0.0);
