@@ -172,7 +172,7 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     again(shake_rounds);
     // What misses as great a share contradicts itself, as a motor that turns against a jammed cable
     // does: no interval is short enough.
-    if (misses() && missed < infinity && trial.missed > 0.8 * share * missed) {
+    if (misses() && trial.missed < infinity && trial.missed > 0.8 * share * missed) {
       length = whole;
       break;
     }
@@ -340,7 +340,14 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
     try_again(scene, world, work, movers, attempt, watch);
   }
   if (work.trial.met) return true;
-  const double missed = work.trial.missed;
+  const double missed = work.trial.missed, whole = length;
+  for (int halvings = 0; halvings < most_halvings; ++halvings) {
+    length *= 0.5;
+    attempt.length = length;
+    try_again(scene, world, work, movers, attempt, watch);
+    if (work.trial.met) return true;
+  }
+  attempt.length = length = whole;
   attempt.most_rounds = 0;
   try_again(scene, world, work, movers, attempt, watch);
   // Of two solutions that do not hold the one that misses less.

@@ -40,8 +40,9 @@ bool try_whole_interval(const Scene& scene, World& world, Workspace& work, const
 double shorten_interval(const Scene& scene, World& world, Workspace& work, Movers& movers,
                         double length, bool& met, Stopwatch& watch);
 
-/// Moves them by an interval of `length` (s), shortened to what waves ask for, whatever happens in
-/// it: constraints bear force as early as it takes. Whether lengths and gaps are exact at its end.
+/// Moves them by an interval of `length` (s), shortened to what waves ask for, or to where lengths
+/// and gaps are exact, whatever happens in it: constraints bear force as early as it takes. Whether
+/// they are exact at its end.
 bool cross_interval(const Scene& scene, World& world, Workspace& work, const Movers& movers,
                     double& length, Stopwatch& watch);
 

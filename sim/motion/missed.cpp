@@ -40,7 +40,7 @@ double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
 double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t, PartSystem& s,
                   IntervalTrial& trial) {
   const CapstanScratch& capstan = set.capstan;
-  const bool slides = !capstan.runs.empty();
+  const bool slides = !capstan.runs.empty() && !set.swept;
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   const double round_off = s.tolerance() / t.length;    // m/s
   double most = 0.0;

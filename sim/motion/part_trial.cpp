@@ -115,8 +115,13 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
     if (round == 1 || t.foreseen) trial.local_error = std::max(trial.local_error, missed);
     trial.curves = trial.curves || missed > s.tolerance();
-    // In so short an interval there is nothing to correct but round-off.
-    const bool meets = missed <= s.tolerance() || t.length < shortest_corrected * t.repair;
+    // Where another correction does not help, as on a cable that is as straight as can be, what the
+    // next interval makes up for may stay; but of ropes, which follow_flow bends meanwhile. In so
+    // short an interval there is nothing to correct but round-off.
+    const bool helps = round < 2 || missed < 0.5 * before_last;
+    const bool may_stay = !helps && s.carried.empty();
+    const bool meets = missed <= (may_stay ? t.made_up : s.tolerance()) ||
+                       t.length < shortest_corrected * t.repair;
     if (meets && !follows) {
       if (round > 0) trial.turned = turned_square(world, bodies, t.length, s);
       return true;
@@ -124,9 +129,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     // Where states flip it may get worse for a round.
     trial.missed = std::max(trial.missed, missed / s.extent);
     trial.excess = std::max(trial.excess, missed / s.tolerance());
-    trial.contradicts = trial.contradicts || (round > 0 && !settled);
-    if (round == attempt.most_rounds || !settled || (round > 1 && !(missed < 0.5 * before_last)))
-      return false;
+    trial.contradicts = trial.contradicts || (round > 0 && (!settled || set.contradicts));
+    if (round == attempt.most_rounds || !settled || !helps) return false;
     before_last = last;
     last = missed;
     if (round == 0) work.linear_velocity = s.velocity;

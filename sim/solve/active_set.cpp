@@ -304,7 +304,7 @@ bool solve_for_rows(PartSystem& s, SolveScratch& set) {
   double missed = 0.0;
   const DualTerms terms{set.step_length, tolerances(s, set).speed, set.repairs};
   if (!solve_dual(s, set.dual, terms, missed)) return false;
-  set.direct = false;
+  set.direct = set.contradicts = false;
   set.by_dual = true;
   set.suspicious = true;
   set.left_out = missed * set.step_length > s.reach;
@@ -382,9 +382,11 @@ void clear_negative(PartSystem& s) {
 
 }  // namespace
 
-void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
+void sweep_rows(PartSystem& s, SolveScratch& set) {
+  set.direct = set.by_dual = false;
+  set.swept = true;
   clear_negative(s);
-  for (Run& run : capstan.runs) run.speed = 0.0;
+  for (Run& run : set.capstan.runs) run.speed = 0.0;
   apply_impulses(s);
   // A fallback, which is told: it is to be finite and to make no energy, rather than right. With
   // each sweep a row's impulse reaches the next one at least.
@@ -422,7 +424,8 @@ void sweep_rows(PartSystem& s, CapstanScratch& capstan) {
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {
   set.solves = 0;
-  set.froze = set.left_out = set.direct = set.by_dual = false;
+  set.froze = set.left_out = set.contradicts = false;
+  set.direct = set.by_dual = set.swept = false;
   set.capstan.runs.clear();
   if (s.rows.empty()) {
     s.velocity = s.free_velocity;
@@ -430,10 +433,7 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
   }
   order_rows(s, set.ordering);
   find_runs(world, parts, part, s, set);
-  if (!settle(s, set)) {
-    sweep_rows(s, set.capstan);
-    set.direct = set.by_dual = false;
-  }
+  if (!settle(s, set)) sweep_rows(s, set);
   if (set.suspicious) clear_negative(s);
   return !set.froze && !set.left_out;
 }

@@ -6,7 +6,6 @@
 
 namespace pinchlab {
 
-struct CapstanScratch;
 struct Part;
 struct Parts;
 struct PartSystem;
@@ -36,6 +35,6 @@ bool solve_again(const World& world, const Parts& parts, const Part& part, PartS
 /// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
 /// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy
 /// comes in.
-void sweep_rows(PartSystem& system, CapstanScratch& capstan);
+void sweep_rows(PartSystem& system, SolveScratch& scratch);
 
 }  // namespace pinchlab

@@ -104,8 +104,7 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   const bool throws = !s.motors.empty() && greatest_speed(s.velocity) > thrown * fastest;
   if (!throws && !makes_energy(s, set)) return held_settled;
   for (Row& row : s.rows) row.impulse = 0.0;
-  sweep_rows(s, set.capstan);
-  set.direct = false;
+  sweep_rows(s, set);
   set.froze = true;
   return false;
 }

@@ -45,7 +45,9 @@ struct SolveScratch {
   int solves = 0;            // of this part in this step so far
   bool froze = false;        // the states did not settle by themselves
   bool left_out = false;     // rows contradict others, and are left out
+  bool contradicts = false;  // rows that bear force do one another, as settle leaves them
   bool by_dual = false;      // the last solution is that of solve_dual
+  bool swept = false;        // the last solution is that of sweep_rows: nothing slides
   bool repairs = true;       // DualTerms::repairs
   bool direct = false;       // the last solution is that of a regular symmetric system,
   double missing = 0.0;      // m/s, whose equations it misses by so much at most

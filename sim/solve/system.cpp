@@ -292,6 +292,9 @@ double start(PartSystem& s, SolveScratch& set) {
 void spread_over_repeated_rows(PartSystem& s, SolveScratch& set, double rounding) {
   constexpr double ridge = 1e-8;  // of the diagonal: half of a double's digits are left for either
   set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
+  double contradiction = 0.0;     // m/s
+  for (const double r : set.right_side) contradiction = std::max(contradiction, std::abs(r));
+  set.contradicts = contradiction * set.step_length > s.reach;
   const auto subtract_contradictions = [&set] {
     double largest = 0.0;
     for (std::size_t u = 0; u < set.residual.size(); ++u) {
@@ -385,7 +388,7 @@ void correct_solution(PartSystem& s, SolveScratch& set) {
 }
 
 void solve_for_states(PartSystem& s, SolveScratch& set) {
-  set.direct = false;
+  set.direct = set.contradicts = false;
   set.suspicious = true;
   if (!set.capstan.runs.empty()) make_groups(s, set);
   number_unknowns(s, set);

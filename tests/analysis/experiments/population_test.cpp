@@ -72,6 +72,18 @@ TEST(Population, NoSpanIsTooLongAfterALongRepair) {
   }
 }
 
+// Cables that are as straight as can be, where a body comes upon them or two press them: what they
+// ask for contradicts itself, and each was left too long for a step, by 2e-9 to 6.5e-4 m. In 1390
+// what slides went in circles, in 1308 it happened after more events than are located.
+TEST(Population, NoSpanIsTooLongWhereNothingGives) {
+  for (const int seed : {308, 318, 1308, 1390, 1748, 1845}) {
+    const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
+    for (const int steps : {1, 4, 16}) {
+      EXPECT_LE(run_scene(scene, watched(), steps, 60).loose_span, 1e-9) << seed << " at " << steps;
+    }
+  }
+}
+
 // Bodies on taut spans that several of them press, or that have just come off one: what a repair
 // pushes into a span is met there. These sank into it by 2 mm to 0.3 m, and fell through.
 TEST(Population, NoBodySinksThroughASpan) {
@@ -109,14 +121,14 @@ TEST(Population, NoBodySinksBesideARim) {
 // Motors that wind in what cannot give: those that had thrown weights when they held their speed
 // did so again, as stalling left the cable stretched, if a thousandth as fast. They were 914 m and
 // 78 m from their cables, and in the other two wound them in by 5 and 1.5 mm. Of one run a
-// repair fails for a step in which all is jammed: a span is 0.015 mm too long at its end.
+// repair fails for a step in which all is jammed: a span is 7.3 micrometres too long at its end.
 TEST(Population, MotorsThatThrowStayStalled) {
   for (const int seed : {11, 1018, 1190, 1229}) {
     for (const int steps : {1, 4, 16}) {
       const Soundness run =
           run_scene(dropped_discs(static_cast<std::uint64_t>(seed)), watched(), steps, 60);
       const bool jams = seed == 1229 && steps == 16;
-      EXPECT_LE(run.loose_span, jams ? 2e-5 : 1e-6) << seed << " at " << steps;
+      EXPECT_LE(run.loose_span, jams ? 1e-5 : 1e-6) << seed << " at " << steps;
       for (const Vec2& position : run.positions) {
         EXPECT_LT(position.norm(), 100.0) << seed << " at " << steps;
       }
@@ -154,8 +166,8 @@ TEST(Population, AJammedDiscIsNotThrown) {
 }
 
 /// By how much the tensions on either side of a cable's unpressed arcs differ by more than the
-/// capstan law lets them, as a share of its greatest.
-double beyond_capstan(const World& world, const CableState& cable) {
+/// capstan law lets them on arcs as they were `before`, as a share of its greatest.
+double beyond_capstan(const World& world, const CableState& cable, const CableState& before) {
   double greatest = 0.0, most = 0.0;
   for (const Segment& segment : cable.segments) greatest = std::max(greatest, segment.tension);
   constexpr double nothing = 1e-9;  // N
@@ -170,7 +182,7 @@ double beyond_capstan(const World& world, const CableState& cable) {
     if (mu == infinity || in.pinched || out.pinched || link.pinch_middle) continue;
     if (at(cable.links, previous_link(cable, i)).pinch_middle) continue;
     if (at(cable.links, after).pinch_middle) continue;
-    const double factor = std::exp(mu * std::max(link.wrap, 0.0));
+    const double factor = std::exp(mu * std::max(at(before.links, i).wrap, 0.0));
     most = std::max({most, in.tension - factor * out.tension, out.tension - factor * in.tension});
   }
   return most / greatest;
@@ -180,24 +192,28 @@ double beyond_capstan(const World& world, const CableState& cable) {
 // one that can. And a thin cable between bodies that press a thick one feels nothing of that. These
 // had tensions in one span of a loop without any in the next, and nothing said so.
 TEST(Population, LoopsKeepTheCapstanLaw) {
+  int seen = 0;
   for (const int seed : {49, 94, 283, 318, 356, 470, 476, 484, 573}) {
     Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
     scene.steps_per_frame = 1;
     World world = make_world(scene, Method::pinch);
     Workspace work;
     for (int i = 0; i < 60; ++i) {
-      const Diagnostics before = world.diagnostics;
+      const World start = world;
       ASSERT_EQ(step(scene, world, work), StepStatus::ok) << seed;
       // Of a step that was divided these are the tensions of its last interval, and of one that did
       // not settle they keep no law.
-      const Diagnostics& d = world.diagnostics;
+      const Diagnostics &d = world.diagnostics, &before = start.diagnostics;
       if (d.intervals != before.intervals + 1 || d.fallbacks != before.fallbacks) continue;
-      for (const CableState& cable : world.cables) {
-        if (!cable.closed || cable.elastic) continue;
-        EXPECT_LT(beyond_capstan(world, cable), 1e-3) << seed << " step " << i;
+      for (std::size_t c = 0; c < world.cables.size(); ++c) {
+        const CableState &cable = world.cables[c], &then = start.cables[c];
+        if (!cable.closed || cable.elastic || cable.links.size() != then.links.size()) continue;
+        EXPECT_LT(beyond_capstan(world, cable, then), 1e-6) << seed << " step " << i;
+        ++seen;
       }
     }
   }
+  EXPECT_GT(seen, 100);
 }
 
 // A disc on a span that cannot give, which a motor winds in: it threw the disc at 1e6 m/s.
