@@ -171,10 +171,8 @@ double find_sound_interval(const Scene& scene, World& world, Workspace& work, co
     length *= share;
     again(shake_rounds);
     // What misses as great a share contradicts itself, as a motor that turns against a jammed cable
-    // does: no interval is short enough. One that was to end where a cable bears may bend too far
-    // by a hair.
-    const bool may_bend = share < 0.5 && trial.missed == infinity;
-    if (misses() && missed < infinity && !may_bend && trial.missed > 0.8 * share * missed) {
+    // does: no interval is short enough.
+    if (misses() && trial.missed < infinity && trial.missed > 0.8 * share * missed) {
       length = whole;
       break;
     }
