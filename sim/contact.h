@@ -32,6 +32,7 @@ struct Contact {
   int wall = -1;  // index into World::obstacles, or -1
   Touch touch = Touch::circles;
   std::int8_t point = 0;  // corner of the polygon, or end of the wall; 0 of a disc
+  std::int8_t side = -1;  // of the other's outline, that a sharp corner was found on; -1: none
   std::int8_t away =
       0;  // a piece or node of a hanging cable: what is near it is nearer to what is before it
           // (-1) or after it (+1), and this bears nothing; 0: it is this

@@ -49,7 +49,7 @@ void add(Plate& plate, double area, const Vec2& centre, double moment) {
 
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   const auto [side, in_front, normal, length] = front_of(corners, point);
-  Outside out{in_front, normal};
+  Outside out{in_front, normal, false, static_cast<int>(side)};
   if (out.distance <= 0.0) return out;
   // Of all sides that the point is in front of, the one that it is furthest from holds the nearest
   // point of the polygon, within it or at one of its ends.
@@ -60,17 +60,27 @@ Outside outside_of(std::span<const Vec2> corners, const Vec2& point) {
   return {distance, (point - end) / distance, true};
 }
 
+Outside outside_of_side(std::span<const Vec2> corners, std::size_t side, const Vec2& point) {
+  double length = 0.0;
+  const Vec2 normal = way_out(corners, side, length);
+  return {normal.dot(point - corners[side]), normal, false, static_cast<int>(side)};
+}
+
+double along_side(std::span<const Vec2> corners, std::size_t side, const Vec2& point) {
+  double length = 0.0;
+  const double along = left(way_out(corners, side, length)).dot(point - corners[side]);
+  return std::min(along, length - along);
+}
+
 double along_side(std::span<const Vec2> corners, const Vec2& point) {
   const auto [side, in_front, normal, length] = front_of(corners, point);
   if (in_front <= 0.0) return infinity;
-  const double along = left(normal).dot(point - corners[side]);
-  const double here = std::min(along, length - along);
+  const double here = along_side(corners, side, point);
   if (here >= 0.0) return here;
   // Beyond an end: so it may be of the side that begins, or ends, there.
-  const std::size_t count = corners.size(), next = (side + (along < 0.0 ? count - 1 : 1)) % count;
-  double next_length = 0.0;
-  const double along_next = left(way_out(corners, next, next_length)).dot(point - corners[next]);
-  return std::max(here, std::min(along_next, next_length - along_next));
+  const std::size_t count = corners.size();
+  const bool before = left(normal).dot(point - corners[side]) < 0.0;
+  return std::max(here, along_side(corners, (side + (before ? count - 1 : 1)) % count, point));
 }
 
 Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const Vec2& way,
@@ -78,11 +88,9 @@ Outside outside_of_sides(std::span<const Vec2> corners, const Vec2& point, const
   Outside out;
   out.distance = -infinity;
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    double length = 0.0;
-    const Vec2 normal = way_out(corners, i, length);
-    if (normal.dot(way) > most) continue;
-    const double distance = normal.dot(point - corners[i]);
-    if (distance > out.distance) out = {distance, normal};
+    const Outside of_side = outside_of_side(corners, i, point);
+    if (of_side.normal.dot(way) > most) continue;
+    if (of_side.distance > out.distance) out = of_side;
   }
   return out;
 }

@@ -44,15 +44,22 @@ struct Outside {
   double distance = 0.0;     // m; below 0: inside, to the nearest side
   Vec2 normal = Vec2(1, 0);  // unit, the way out of the polygon
   bool round = false;        // the nearest is a corner, or a disc's centre, not a side
+  int side = -1;             // of the polygon, from that corner on, that it is the distance from
 };
 
 /// Of a point from the polygon of these corners, counter-clockwise, all in one frame.
 Outside outside_of(std::span<const Vec2> corners, const Vec2& point);
 
+/// From one of its sides, gone on with to both ends.
+Outside outside_of_side(std::span<const Vec2> corners, std::size_t side, const Vec2& point);
+
 /// How far the polygon's point that is nearest to one outside of it is from where its side ends,
 /// along it (m); below 0 it is a corner, and the one outside is so far beyond the nearer of the two
 /// sides that meet there. Infinity inside.
 double along_side(std::span<const Vec2> corners, const Vec2& point);
+
+/// How far a point is from where one of its sides ends, along that (m): below 0 it is beyond.
+double along_side(std::span<const Vec2> corners, std::size_t side, const Vec2& point);
 
 /// As outside_of, from the polygon's sides whose ways out make an angle with `way` whose cosine is
 /// at most `most`, gone on with to both ends: below 0 where the point is behind all of them.

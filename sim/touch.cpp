@@ -110,8 +110,13 @@ Outside in_front(const World& world, int body, const Vec2& point, const Tip& tip
   return has_passed ? sides : out;
 }
 
-/// Of a point (m) from the body's core, in the world's frame.
-Outside outside_of_body(const World& world, int body, const Vec2& point, const Tip& tip) {
+/// Whether a contact is of a sharp corner and a side.
+bool is_on_side(const Contact& contact) {
+  return contact.side >= 0 && contact.target == 0.0;
+}
+
+/// Of a point (m) from the body's core, or from a side of it, in the world's frame.
+Outside outside_of_body(const World& world, int body, const Vec2& point, const Tip& tip, int side) {
   const BodyProperties& b = at(world.bodies, body);
   const Vec2 from = point - at(world.position, body);
   if (!is_polygon(b)) {
@@ -120,8 +125,13 @@ Outside outside_of_body(const World& world, int body, const Vec2& point, const T
   }
   const double angle = at(world.angle, body);
   const Vec2 inside = turned(from, -angle);
-  Outside out = outside_of(b.corners, inside);
-  if (tip.most > 0.0 || tip.body >= 0) out = in_front(world, body, inside, tip, out);
+  Outside out;
+  if (side >= 0) {
+    out = outside_of_side(b.corners, index(side), inside);
+  } else {
+    out = outside_of(b.corners, inside);
+    if (tip.most > 0.0 || tip.body >= 0) out = in_front(world, body, inside, tip, out);
+  }
   out.normal = turned(out.normal, angle);
   return out;
 }
@@ -244,12 +254,15 @@ Meeting meeting_of(const World& world, const Contact& contact) {
                                                        : contact.a;
   Vec2 point;
   double radius = 0.0, other_radius = 0.0;
+  // What bears force on a side does so on its line past its end, until that has been found out, an
+  // event of jumps.h.
+  const int side = contact.touching && is_on_side(contact) ? contact.side : -1;
   Outside out;
   if (contact.touch == Touch::end_of_wall) {
     const Obstacle& obstacle = at(world.obstacles, contact.wall);
     point = contact.point == 0 ? obstacle.a : obstacle.b;
     radius = obstacle.radius;
-    out = outside_of_body(world, other, point, tip_of_wall(obstacle, contact.point));
+    out = outside_of_body(world, other, point, tip_of_wall(obstacle, contact.point), side);
     other_radius = rim_radius(at(world.bodies, other));
   } else {
     point = place_of_point(world, owner, contact.point);
@@ -257,7 +270,7 @@ Meeting meeting_of(const World& world, const Contact& contact) {
     if (other < 0) {
       out = outside_of_wall(at(world.obstacles, contact.wall), at(world.position, owner), point);
     } else {
-      out = outside_of_body(world, other, point, tip_of(world, owner, contact.point));
+      out = outside_of_body(world, other, point, tip_of(world, owner, contact.point), side);
       other_radius = rim_radius(at(world.bodies, other));
     }
   }
@@ -266,26 +279,103 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   meeting.normal = of_a ? Vec2(-out.normal) : out.normal;
   meeting.point = point - (radius + 0.5 * meeting.gap) * out.normal;
   if (out.round) meeting.apart = out.distance;
+  if (radius + other_radius == 0.0) meeting.side = out.side;
   return meeting;
 }
 
 double on_straight(const World& world, const Contact& contact, const std::vector<Vec2>& position,
                    const std::vector<double>& angle) {
-  if (contact.touch == Touch::circles && contact.b < 0 && !is_end_of_cable(world, contact)) {
+  if (contact.touch == Touch::piece || is_end_of_cable(world, contact)) return infinity;
+  const bool of_b = contact.touch == Touch::point_of_b,
+             of_wall = contact.touch == Touch::end_of_wall;
+  const int owner = of_b ? contact.b : contact.a, other = of_b || of_wall ? contact.a : contact.b;
+  Vec2 point = at(position, owner);
+  if (of_wall) {
     const Obstacle& wall = at(world.obstacles, contact.wall);
-    const Vec2 way = wall.b - wall.a;
-    const double length = way.norm();
-    const double along = way.dot(at(position, contact.a) - wall.a) / length;
-    return std::min(along, length - along);
+    point = contact.point == 0 ? wall.a : wall.b;
+  } else if (const BodyProperties& body = at(world.bodies, owner); is_polygon(body)) {
+    point += turned(at(body.corners, contact.point), at(angle, owner));
   }
-  const bool of_a = contact.touch == Touch::point_of_a;
-  if (contact.b < 0 || (!of_a && contact.touch != Touch::point_of_b)) return infinity;
-  const int disc = of_a ? contact.a : contact.b, other = of_a ? contact.b : contact.a;
+  if (other < 0) {
+    const Obstacle& wall = at(world.obstacles, contact.wall);
+    return along_side(std::array{wall.a, wall.b}, 0, point);
+  }
   const BodyProperties& outline = at(world.bodies, other);
-  if (is_polygon(at(world.bodies, disc)) || !is_polygon(outline)) return infinity;
-  const Vec2 from = at(position, disc) - at(position, other);
-  return along_side(outline.corners, turned(from, -at(angle, other)));
+  if (!is_polygon(outline)) return infinity;
+  const Vec2 seen = turned(point - at(position, other), -at(angle, other));
+  if (is_on_side(contact)) return along_side(outline.corners, index(contact.side), seen);
+  return along_side(outline.corners, seen);
 }
+
+bool ends_beyond(const Contact& contact) {
+  const bool of_wall = contact.touch == Touch::point_of_a && contact.b < 0;
+  return of_wall || is_on_side(contact);
+}
+
+namespace {
+
+/// Velocity of b, or of a wall, less that of a, at that place (m/s).
+Vec2 relative_velocity(const World& world, const Contact& contact, const Vec2& place) {
+  const auto velocity = [&](int body) {
+    return Vec2(at(world.velocity, body) +
+                at(world.angular_velocity, body) * left(place - at(world.position, body)));
+  };
+  const Vec2 of_b = contact.b >= 0 ? velocity(contact.b) : Vec2(Vec2::Zero());
+  return of_b - velocity(contact.a);
+}
+
+/// Unit, from a body's corner along the side of it which a contact there of this normal is on.
+Vec2 side_from(const World& world, int body, int corner, const Vec2& normal) {
+  const int corners = points_of(at(world.bodies, body));
+  const Vec2 point = place_of_point(world, body, corner);
+  const auto way_to = [&](int other) {
+    return Vec2((place_of_point(world, body, other % corners) - point).normalized());
+  };
+  const Vec2 next = way_to(corner + 1), last = way_to(corner + corners - 1);
+  return std::abs(next.dot(normal)) <= std::abs(last.dot(normal)) ? next : last;
+}
+
+/// Of two contacts of a pair at one place, of a's corner with b and of b's with a, how much rather
+/// the second is the one that counts (m/s). Each asks for the pair to be apart along one way, and
+/// one way is enough: so it is that along which they part faster, lest a corner that passes another
+/// is stopped by the side that it comes off. `round_off` (m/s): of these speeds. Flat on each other
+/// they part as fast along either: then the corner counts that comes on to its side.
+double counts_rather(const World& world, const Contact& of_a, const Contact& of_b,
+                     const Vec2& place, double round_off) {
+  const Vec2 velocity = relative_velocity(world, of_a, place);
+  const double faster = velocity.dot(of_b.normal - of_a.normal);
+  if (std::abs(faster) > round_off) return faster;
+  const Vec2 side_of_a = side_from(world, of_a.a, of_a.point, of_b.normal);
+  if (of_a.b >= 0) {
+    return velocity.dot(side_of_a + side_from(world, of_a.b, of_b.point, of_a.normal));
+  }
+  const Obstacle& wall = at(world.obstacles, of_a.wall);
+  const Vec2 along = (wall.b - wall.a).normalized();
+  return velocity.dot(side_of_a + (of_b.point == 0 ? along : Vec2(-along)));
+}
+
+/// The last contact is of a point of b or a wall, at `place` (m): leaves it out, or one of a corner
+/// of a there among those from `first` on, where the other counts rather, or, with `any`, both as
+/// much. Places are the same within `same` (m).
+void leave_out_repeated(const World& world, std::ptrdiff_t first, const Vec2& place, double same,
+                        bool any, std::vector<Contact>& to) {
+  const Contact last = to.back();
+  const auto end = to.end() - 1;
+  const auto there = std::find_if(to.begin() + first, end, [&](const Contact& c) {
+    return c.touch == Touch::point_of_a && c.gap <= last.gap + same &&
+           (place_of_point(world, c.a, c.point) - place).norm() <= same;
+  });
+  if (there == end) return;
+  const double round_off = one_place(world, last.a, last.b) / world.step_length;
+  const double rather = counts_rather(world, *there, last, place, round_off);
+  if (rather > round_off && last.gap <= there->gap + same) {
+    to.erase(there);
+  } else if (any || rather < -round_off) {
+    to.pop_back();
+  }
+}
+
+}  // namespace
 
 void append_touches(const World& world, int a, int b, int wall, double most,
                     std::vector<Contact>& to) {
@@ -301,6 +391,11 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     if (meeting.gap > most) return;
     contact.gap = meeting.gap;
     contact.normal = meeting.normal;
+    contact.side = static_cast<std::int8_t>(meeting.side);
+    // Within round-off of its end it has come off it.
+    if (on_straight(world, contact, world.position, world.angle) <= one_place(world, a, b)) {
+      contact.side = -1;
+    }
     to.push_back(contact);
   };
   const BodyProperties& body = at(world.bodies, a);
@@ -311,8 +406,13 @@ void append_touches(const World& world, int a, int b, int wall, double most,
       const Vec2 point = place_of_point(world, a, k);
       if (is_beside(obstacle, at(world.position, a), point)) append(Touch::point_of_a, k);
     }
-    append(Touch::end_of_wall, 0);
-    if (!is_point) append(Touch::end_of_wall, 1);
+    for (int end = 0; end < (is_point ? 1 : 2); ++end) {
+      const std::size_t before = to.size();
+      append(Touch::end_of_wall, end);
+      if (to.size() == before) continue;
+      const Vec2& point = end == 0 ? obstacle.a : obstacle.b;
+      leave_out_repeated(world, first, point, 1e-9 * body.radius, false, to);
+    }
     return;
   }
   const BodyProperties& other = at(world.bodies, b);
@@ -321,20 +421,13 @@ void append_touches(const World& world, int a, int b, int wall, double most,
   }
   if (!is_polygon(body)) return;
   // Where corner meets corner, one of the two is enough, that with the lesser gap.
-  const auto of_a = static_cast<std::ptrdiff_t>(to.size());
   // Far above round-off, and nothing that turns a body by a force at the one corner or the other.
   const double same = 1e-9 * (body.radius + other.radius);
   for (int k = 0; k < points_of(other); ++k) {
-    const Vec2 point = place_of_point(world, b, k);
-    const auto before = static_cast<std::ptrdiff_t>(to.size());
+    const std::size_t before = to.size();
     append(Touch::point_of_b, k);
-    const auto now = static_cast<std::ptrdiff_t>(to.size());
-    if (now == before) continue;
-    const double least = to.back().gap + one_place(world, a, b);
-    const bool repeats = std::any_of(to.begin() + first, to.begin() + of_a, [&](const Contact& c) {
-      return c.gap <= least && (place_of_point(world, a, c.point) - point).norm() <= same;
-    });
-    if (repeats) to.pop_back();
+    if (to.size() == before) continue;
+    leave_out_repeated(world, first, place_of_point(world, b, k), same, true, to);
   }
 }
 

@@ -31,6 +31,7 @@ struct Meeting {
   Vec2 normal = Vec2::Zero();  // unit, from a towards b
   Vec2 point = Vec2::Zero();   // m, midway between the surfaces
   double apart = 0.0;          // m, where both are round there: between their centres; else 0
+  int side = -1;               // of the outline, where the point is on one and both are sharp
 };
 
 /// Whether it is with the end of a cable that is held in the world.
@@ -47,11 +48,14 @@ Vec2 place_of_point(const World& world, int body, int point);
 /// other's touches.
 Vec2 nearest_place(const World& world, const Contact& contact, int body);
 
-/// How far the place where a disc touches a wall or polygon is from where its outline begins to
+/// How far the place where a point touches a wall or polygon is from where its outline begins to
 /// bend, for such places of bodies (m and rad, as of World): above 0 on a straight part of it,
-/// below 0 round a corner. Infinity for contacts of anything else.
+/// below 0 round a corner, or beyond a sharp one. Infinity for contacts of anything else.
 double on_straight(const World& world, const Contact& contact, const std::vector<Vec2>& position,
                    const std::vector<double>& angle);
+
+/// Whether its point touches nothing beyond there: of sharp corners, and of a corner and a wall.
+bool ends_beyond(const Contact& contact);
 
 /// Brings a contact's gap and normal up to the bodies' present positions.
 void measure(const World& world, Contact& contact);

@@ -52,7 +52,8 @@ struct Start {
   std::vector<double> angle, angular_velocity;
   std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
                                        // m, and m/s
-  std::vector<Slip> contact_slip;      // of World::contacts, where they are of what moves
+  std::vector<Slip> contact_slip;      // of World::contacts, where they are of what moves,
+  std::vector<char> touching;          // likewise
   std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 

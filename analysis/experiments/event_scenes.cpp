@@ -247,6 +247,29 @@ Problem ball_off_a_table() {
                });
 }
 
+Problem box_off_a_table() {
+  constexpr double speed = 2.5, way = 0.713;
+  TippingBox tipping;
+  tipping.g = g;
+  Scene scene;
+  Body table = body("table", BodyKind::fixed, -1.0, -0.1, 1.0);
+  make_polygon(table, build::box_corners(2.0, 0.2), 0.0);
+  table.contact_friction = 0.0;
+  scene.bodies.push_back(table);
+  Body box = body("box", BodyKind::free, -way, tipping.half_height, 1.0, tipping.mass);
+  make_polygon(box, build::box_corners(2.0 * tipping.half_length, 2.0 * tipping.half_height), 0.0);
+  box.inertia = tipping.inertia;
+  box.contact_friction = 0.0;
+  box.velocity = {speed, 0.0};
+  scene.bodies.push_back(box);
+  return integrated("box-off-a-table", "A box that slides over a table's edge, tips and slides off",
+                    scene, 48, tipping.phases(), {-way, tipping.half_height, 0.0, speed, 0.0, 0.0},
+                    [&](const State& y, std::size_t b) -> Vec2 {
+                      if (b == 0) return table.position;
+                      return {y[0], y[1]};
+                    });
+}
+
 // Between equal loads on a drum on which their cable slips all the time, v' = +-g (k - 1) / (k + 1)
 // with k = exp(mu pi), towards the rim's speed u; that changes too fast for them to follow.
 Problem slip_on_a_drum() {
@@ -292,7 +315,7 @@ Problem slip_on_a_drum() {
 std::vector<Problem> event_problems() {
   return {bouncing_ball(),      ball_between_walls(), caught_load(),      caught_over_a_peg(),
           two_on_slack_cable(), galileos_peg(),       looping_pendulum(), box_on_a_slope(),
-          ball_off_a_table(),   slip_on_a_drum()};
+          ball_off_a_table(),   box_off_a_table(),    slip_on_a_drum()};
 }
 
 }  // namespace pinchlab::experiments

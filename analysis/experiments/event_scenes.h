@@ -21,6 +21,7 @@ looping_pendulum();  ///< a bob that winds its cable up on a rod, and so holds 3
 
 Problem box_on_a_slope();    ///< slides up it, comes to rest, and slides down again
 Problem ball_off_a_table();  ///< rolls over its edge, too fast to stay on it
+Problem box_off_a_table();   ///< slides over its edge, tips, and slides off
 Problem slip_on_a_drum();    ///< of a cable, there and back, as the drum's motor swings
 
 /// All of the above.

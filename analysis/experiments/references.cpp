@@ -166,6 +166,33 @@ double PegPendulum::energy(const State& y) const {
   return 0.5 * across * across + g * height;
 }
 
+double TippingBox::edge(const State& y) const {
+  return -std::cos(y[2]) * y[0] - std::sin(y[2]) * y[1];
+}
+
+double TippingBox::force(const State& y) const {
+  const double c = std::cos(y[2]), s = edge(y), along = c * y[3] + std::sin(y[2]) * y[4];
+  return (g * c + half_height * y[5] * y[5] + 2.0 * y[5] * along) / (1.0 / mass + s * s / inertia);
+}
+
+std::vector<Phase> TippingBox::phases() const {
+  const TippingBox box = *this;
+  const auto moves = [box](const State& y, double force) -> State {
+    return {y[3],
+            y[4],
+            y[5],
+            -std::sin(y[2]) * force / box.mass,
+            std::cos(y[2]) * force / box.mass - box.g,
+            box.edge(y) * force / box.inertia};
+  };
+  const auto slides = [](const State& y) -> State { return {y[3], 0.0, 0.0, 0.0, 0.0, 0.0}; };
+  const auto tips = [=](const State& y) { return moves(y, box.force(y)); };
+  const auto flies = [=](const State& y) { return moves(y, 0.0); };
+  return {{slides, [](const State& y) { return -y[0]; }, {}},
+          {tips, [box](const State& y) { return box.edge(y) + box.half_length; }, {}},
+          {flies, {}, {}}};
+}
+
 double LoopingPendulum::free_length(const State& y) const {
   return length - radius * (y[0] - start_angle) - y[2];
 }

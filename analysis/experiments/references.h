@@ -100,6 +100,28 @@ struct PegPendulum {
   double energy(const State& y) const;
 };
 
+/// A box of mass m and moment of inertia I that slides without friction over the edge of a table,
+/// at the origin, and off it; a and b are half of its length and height.
+///
+/// It begins to tip as its centre c comes over the edge, where what bears its rear corner has come
+/// to nothing. Then the edge slides along its underside. With e = (cos, sin) theta, u = (-sin, cos)
+/// theta, v = c' and s = -e . c, the place of the edge on the underside, u . c = b gives, twice
+/// differentiated, the force N along u at the edge:
+///   (1/m + s^2/I) N = g cos theta + b theta'^2 + 2 theta' (e . v),   I theta'' = s N.
+/// The edge comes off where s = -a, the box's rear corner, and the force is gone at once.
+struct TippingBox {
+  double half_length = 0.2;  // m, a
+  double half_height = 0.1;  // m, b
+  double mass = 1.0;         // kg
+  double inertia = 0.01;     // kg m^2
+  double g = 9.81;           // m/s^2
+
+  double edge(const State& y) const;   ///< m, s
+  double force(const State& y) const;  ///< N
+  /// Slides, tips, flies, of y = (x, y, theta, x', y', theta').
+  std::vector<Phase> phases() const;
+};
+
 /// The looping pendulum: a bob of mass m and a load of mass M on one cable over a fixed rod of
 /// radius R (to the cable's centre line) at the origin, on which it slips by the capstan law. The
 /// load hangs straight down on the right; from there the cable runs counter-clockwise over the rod,

@@ -235,7 +235,7 @@ void change_courses(World& world, Workspace& work) {
   });
   int cable_changed = -1, item_changed = -1;
   for (const Happening& event : work.events) {
-    if (event.kind == EventKind::halts && event.clearance <= event.reach) halt(world, event);
+    if (event.kind >= EventKind::halts && event.clearance <= event.reach) end_jump(world, event);
     if (event.kind >= EventKind::halts || event.cable < 0 || event.clearance > event.reach)
       continue;
     CableState& cable = at(world.cables, event.cable);

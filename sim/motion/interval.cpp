@@ -194,6 +194,7 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
   double late_by = least_clearance(work.events), early_by = least_before(work.events);
   if (!(early_by > 0.0)) early_by = infinity;  // as good as not known
   double tried = length;
+  double least_late = late_by;
   bool was_late = false, was_early = false;  // the trial before
   for (int trial = 0; trial < most_trials; ++trial) {
     const double least = least_clearance(work.events);
@@ -201,7 +202,7 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
     if (least < 0.0) {
       if (was_late) early_by *= 0.5;
       late = tried;
-      late_by = least;
+      late_by = least_late = least;
     } else {
       if (was_early) late_by *= 0.5;
       early = tried;
@@ -216,6 +217,14 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
     const double narrow = is_jump_first(work.events) ? 1e-9 : 1e-15;
     if (!(next > early && next < late) || late - early <= narrow * length) break;
     tried = next;
+    try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
+    met = work.trial.met && met;
+  }
+  // What jumps is nowhere between: from not yet there it has come to within its reach, and so it
+  // has happened then. (A corner that a side has slid over is before one side of it, and then on
+  // the other.)
+  if (least_clearance(work.events) > 0.5 * aim && least_late < 0.0 && least_late >= -1.0) {
+    tried = late;
     try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
     met = work.trial.met && met;
   }
@@ -238,6 +247,7 @@ void begin_interval(const World& world, Workspace& work, const Movers& movers, d
   work.events.clear();
   if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
   start.contact_slip.resize(world.contacts.size());
+  start.touching.resize(world.contacts.size());
   for (const int p : movers.parts) {
     Part& part = at(work.parts.list, p);
     note_sliding(world, part, work);

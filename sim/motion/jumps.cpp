@@ -227,13 +227,14 @@ void find_halts(const Scene& scene, const World& world, Workspace& work, int num
   for (const int c : cables_of(work.parts, part)) tried.find_links_that_halt(c);
 }
 
-/// Discs that come to corners.
+/// Discs and corners that come to corners.
 void find_turns(const World& world, Workspace& work, int number, double length) {
   const Part& part = at(work.parts.list, number);
   const double reach = at(work.systems, part.system).reach;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
-    if (!contact.touching || is_of_discs(contact) || stays_on_wall(world, contact, length))
+    if (!at(work.start.touching, c) || is_of_discs(contact) ||
+        stays_on_wall(world, contact, length))
       continue;
     const double before = on_straight(world, contact, work.start.position, work.start.angle);
     if (!(std::abs(before) > reach && std::abs(before) < infinity)) continue;
@@ -254,6 +255,7 @@ void note_sliding(const World& world, Part& part, Workspace& work) {
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
     at(work.start.contact_slip, c) = contact.slip;
+    at(work.start.touching, c) = contact.touching ? 1 : 0;
     part.slid = part.slid || contact.slip != Slip::stick;
     part.may_turn = part.may_turn || !is_of_discs(contact);
   }
@@ -270,8 +272,13 @@ void find_jumps(const Scene& scene, const World& world, Workspace& work, int num
   if (part.may_turn) find_turns(world, work, number, length);
 }
 
-void halt(World& world, const Happening& event) {
+void end_jump(World& world, const Happening& event) {
   if (event.body >= 0) return;  // a motor's state follows from its speed
+  if (event.kind == EventKind::turns) {
+    Contact& contact = at(world.contacts, event.row);
+    if (ends_beyond(contact)) contact.touching = false;
+    return;
+  }
   if (event.row >= 0) {
     at(world.contacts, event.row).slip = Slip::stick;
     return;

@@ -6,8 +6,9 @@
 //
 //   EventKind::halts   what slides comes to rest, and friction turns round or holds; a motor with a
 //                      limit has come to its speed
-//   EventKind::turns   a motor's time table has a corner; a disc comes on to a corner of what it
-//                      lies on, or off it, where its way begins or ceases to bend
+//   EventKind::turns   a motor's time table has a corner; a disc, or a rounded corner, comes on to
+//                      a corner of what it lies on, or off it, where its way begins or ceases to
+//                      bend; a sharp corner comes to one, or to a wall's end, and off its side
 //
 // Friction that begins to slide does not jump, nor does what a motor gives as it comes to its
 // limit.
@@ -34,7 +35,8 @@ inline bool may_jump(const Part& part, const PartSystem& s) {
 /// (s), added to Workspace::events or measured anew.
 void find_jumps(const Scene& scene, const World& world, Workspace& work, int part, double length);
 
-/// What has come to rest, by such an event, does not slide when the next interval begins.
-void halt(World& world, const Happening& event);
+/// What has come to rest, by such an event, does not slide when the next interval begins; a corner
+/// that has come to a sharp one bears nothing.
+void end_jump(World& world, const Happening& event);
 
 }  // namespace pinchlab

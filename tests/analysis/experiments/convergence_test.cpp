@@ -28,7 +28,7 @@ TEST(EventScenes, StraightMotionThroughEventsIsExactAtEveryStep) {
 // The capstan law holds with what of the cable lies on the rod when the interval begins: at its end
 // it is of order 1, where the bob winds the cable up.
 TEST(EventScenes, CurvedMotionThroughEventsIsOfSecondOrder) {
-  for (const Problem& problem : {galileos_peg(), looping_pendulum()}) {
+  for (const Problem& problem : {galileos_peg(), looping_pendulum(), box_off_a_table()}) {
     const auto run = [&](int steps) { return simulate(problem, Method::pinch, steps); };
     const std::vector<Rung> rungs = climb(problem, "located", run, 128, Limits{0.0, infinity});
     // By least squares: where in its step the cable comes to stick changes the error somewhat.
