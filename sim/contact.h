@@ -53,7 +53,7 @@ struct Contact {
   std::int8_t slips_way = 0;  // its orientation
   Slip slip = Slip::stick;    // of b along left(normal), where there is friction; by the active set
   bool touching = false;      // by the active set
-  bool rebounds = false;      // has just rebounded: bears nothing until it has parted; by impact
+  bool rebounds = false;      // rebounds, or hops: bears nothing until it has parted; by impact
   std::int64_t struck = -1;   // step in which it last did
   double normal_force = 0.0;  // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)

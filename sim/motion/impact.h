@@ -18,7 +18,8 @@ struct Workspace;
 /// friction. Each of these solves is a projection of the velocities (but for a share e <= 1 of the
 /// normal one), so that none of them makes energy.
 ///
-/// `rebounds`: false leaves out the blows, as if all restitution were 0.
+/// What parts from what it touches has `Contact::rebounds` until it has. `rebounds`: false leaves
+/// out the blows, as if all restitution were 0, and what they lift.
 void strike(const Scene& scene, World& world, Workspace& work, const Part& part, bool rebounds);
 
 }  // namespace pinchlab
