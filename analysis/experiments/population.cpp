@@ -10,6 +10,7 @@
 #include <functional>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 
 #include "analysis/experiments/population_scenes.h"
 #include "base/at.h"
@@ -49,11 +50,15 @@ void note_spans(const Scene& scene, const World& world, Soundness& sound) {
   }
 }
 
-struct Sample {
+struct Runs {
   std::array<Soundness, ladder.size()> runs;
-  Soundness image;  // mirrored, at the middle of the ladder
 
   double apart(std::size_t a, std::size_t b) const { return end_distance(runs[a], runs[b], false); }
+};
+
+struct Sample : Runs {
+  Soundness image;  // mirrored, at the middle of the ladder
+
   double asymmetry() const { return end_distance(runs[1], image, true); }
 };
 
@@ -95,17 +100,25 @@ std::vector<Made> run_samples(int count, int first, Progress& progress,
   return samples;
 }
 
-struct ShapelySample {
+struct ShapelySample : Runs {
   Shapely has;
-  std::array<Soundness, ladder.size()> runs;
 };
 
 ShapelySample run_shapely(const ShapelyScene& drawn) {
-  ShapelySample sample{drawn.has, {}};
+  ShapelySample sample;
+  sample.has = drawn.has;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     sample.runs[i] = run_scene(drawn.scene, configuration_of("pinch"), ladder[i], frames);
   }
   return sample;
+}
+
+Runs run_on_table(std::uint64_t seed, const Configuration& configuration) {
+  Runs runs;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    runs.runs[i] = run_scene(thrown_off_a_table(seed), configuration, ladder[i], frames);
+  }
+  return runs;
 }
 
 Csv table_of(const PopulationRun& run, const std::vector<ShapelySample>& samples) {
@@ -140,6 +153,23 @@ Csv table_of(const PopulationRun& run, const std::array<std::vector<Sample>, 2>&
                  r.late_events,
                  i + 1 < ladder.size() ? Csv::Cell(sample.apart(i, i + 1)) : Csv::Cell(""),
                  i == 1 ? Csv::Cell(sample.asymmetry()) : Csv::Cell("")});
+      }
+    }
+  }
+  return csv;
+}
+
+Csv table_of(const PopulationRun& run, const std::array<std::vector<Runs>, 2>& samples) {
+  Csv csv({"events", "seed", "steps_per_frame", "finite", "energy_gain", "gap_violation_m",
+           "unsettled_steps", "late_event_steps", "from_finer_m"});
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    for (std::size_t n = 0; n < samples[k].size(); ++n) {
+      for (std::size_t i = 0; i < ladder.size(); ++i) {
+        const Soundness& r = samples[k][n].runs[i];
+        csv.row({k == 0 ? "located" : "at_steps", run.first + static_cast<std::int64_t>(n),
+                 std::int64_t{ladder[i]}, std::int64_t{r.finite}, r.energy_gain, r.gap_violation,
+                 r.unsettled, r.late_events,
+                 i + 1 < ladder.size() ? Csv::Cell(samples[k][n].apart(i, i + 1)) : Csv::Cell("")});
       }
     }
   }
@@ -241,10 +271,35 @@ std::string shares(const std::vector<ShapelySample>& samples) {
                      count(&Shapely::chains));
 }
 
-std::vector<double> sorted(const std::vector<Sample>& samples, auto distance) {
+std::string promises_on_tables(const std::array<std::vector<Runs>, 2>& samples) {
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    for (std::size_t i = 0; i < ladder.size(); ++i) {
+      const std::vector<Runs>& s = samples[k];
+      const auto count = [&](auto holds) {
+        return fmt::to_string(std::count_if(
+            s.begin(), s.end(), [&](const Runs& sample) { return holds(sample.runs[i]); }));
+      };
+      rows.push_back({k == 0 ? "located" : "at_steps", fmt::to_string(ladder[i]),
+                      count([](const Soundness& r) { return !r.finite; }),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.energy_gain; }, 1e-9),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.gap_violation; }, 1e-9),
+                      unsettled(s, i),
+                      count([](const Soundness& r) { return r.late_events > 0; })});
+    }
+  }
+  return markdown_table({"events", "steps a frame", "not finite", "energy gained > 1e-9",
+                         "overlap > 1e-9 m", "unsettled (share of all steps)", "clusters"},
+                        rows);
+}
+
+template <typename Made>
+std::vector<double> sorted(const std::vector<Made>& samples, auto distance) {
   std::vector<double> all;
   all.reserve(samples.size());
-  for (const Sample& sample : samples) all.push_back(distance(sample));
+  for (const Made& sample : samples) all.push_back(distance(sample));
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -255,7 +310,8 @@ double share_within(const std::vector<double>& sorted, double limit) {
          static_cast<double>(sorted.size());
 }
 
-std::string distances(const std::array<std::vector<Sample>, 2>& samples) {
+template <typename Made>
+std::string distances(const std::array<std::vector<Made>, 2>& samples) {
   std::vector<std::vector<std::string>> rows;
   const auto add = [&](const char* events, const std::string& what, const std::vector<double>& d) {
     std::vector<std::string> row{events, what};
@@ -272,9 +328,11 @@ std::string distances(const std::array<std::vector<Sample>, 2>& samples) {
     const char* events = k == 0 ? "located" : "at_steps";
     for (std::size_t i = 0; i + 1 < ladder.size(); ++i) {
       add(events, fmt::format("{} and {} steps a frame", ladder[i], ladder[i + 1]),
-          sorted(samples[k], [i](const Sample& s) { return s.apart(i, i + 1); }));
+          sorted(samples[k], [i](const Made& s) { return s.apart(i, i + 1); }));
     }
-    add(events, "mirror image", sorted(samples[k], [](const Sample& s) { return s.asymmetry(); }));
+    if constexpr (std::is_same_v<Made, Sample>) {
+      add(events, "mirror image", sorted(samples[k], [](const Made& s) { return s.asymmetry(); }));
+    }
   }
   return markdown_table(
       {"events", "between", "10 %", "25 %", "median", "75 %", "90 %", "<= 1e-9 m", "<= 1 mm"},
@@ -305,6 +363,7 @@ Soundness run_scene(Scene scene, const Configuration& configuration, int steps_p
   double thinnest = infinity, start = 0.0, kinetic = 0.0;
   std::vector<double> gains;  // J, at each step
   for (const Cable& cable : scene.cables) thinnest = std::min(thinnest, cable.half_width);
+  if (scene.cables.empty()) thinnest = 1.0;
   for (const Body& body : scene.bodies) {
     sound.driven = sound.driven || body.driven_angular_velocity || body.torque != 0.0;
   }
@@ -349,12 +408,17 @@ double end_distance(const Soundness& a, const Soundness& b, bool image) {
 void run_population(const PopulationRun& run) {
   std::array<std::vector<Sample>, 2> samples;
   Progress progress("bench population",
-                    static_cast<double>(kinds.size()) * run.scenes + 2.0 * run.shapely_scenes);
+                    static_cast<double>(kinds.size()) * run.scenes +
+                        static_cast<double>(2 + kinds.size()) * run.shapely_scenes);
+  std::array<std::vector<Runs>, 2> tables;
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const Configuration configuration = configuration_of(kinds[k]);
     samples[k] = run_samples<Sample>(
         run.scenes, run.first, progress,
         [&configuration](std::uint64_t seed) { return run_sample(seed, configuration); });
+    tables[k] = run_samples<Runs>(
+        run.shapely_scenes, run.first, progress,
+        [&configuration](std::uint64_t seed) { return run_on_table(seed, configuration); });
   }
   const std::vector<ShapelySample> shapely = run_samples<ShapelySample>(
       run.shapely_scenes, run.first, progress,
@@ -366,6 +430,7 @@ void run_population(const PopulationRun& run) {
   output.csv("population", table_of(run, samples), run.options.command);
   output.csv("population_shapes", table_of(run, shapely), run.options.command);
   output.csv("population_ropes", table_of(run, hanging), run.options.command);
+  output.csv("population_tables", table_of(run, tables), run.options.command);
   const std::string page = fmt::format(
       "# Random scenes\n\n"
       "{} scenes (seeds from {} on) of one to six discs, of masses up to 1e4 apart, that fall on "
@@ -389,10 +454,17 @@ void run_population(const PopulationRun& run) {
       "## Ropes that hang\n\n"
       "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
       "between the bodies that it runs over: {}. Energy that is gained is leapfrog's swing, as "
-      "there: a rim that takes a node in lifts nothing (`sim/cable/taking_in.h`).\n\n{}",
+      "there: a rim that takes a node in lifts nothing (`sim/cable/taking_in.h`).\n\n{}\n"
+      "## Over an edge\n\n"
+      "{} scenes of one to three boxes, polygons and discs that are thrown along a table and over "
+      "its edge: a wall, a block that is fixed, or one that lies on the floor. A corner that "
+      "slides off is let go at its time (`sim/motion/jumps.h`). Many lose nothing: energy that "
+      "they "
+      "gain is leapfrog's error, a sixteenth with a quarter of the step.\n\n{}\n"
+      "How far two runs of a scene end apart, as above:\n\n{}",
       run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
       shares(shapely), shapely_promises(shapely), run.shapely_scenes, shares(hanging),
-      shapely_promises(hanging));
+      shapely_promises(hanging), run.shapely_scenes, promises_on_tables(tables), distances(tables));
   output.page("population", page, run.options.command);
 }
 

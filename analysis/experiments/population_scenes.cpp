@@ -16,6 +16,7 @@
 #include "sim/nodes.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
+#include "sim/tangent.h"
 
 namespace pinchlab::experiments {
 
@@ -138,6 +139,31 @@ void make_polygon(Random& random, double radius, BodyProperties& body) {
   const Vec2 centre = plate_of(corners, rounding).centre;
   for (Vec2& corner : corners) corner -= centre;
   pinchlab::make_polygon(body, corners, rounding);
+}
+
+/// A box, polygon or disc that lies flat on the line y = 0, at that x (m).
+Body lying_flat(Random& random, const Surfaces& surfaces, int number, double x) {
+  Body body;
+  body.name = fmt::format("thrown {}", number);
+  body.radius = random.uniform(0.1, 0.25);
+  body.mass = random.decades(-0.5, 0.5);
+  double height = body.radius;
+  if (const int kind = random.below(4); kind > 0) {
+    const double a = body.radius, b = a * random.uniform(0.3, 1.0);
+    if (kind == 1) {
+      make_polygon(random, a, body);
+    } else {
+      pinchlab::make_polygon(body, {{-a, -b}, {a, -b}, {a, b}, {-a, b}}, 0.0);
+    }
+    const auto side = index(random.below(static_cast<int>(body.corners.size())));
+    const Vec2& from = body.corners[side];
+    const Vec2 way = body.corners[(side + 1) % body.corners.size()] - from;
+    body.angle = -std::atan2(way.y(), way.x());
+    height = cross(from, way) / way.norm() + body.corner_radius;
+  }
+  body.position = {x, height};
+  surfaces.finish(random, body);
+  return body;
 }
 
 /// Two to four discs and boxes about their common centre of mass.
@@ -284,6 +310,41 @@ auto first_that_fits(std::uint64_t seed, auto draw, auto scene_of) {
 
 Scene dropped_discs(std::uint64_t seed) {
   return first_that_fits(seed, draw_scene, [](Scene& scene) -> Scene& { return scene; });
+}
+
+Scene thrown_off_a_table(std::uint64_t seed) {
+  Random random(seed);
+  const Surfaces surfaces(random);
+  constexpr double long_half = 1.0, high_half = 0.1;  // m, of the table
+  Scene scene;
+  scene.name = fmt::format("table-{}", seed);
+  const int table = random.below(3);
+  const double friction = surfaces.contact_friction;
+  const double floor = table == 2 ? -2.0 * high_half : -1.0;
+  scene.walls.push_back({Vec2(-9.0, floor), Vec2(9.0, floor), friction, 0.0});
+  if (table == 0) {
+    scene.walls.push_back({Vec2(-2.0 * long_half, 0.0), Vec2(0.0, 0.0), friction, 0.0});
+  } else {
+    Body block;
+    block.name = "table";
+    block.kind = table == 1 ? BodyKind::fixed : BodyKind::free;
+    block.mass = 4.0;
+    block.position = {-long_half, -high_half};
+    pinchlab::make_polygon(block,
+                           {{-long_half, -high_half},
+                            {long_half, -high_half},
+                            {long_half, high_half},
+                            {-long_half, high_half}},
+                           0.0);
+    block.contact_friction = friction;
+    scene.bodies.push_back(block);
+  }
+  const int count = 1 + random.below(3);
+  for (int i = 0; i < count; ++i) {
+    scene.bodies.push_back(lying_flat(random, surfaces, i, -0.3 - 0.6 * i));
+    scene.bodies.back().velocity = {random.uniform(0.5, 3.0), 0.0};
+  }
+  return scene;
 }
 
 ShapelyScene dropped_shapes(std::uint64_t seed) {
