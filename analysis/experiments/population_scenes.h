@@ -14,8 +14,8 @@ namespace pinchlab::experiments {
 Scene dropped_discs(std::uint64_t seed);
 
 /// One to three boxes, polygons (sharp or rounded) and discs, of masses up to 10 apart, that are
-/// thrown along a table, a wall or a block that lies on the floor or is fixed above it, and over its
-/// edge. Rough or smooth, restitution from 0 to 1. The same for the same seed everywhere.
+/// thrown along a table, a wall or a block that lies on the floor or is fixed above it, and over
+/// its edge. Rough or smooth, restitution from 0 to 1. The same for the same seed everywhere.
 Scene thrown_off_a_table(std::uint64_t seed);
 
 /// What such a scene may have that `dropped_discs` has not.

@@ -94,7 +94,7 @@ const Golden goldens[] = {
     {"02-stack", 0xf8feeadc69e97f5b, 0x99bc292537cdf6b7},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
     {"04-two-blocking", 0xed586bbf86aa32f4, 0x233dd9d203e1d99a},
-    {"05-notch", 0xe1cd44d3b000fa6f, 0x3bfad9019bfe0b95},
+    {"05-notch", 0x3b8969d74fd793a0, 0x3bfad9019bfe0b95},
     {"06-windlass", 0x62bbc228a41f09de, 0x9e4cc8b161dc2ea5},
     {"07-driven-roller", 0x68ce6a0b5241b8e1, 0xc7e6b5b7a971fe87},
     {"08-driven-roller-weights", 0x2765e3feb278ad96, 0x1a76d10c5b042e67},

@@ -111,7 +111,7 @@ TEST(AccuracyEvents, EverySceneIsExactOrOfSecondOrder) {
         << result.problem.name << ": " << order;
     EXPECT_LE(rungs.front().trial.error, 3e-3) << result.problem.name << " at one step a frame";
   }
-  EXPECT_EQ(scenes, 10);
+  EXPECT_EQ(scenes, 11);
 }
 
 // Elastic impacts that take effect a step late are wrong for good.
