@@ -109,7 +109,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
   // What another's blow lifts hops as well, and comes down at a time of its own: an interval that
   // begins with that and lasts longer would hold it down instead. What is over in next to no time
   // does not show, and without end there would be more of it where many lie on one another.
-  constexpr double next_to_no_time = 1e-3;  // of a step
+  constexpr double next_to_no_time = 1e-2;  // of a step
   const double hop =
       rebounds ? least + next_to_no_time * world.step_length * scene.gravity.norm() : infinity;
   for (std::size_t r = index(s.first_contact_row); r < s.rows.size(); ++r) {
