@@ -135,9 +135,10 @@ void add_population(CLI::App& bench) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command
-      ->add_option(
-          "--shapes", run->shapely_scenes,
-          "How many of polygons, compounds and cables with mass, and of ropes that hang [1000]")
+      ->add_option("--shapes", run->shapely_scenes,
+                   "How many of polygons, compounds and cables with mass, of ropes that hang, and "
+                   "of what is "
+                   "thrown over edges [1000]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")
