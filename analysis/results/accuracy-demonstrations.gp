@@ -74,7 +74,7 @@ plot 2.6148151979198225e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 4.561593072114093e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.561159868993041e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \
@@ -202,7 +202,7 @@ plot 2.6148151979198225e-07 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
 set title '05-notch' tc rgb '#333333'
 set ylabel ' '
 set xlabel ' '
-plot 4.561593072114093e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.561159868993041e-06 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.5 title 'cable iterative', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'cable direct' ? column('error') : NaN))) with linespoints ls 6 dt 1 ps 0.5 title 'cable direct', \
   'accuracy.csv' using (strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq '05-notch' && strcol('setting') eq 'pinch_no_contact iterative' ? column('error') : NaN))) with linespoints ls 7 dt 2 ps 0.5 title 'pinch_no_contact iterative', \

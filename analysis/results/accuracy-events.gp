@@ -59,7 +59,7 @@ plot 8.02220023583878e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'galileos-peg' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'galileos-peg' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
 set title 'looping-pendulum' tc rgb '#333333'
 set ylabel ' '
-set xlabel 'µs a simulated second'
+set xlabel ' '
 plot 6.626449106418133e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
@@ -73,6 +73,12 @@ set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
 plot 'accuracy.csv' using (strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
+set title 'box-off-a-table' tc rgb '#333333'
+set ylabel ' '
+set xlabel 'µs a simulated second'
+plot 4.33105099899071e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
 set title 'slip-on-a-drum' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
@@ -150,7 +156,7 @@ plot 8.02220023583878e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'galileos-peg' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'galileos-peg' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
 set title 'looping-pendulum' tc rgb '#333333'
 set ylabel ' '
-set xlabel 'µs a simulated second'
+set xlabel ' '
 plot 6.626449106418133e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'looping-pendulum' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
@@ -164,6 +170,12 @@ set ylabel 'error, relative'
 set xlabel 'µs a simulated second'
 plot 'accuracy.csv' using (strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'ball-off-a-table' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
+set title 'box-off-a-table' tc rgb '#333333'
+set ylabel ' '
+set xlabel 'µs a simulated second'
+plot 4.33105099899071e-11 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct with events at the steps' ? column('error') : NaN))) with linespoints ls 2 ps 0.6 notitle, \
+  'accuracy.csv' using (strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'box-off-a-table' && strcol('setting') eq 'pinch direct' ? column('error') : NaN))) with linespoints ls 1 ps 0.6 notitle
 set title 'slip-on-a-drum' tc rgb '#333333'
 set ylabel ' '
 set xlabel 'µs a simulated second'
