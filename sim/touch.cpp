@@ -208,17 +208,54 @@ bool is_end_of_cable(const World& world, const Contact& contact) {
   return contact.b < 0 && at(world.obstacles, contact.wall).cable >= 0;
 }
 
-Vec2 place_of_point(const World& world, int body, int point) {
+namespace {
+
+/// Where bodies are, or were (m, rad).
+struct Places {
+  const std::vector<Vec2>& position;
+  const std::vector<double>& angle;
+};
+
+/// Of a contact that is not of two discs: whose point it is of, -1: a wall's end; and what that is
+/// seen from, -1: a wall.
+struct Parties {
+  int owner = -1, other = -1;
+};
+
+Parties parties_of(const Contact& contact) {
+  const bool of_a = contact.touch == Touch::point_of_a || contact.touch == Touch::circles;
+  return of_a ? Parties{contact.a, contact.b} : Parties{contact.b, contact.a};
+}
+
+Vec2 place_of_point(const World& world, int body, int point, const Places& places) {
   const BodyProperties& b = at(world.bodies, body);
-  const Vec2& centre = at(world.position, body);
-  return is_polygon(b) ? Vec2(centre + turned(at(b.corners, point), at(world.angle, body)))
+  const Vec2& centre = at(places.position, body);
+  return is_polygon(b) ? Vec2(centre + turned(at(b.corners, point), at(places.angle, body)))
                        : centre;
+}
+
+/// Of the point with which a contact touches.
+Vec2 place_of_touch(const World& world, const Contact& contact, const Places& places) {
+  const int owner = parties_of(contact).owner;
+  if (owner >= 0) return place_of_point(world, owner, contact.point, places);
+  const Obstacle& wall = at(world.obstacles, contact.wall);
+  return contact.point == 0 ? wall.a : wall.b;
+}
+
+Places places_now(const World& world) {
+  return {world.position, world.angle};
+}
+
+}  // namespace
+
+Vec2 place_of_point(const World& world, int body, int point) {
+  return place_of_point(world, body, point, places_now(world));
 }
 
 Vec2 nearest_place(const World& world, const Contact& contact, int body) {
   const bool of_a = contact.touch == Touch::point_of_a;
-  const int owner = of_a ? contact.a : contact.b;
-  Vec2 point = place_of_point(world, owner, contact.point);
+  const int owner = parties_of(contact).owner;
+  const Vec2 point = place_of_point(world, owner, contact.point);
   if (body == owner) return point;
   const double way = contact.gap + rim_radius(at(world.bodies, contact.a)) +
                      rim_radius(at(world.bodies, contact.b));
@@ -248,11 +285,8 @@ double gap_of(const World& world, const Contact& contact) {
 
 Meeting meeting_of(const World& world, const Contact& contact) {
   const bool of_a = contact.touch == Touch::point_of_a;
-  const int owner = of_a ? contact.a : contact.b;                   // of the point
-  const int other = contact.touch == Touch::point_of_b ? contact.a  // the outline
-                    : of_a                             ? contact.b
-                                                       : contact.a;
-  Vec2 point;
+  const auto [owner, other] = parties_of(contact);
+  const Vec2 point = place_of_touch(world, contact, places_now(world));
   double radius = 0.0, other_radius = 0.0;
   // What bears force on a side does so on its line past its end, until that has been found out, an
   // event of jumps.h.
@@ -260,12 +294,10 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   Outside out;
   if (contact.touch == Touch::end_of_wall) {
     const Obstacle& obstacle = at(world.obstacles, contact.wall);
-    point = contact.point == 0 ? obstacle.a : obstacle.b;
     radius = obstacle.radius;
     out = outside_of_body(world, other, point, tip_of_wall(obstacle, contact.point), side);
     other_radius = rim_radius(at(world.bodies, other));
   } else {
-    point = place_of_point(world, owner, contact.point);
     radius = rim_radius(at(world.bodies, owner));
     if (other < 0) {
       out = outside_of_wall(at(world.obstacles, contact.wall), at(world.position, owner), point);
@@ -286,16 +318,8 @@ Meeting meeting_of(const World& world, const Contact& contact) {
 double on_straight(const World& world, const Contact& contact, const std::vector<Vec2>& position,
                    const std::vector<double>& angle) {
   if (contact.touch == Touch::piece || is_end_of_cable(world, contact)) return infinity;
-  const bool of_b = contact.touch == Touch::point_of_b,
-             of_wall = contact.touch == Touch::end_of_wall;
-  const int owner = of_b ? contact.b : contact.a, other = of_b || of_wall ? contact.a : contact.b;
-  Vec2 point = at(position, owner);
-  if (of_wall) {
-    const Obstacle& wall = at(world.obstacles, contact.wall);
-    point = contact.point == 0 ? wall.a : wall.b;
-  } else if (const BodyProperties& body = at(world.bodies, owner); is_polygon(body)) {
-    point += turned(at(body.corners, contact.point), at(angle, owner));
-  }
+  const int other = parties_of(contact).other;
+  const Vec2 point = place_of_touch(world, contact, {position, angle});
   if (other < 0) {
     const Obstacle& wall = at(world.obstacles, contact.wall);
     return along_side(std::array{wall.a, wall.b}, 0, point);
@@ -354,12 +378,17 @@ double counts_rather(const World& world, const Contact& of_a, const Contact& of_
   return velocity.dot(side_of_a + (of_b.point == 0 ? along : Vec2(-along)));
 }
 
-/// The last contact is of a point of b or a wall, at `place` (m): leaves it out, or one of a corner
-/// of a there among those from `first` on, where the other counts rather, or, with `any`, both as
-/// much. Places are the same within `same` (m).
-void leave_out_repeated(const World& world, std::ptrdiff_t first, const Vec2& place, double same,
-                        bool any, std::vector<Contact>& to) {
+/// The last contact is of a point of b or of a wall: leaves it out, or one of a corner of a at the
+/// same place among those from `first` on, where the other counts rather, or, of bodies, both as
+/// much: where corner meets corner, one of the two is enough.
+void leave_out_repeated(const World& world, std::ptrdiff_t first, std::vector<Contact>& to) {
   const Contact last = to.back();
+  const bool of_bodies = last.b >= 0;
+  // Far above round-off, and nothing that turns a body by a force at the one corner or the other.
+  const double radii =
+      at(world.bodies, last.a).radius + (of_bodies ? at(world.bodies, last.b).radius : 0.0);
+  const double same = 1e-9 * radii;  // m, within which places and gaps are
+  const Vec2 place = place_of_touch(world, last, places_now(world));
   const auto end = to.end() - 1;
   const auto there = std::find_if(to.begin() + first, end, [&](const Contact& c) {
     return c.touch == Touch::point_of_a && c.gap <= last.gap + same &&
@@ -370,7 +399,7 @@ void leave_out_repeated(const World& world, std::ptrdiff_t first, const Vec2& pl
   const double rather = counts_rather(world, *there, last, place, round_off);
   if (rather > round_off && last.gap <= there->gap + same) {
     to.erase(there);
-  } else if (any || rather < -round_off) {
+  } else if (of_bodies || rather < -round_off) {
     to.pop_back();
   }
 }
@@ -393,10 +422,17 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     contact.normal = meeting.normal;
     contact.side = static_cast<std::int8_t>(meeting.side);
     // Within round-off of its end it has come off it.
-    if (on_straight(world, contact, world.position, world.angle) <= one_place(world, a, b)) {
+    if (contact.side >= 0 &&
+        on_straight(world, contact, world.position, world.angle) <= one_place(world, a, b)) {
       contact.side = -1;
     }
     to.push_back(contact);
+  };
+  // Of a point of b or of a wall, after those of a.
+  const auto append_other = [&](Touch touch, int point) {
+    const std::size_t before = to.size();
+    append(touch, point);
+    if (to.size() > before) leave_out_repeated(world, first, to);
   };
   const BodyProperties& body = at(world.bodies, a);
   if (b < 0) {
@@ -406,13 +442,8 @@ void append_touches(const World& world, int a, int b, int wall, double most,
       const Vec2 point = place_of_point(world, a, k);
       if (is_beside(obstacle, at(world.position, a), point)) append(Touch::point_of_a, k);
     }
-    for (int end = 0; end < (is_point ? 1 : 2); ++end) {
-      const std::size_t before = to.size();
-      append(Touch::end_of_wall, end);
-      if (to.size() == before) continue;
-      const Vec2& point = end == 0 ? obstacle.a : obstacle.b;
-      leave_out_repeated(world, first, point, 1e-9 * body.radius, false, to);
-    }
+    append_other(Touch::end_of_wall, 0);
+    if (!is_point) append_other(Touch::end_of_wall, 1);
     return;
   }
   const BodyProperties& other = at(world.bodies, b);
@@ -420,15 +451,7 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     for (int k = 0; k < points_of(body); ++k) append(Touch::point_of_a, k);
   }
   if (!is_polygon(body)) return;
-  // Where corner meets corner, one of the two is enough, that with the lesser gap.
-  // Far above round-off, and nothing that turns a body by a force at the one corner or the other.
-  const double same = 1e-9 * (body.radius + other.radius);
-  for (int k = 0; k < points_of(other); ++k) {
-    const std::size_t before = to.size();
-    append(Touch::point_of_b, k);
-    if (to.size() == before) continue;
-    leave_out_repeated(world, first, place_of_point(world, b, k), same, true, to);
-  }
+  for (int k = 0; k < points_of(other); ++k) append_other(Touch::point_of_b, k);
 }
 
 double separation(const World& world, int a, int b) {

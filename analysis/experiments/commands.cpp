@@ -137,8 +137,7 @@ void add_population(CLI::App& bench) {
   command
       ->add_option("--shapes", run->shapely_scenes,
                    "How many of polygons, compounds and cables with mass, of ropes that hang, and "
-                   "of what is "
-                   "thrown over edges [1000]")
+                   "of what is thrown over edges [1000]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int frames = 60;  // one second
 constexpr std::array<int, 3> ladder{1, 4, 16};
-constexpr std::array<const char*, 2> kinds{"pinch", "at_steps"};
+constexpr std::array<const char*, 2> kinds{"located", "at_steps"};  // of events
 
 void note_spans(const Scene& scene, const World& world, Soundness& sound) {
   for (const CableState& cable : world.cables) {
@@ -69,12 +69,17 @@ Configuration configuration_of(const std::string& kind) {
   return configuration;
 }
 
+Runs run_ladder(const Scene& scene, const Configuration& configuration) {
+  Runs runs;
+  for (std::size_t i = 0; i < ladder.size(); ++i) {
+    runs.runs[i] = run_scene(scene, configuration, ladder[i], frames);
+  }
+  return runs;
+}
+
 Sample run_sample(std::uint64_t seed, const Configuration& configuration) {
   const Scene scene = dropped_discs(seed);
-  Sample sample;
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    sample.runs[i] = run_scene(scene, configuration, ladder[i], frames);
-  }
+  Sample sample{run_ladder(scene, configuration), {}};
   sample.image = run_scene(mirrored(scene), configuration, ladder[1], frames);
   return sample;
 }
@@ -105,20 +110,7 @@ struct ShapelySample : Runs {
 };
 
 ShapelySample run_shapely(const ShapelyScene& drawn) {
-  ShapelySample sample;
-  sample.has = drawn.has;
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    sample.runs[i] = run_scene(drawn.scene, configuration_of("pinch"), ladder[i], frames);
-  }
-  return sample;
-}
-
-Runs run_on_table(std::uint64_t seed, const Configuration& configuration) {
-  Runs runs;
-  for (std::size_t i = 0; i < ladder.size(); ++i) {
-    runs.runs[i] = run_scene(thrown_off_a_table(seed), configuration, ladder[i], frames);
-  }
-  return runs;
+  return {run_ladder(drawn.scene, configuration_of(kinds[0])), drawn.has};
 }
 
 Csv table_of(const PopulationRun& run, const std::vector<ShapelySample>& samples) {
@@ -147,10 +139,9 @@ Csv table_of(const PopulationRun& run, const std::array<std::vector<Sample>, 2>&
       const Sample& sample = samples[k][n];
       for (std::size_t i = 0; i < ladder.size(); ++i) {
         const Soundness& r = sample.runs[i];
-        csv.row({k == 0 ? "located" : "at_steps", run.first + static_cast<std::int64_t>(n),
-                 std::int64_t{ladder[i]}, std::int64_t{r.finite}, std::int64_t{r.driven},
-                 r.energy_gain, r.gap_violation, r.length_error, r.loose_span, r.depth, r.unsettled,
-                 r.late_events,
+        csv.row({kinds[k], run.first + static_cast<std::int64_t>(n), std::int64_t{ladder[i]},
+                 std::int64_t{r.finite}, std::int64_t{r.driven}, r.energy_gain, r.gap_violation,
+                 r.length_error, r.loose_span, r.depth, r.unsettled, r.late_events,
                  i + 1 < ladder.size() ? Csv::Cell(sample.apart(i, i + 1)) : Csv::Cell(""),
                  i == 1 ? Csv::Cell(sample.asymmetry()) : Csv::Cell("")});
       }
@@ -166,9 +157,8 @@ Csv table_of(const PopulationRun& run, const std::array<std::vector<Runs>, 2>& s
     for (std::size_t n = 0; n < samples[k].size(); ++n) {
       for (std::size_t i = 0; i < ladder.size(); ++i) {
         const Soundness& r = samples[k][n].runs[i];
-        csv.row({k == 0 ? "located" : "at_steps", run.first + static_cast<std::int64_t>(n),
-                 std::int64_t{ladder[i]}, std::int64_t{r.finite}, r.energy_gain, r.gap_violation,
-                 r.unsettled, r.late_events,
+        csv.row({kinds[k], run.first + static_cast<std::int64_t>(n), std::int64_t{ladder[i]},
+                 std::int64_t{r.finite}, r.energy_gain, r.gap_violation, r.unsettled, r.late_events,
                  i + 1 < ladder.size() ? Csv::Cell(samples[k][n].apart(i, i + 1)) : Csv::Cell("")});
       }
     }
@@ -190,6 +180,23 @@ std::string broken(const std::vector<Made>& samples, std::size_t step,
   return fmt::format("{} ({:.1e})", count, worst);
 }
 
+/// Of how many runs that holds.
+template <typename Made>
+std::string count(const std::vector<Made>& samples, std::size_t step,
+                  bool (*holds)(const Soundness&)) {
+  return fmt::to_string(std::count_if(samples.begin(), samples.end(), [&](const Made& sample) {
+    return holds(sample.runs[step]);
+  }));
+}
+
+bool has_exploded(const Soundness& run) {
+  return !run.finite;
+}
+
+bool has_clusters(const Soundness& run) {
+  return run.late_events > 0;
+}
+
 /// How many runs had steps whose states did not settle, and their share of all steps.
 template <typename Made>
 std::string unsettled(const std::vector<Made>& samples, std::size_t step) {
@@ -207,13 +214,8 @@ std::string promises(const std::array<std::vector<Sample>, 2>& samples) {
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const std::vector<Sample>& s = samples[k];
-      const auto count = [&](auto holds) {
-        return fmt::to_string(std::count_if(
-            s.begin(), s.end(), [&](const Sample& sample) { return holds(sample.runs[i]); }));
-      };
       rows.push_back(
-          {k == 0 ? "located" : "at_steps", fmt::to_string(ladder[i]),
-           count([](const Soundness& r) { return !r.finite; }),
+          {kinds[k], fmt::to_string(ladder[i]), count(s, i, has_exploded),
            broken(
                s, i, [](const Soundness& r) { return r.driven ? 0.0 : r.energy_gain; }, 1e-9),
            broken(
@@ -224,7 +226,7 @@ std::string promises(const std::array<std::vector<Sample>, 2>& samples) {
                s, i, [](const Soundness& r) { return r.loose_span; }, 1e-9),
            broken(
                s, i, [](const Soundness& r) { return r.depth; }, 1e-6),
-           unsettled(s, i), count([](const Soundness& r) { return r.late_events > 0; })});
+           unsettled(s, i), count(s, i, has_clusters)});
     }
   }
   return markdown_table({"events", "steps a frame", "not finite", "energy gained > 1e-9",
@@ -236,23 +238,17 @@ std::string promises(const std::array<std::vector<Sample>, 2>& samples) {
 std::string shapely_promises(const std::vector<ShapelySample>& samples) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
-    const auto count = [&](auto holds) {
-      return fmt::to_string(
-          std::count_if(samples.begin(), samples.end(),
-                        [&](const ShapelySample& sample) { return holds(sample.runs[i]); }));
-    };
     const auto gain = [](const Soundness& r) { return r.energy_gain; };
-    rows.push_back({fmt::to_string(ladder[i]), count([](const Soundness& r) { return !r.finite; }),
+    rows.push_back({fmt::to_string(ladder[i]), count(samples, i, has_exploded),
                     broken(samples, i, gain, 1e-9),
                     broken(
                         samples, i, [](const Soundness& r) { return r.lasting_gain; }, 1e-9),
-                    count([](const Soundness& r) { return r.energy_gain > 1e-2; }),
+                    count(samples, i, [](const Soundness& r) { return r.energy_gain > 1e-2; }),
                     broken(
                         samples, i, [](const Soundness& r) { return r.gap_violation; }, 1e-3),
                     broken(
                         samples, i, [](const Soundness& r) { return r.length_error; }, 1e-12),
-                    unsettled(samples, i),
-                    count([](const Soundness& r) { return r.late_events > 0; })});
+                    unsettled(samples, i), count(samples, i, has_clusters)});
   }
   return markdown_table(
       {"steps a frame", "not finite", "energy gained > 1e-9", "for 0.1 s", "> 1e-2",
@@ -276,18 +272,12 @@ std::string promises_on_tables(const std::array<std::vector<Runs>, 2>& samples) 
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const std::vector<Runs>& s = samples[k];
-      const auto count = [&](auto holds) {
-        return fmt::to_string(std::count_if(
-            s.begin(), s.end(), [&](const Runs& sample) { return holds(sample.runs[i]); }));
-      };
-      rows.push_back({k == 0 ? "located" : "at_steps", fmt::to_string(ladder[i]),
-                      count([](const Soundness& r) { return !r.finite; }),
+      rows.push_back({kinds[k], fmt::to_string(ladder[i]), count(s, i, has_exploded),
                       broken(
                           s, i, [](const Soundness& r) { return r.energy_gain; }, 1e-9),
                       broken(
                           s, i, [](const Soundness& r) { return r.gap_violation; }, 1e-9),
-                      unsettled(s, i),
-                      count([](const Soundness& r) { return r.late_events > 0; })});
+                      unsettled(s, i), count(s, i, has_clusters)});
     }
   }
   return markdown_table({"events", "steps a frame", "not finite", "energy gained > 1e-9",
@@ -325,7 +315,7 @@ std::string distances(const std::array<std::vector<Made>, 2>& samples) {
     rows.push_back(row);
   };
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    const char* events = k == 0 ? "located" : "at_steps";
+    const char* events = kinds[k];
     for (std::size_t i = 0; i + 1 < ladder.size(); ++i) {
       add(events, fmt::format("{} and {} steps a frame", ladder[i], ladder[i + 1]),
           sorted(samples[k], [i](const Made& s) { return s.apart(i, i + 1); }));
@@ -416,9 +406,9 @@ void run_population(const PopulationRun& run) {
     samples[k] = run_samples<Sample>(
         run.scenes, run.first, progress,
         [&configuration](std::uint64_t seed) { return run_sample(seed, configuration); });
-    tables[k] = run_samples<Runs>(
-        run.shapely_scenes, run.first, progress,
-        [&configuration](std::uint64_t seed) { return run_on_table(seed, configuration); });
+    tables[k] = run_samples<Runs>(run.shapely_scenes, run.first, progress, [&](std::uint64_t seed) {
+      return run_ladder(thrown_off_a_table(seed), configuration);
+    });
   }
   const std::vector<ShapelySample> shapely = run_samples<ShapelySample>(
       run.shapely_scenes, run.first, progress,
@@ -459,8 +449,7 @@ void run_population(const PopulationRun& run) {
       "{} scenes of one to three boxes, polygons and discs that are thrown along a table and over "
       "its edge: a wall, a block that is fixed, or one that lies on the floor. A corner that "
       "slides off is let go at its time (`sim/motion/jumps.h`). Many lose nothing: energy that "
-      "they "
-      "gain is leapfrog's error, a sixteenth with a quarter of the step.\n\n{}\n"
+      "they gain is leapfrog's error, a sixteenth with a quarter of the step.\n\n{}\n"
       "How far two runs of a scene end apart, as above:\n\n{}",
       run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
       shares(shapely), shapely_promises(shapely), run.shapely_scenes, shares(hanging),

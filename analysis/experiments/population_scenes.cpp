@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/at.h"
+#include "demos/scenes/shape_scenes.h"
 #include "sim/compound.h"
 #include "sim/make_world.h"
 #include "sim/nodes.h"
@@ -153,7 +154,7 @@ Body lying_flat(Random& random, const Surfaces& surfaces, int number, double x) 
     if (kind == 1) {
       make_polygon(random, a, body);
     } else {
-      pinchlab::make_polygon(body, {{-a, -b}, {a, -b}, {a, b}, {-a, b}}, 0.0);
+      pinchlab::make_polygon(body, build::box_corners(2.0 * a, 2.0 * b), 0.0);
     }
     const auto side = index(random.below(static_cast<int>(body.corners.size())));
     const Vec2& from = body.corners[side];
@@ -179,7 +180,7 @@ std::vector<Shape> draw_shapes(Random& random, double size) {
     } else {
       const double a = 0.5 * size * random.uniform(0.4, 1.2);
       const double b = 0.5 * size * random.uniform(0.4, 1.2);
-      pinchlab::make_polygon(shape.properties, {{-a, -b}, {a, -b}, {a, b}, {-a, b}}, 0.0);
+      pinchlab::make_polygon(shape.properties, build::box_corners(2.0 * a, 2.0 * b), 0.0);
     }
     shapes.push_back(shape);
   }
@@ -330,12 +331,7 @@ Scene thrown_off_a_table(std::uint64_t seed) {
     block.kind = table == 1 ? BodyKind::fixed : BodyKind::free;
     block.mass = 4.0;
     block.position = {-long_half, -high_half};
-    pinchlab::make_polygon(block,
-                           {{-long_half, -high_half},
-                            {long_half, -high_half},
-                            {long_half, high_half},
-                            {-long_half, high_half}},
-                           0.0);
+    pinchlab::make_polygon(block, build::box_corners(2.0 * long_half, 2.0 * high_half), 0.0);
     block.contact_friction = friction;
     scene.bodies.push_back(block);
   }

@@ -116,8 +116,8 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     const Row& row = s.rows[r];
     if (row.kind != RowKind::normal) continue;
     Contact& contact = at(world.contacts, row.index);
-    const double parts = row.on || row.clearance > s.reach ? 0.0 : row_speed(s, r);  // m/s
-    contact.rebounds = parts > (contact.rebounds ? least : hop);
+    const double parting = row.on || row.clearance > s.reach ? 0.0 : row_speed(s, r);  // m/s
+    contact.rebounds = parting > (contact.rebounds ? least : hop);
   }
 }
 

@@ -233,6 +233,12 @@ void set_impulses(PartSystem& s, const SolveScratch& set) {
   apply_impulses(s);
 }
 
+double largest_of(const std::vector<double>& residuals) {
+  double largest = 0.0;
+  for (const double r : residuals) largest = std::max(largest, std::abs(r));
+  return largest;
+}
+
 /// The rows' speeds, and what each equation misses at them; returns the largest.
 double find_residuals(PartSystem& s, SolveScratch& set) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
@@ -249,9 +255,7 @@ double find_residuals(PartSystem& s, SolveScratch& set) {
       at(set.residual, term.unknown) += term.coefficient * at(s.rows, term.row).speed;
     }
   }
-  double largest = 0.0;
-  for (const double r : set.residual) largest = std::max(largest, std::abs(r));
-  return largest;
+  return largest_of(set.residual);
 }
 
 /// One step of iterative refinement, and what it leaves. The residual is measured at the
@@ -274,12 +278,10 @@ double start(PartSystem& s, SolveScratch& set) {
   s.velocity = s.free_velocity;
   if (set.symmetric) {
     set.residual.resize(set.row_of_unknown.size());
-    double largest = 0.0;
     for (std::size_t u = 0; u < set.residual.size(); ++u) {
       set.residual[u] = row_speed(s, index(set.row_of_unknown[u]));
-      largest = std::max(largest, std::abs(set.residual[u]));
     }
-    return largest;
+    return largest_of(set.residual);
   }
   for (Row& row : s.rows) row.impulse = 0.0;
   if (!s.sleeves.empty()) set_impulses(s, set);
@@ -292,16 +294,10 @@ double start(PartSystem& s, SolveScratch& set) {
 void spread_over_repeated_rows(PartSystem& s, SolveScratch& set, double rounding) {
   constexpr double ridge = 1e-8;  // of the diagonal: half of a double's digits are left for either
   set.right_side = set.residual;  // what a basic solution leaves of contradictory constraints
-  double contradiction = 0.0;     // m/s
-  for (const double r : set.right_side) contradiction = std::max(contradiction, std::abs(r));
-  set.contradicts = contradiction * set.step_length > s.reach;
+  set.contradicts = largest_of(set.right_side) * set.step_length > s.reach;
   const auto subtract_contradictions = [&set] {
-    double largest = 0.0;
-    for (std::size_t u = 0; u < set.residual.size(); ++u) {
-      set.residual[u] -= set.right_side[u];
-      largest = std::max(largest, std::abs(set.residual[u]));
-    }
-    return largest;
+    for (std::size_t u = 0; u < set.residual.size(); ++u) set.residual[u] -= set.right_side[u];
+    return largest_of(set.residual);
   };
   factor(s, set, ridge);
   start(s, set);
