@@ -255,7 +255,7 @@ Vec2 place_of_point(const World& world, int body, int point) {
 Vec2 nearest_place(const World& world, const Contact& contact, int body) {
   const bool of_a = contact.touch == Touch::point_of_a;
   const int owner = parties_of(contact).owner;
-  const Vec2 point = place_of_point(world, owner, contact.point);
+  Vec2 point = place_of_point(world, owner, contact.point);
   if (body == owner) return point;
   const double way = contact.gap + rim_radius(at(world.bodies, contact.a)) +
                      rim_radius(at(world.bodies, contact.b));
