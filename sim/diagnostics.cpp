@@ -11,6 +11,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/held.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/mass.h"
 
 namespace pinchlab {
@@ -207,7 +208,7 @@ void measure_cables(const Scene& scene, World& world) {
       length += wrapped_material(world, cable, i);
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
-      length += segment.rest_length;
+      length += material_of_span(cable, i);
       if (segment.pinched || scene.cables[c].axial_stiffness < infinity) continue;
       d.largest_stretch = std::max(d.largest_stretch, segment.length - segment.rest_length);
     }

@@ -124,6 +124,7 @@ bool string_cables(const Scene& scene, World& world) {
     refuse_crowded_nodes(given, cable, c);
     cable.first_node = given.first_node;
     cable.nodes = given.nodes;
+    if (given.node_tolerance > 0.0) cable.finest.resize(index(given.nodes) + 1);
     string_nodes(world, cable, scene.gravity);
   }
   return !world.strung.empty();

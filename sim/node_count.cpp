@@ -313,7 +313,8 @@ int count_pieces(const Scene& scene, const Cable& cable, const Expected& expecte
     const double most = length / shortest_piece(scene, cable, length, expected.tension);
     pieces = 2 * std::max(1, static_cast<int>(most / 2.0));
   }
-  if (cable.node_tolerance != 0.0) pieces = count_adaptive_pieces(cable, pieces, place);
+  if (cable.node_tolerance != 0.0 && cable.wraps.empty())
+    pieces = count_adaptive_pieces(cable, pieces, place);
   const double piece = length / pieces;
   if (piece <= 2.0 * cable.half_width) {
     throw SceneError(

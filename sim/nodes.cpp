@@ -55,9 +55,11 @@ void refuse_what_does_not_adapt(const Scene& scene, const Cable& cable, const st
                      "only cables that neither stretch nor resist bending adapt their number of "
                      "nodes; leave out the stiffness, or the tolerance");
   }
+  if (cable.closed) {
+    throw SceneError(key, "only cables with two ends adapt their number of nodes; leave it out");
+  }
   if (scene.gravity.norm() == 0.0)
     throw SceneError(key, "asks for gravity, by which it tells what motion matters; leave it out");
-  refuse_ends_that_turn(scene, cable, place);
 }
 
 Body node_of(const Cable& cable, int number, const Vec2& position, double mass) {
@@ -190,7 +192,10 @@ NodedCable spread(Scene& scene, std::size_t c, Expected expected) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(whole, place);
-  if (whole.node_tolerance != 0.0) refuse_what_does_not_adapt(scene, whole, place);
+  if (whole.node_tolerance != 0.0) {
+    refuse_what_does_not_adapt(scene, whole, place);
+    refuse_ends_that_turn(scene, whole, place);
+  }
   const Vec2 from = place_of(scene, whole.start), d = place_of(scene, whole.end) - from;
   const double straight = d.norm(), length = straight + whole.slack;
   expected.length = length;
@@ -240,6 +245,7 @@ NodedCable add_strung_nodes(Scene& scene, std::size_t c, const Expected& expecte
   Cable& cable = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(cable, place);
+  if (cable.node_tolerance != 0.0) refuse_what_does_not_adapt(scene, cable, place);
   if (cable.nodes == automatic_nodes) {
     const int pieces = count_pieces(scene, cable, expected, place);
     cable.nodes = cable.closed ? pieces : pieces - 1;

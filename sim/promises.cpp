@@ -10,6 +10,7 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
@@ -92,7 +93,7 @@ void Promises::note_cables(const Scene& scene, const World& world) {
       length += wrapped_material(world, cable, i);
       if (i < first_segment(cable)) continue;
       const Segment& segment = cable.segments[i];
-      length += segment.rest_length;
+      length += material_of_span(cable, i);
       if (!segment.pinched) excess += std::max(segment.length - segment.rest_length, 0.0);
     }
     note_value(Promise::length, std::abs(length - cable.length) / cable.length, limits_.length,

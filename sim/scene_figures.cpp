@@ -164,8 +164,12 @@ void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
          "a cable that bends needs its nodes (spread_nodes)");
   refuse(cable.nodes != 0 && cable.first_node < 0, place,
          "nodes are of a cable with mass that has got them (spread_nodes)");
-  refuse(cable.node_tolerance != 0.0, place,
-         "a node tolerance is of a cable with mass that runs over no body, and has become nodes "
+  refuse(cable.node_tolerance != 0.0 && !(cable.first_node >= 0 && cable.node_tolerance > 0.0 &&
+                                          cable.node_tolerance < infinity && !cable.closed &&
+                                          cable.axial_stiffness == infinity),
+         place,
+         "a node tolerance is of a cable with mass that neither stretches nor is closed, and has "
+         "got its nodes "
          "(spread_nodes)");
   refuse(!at_least_0(cable.contact_friction), place,
          "the contact friction must be a number of at least 0");

@@ -242,10 +242,10 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
                  "linear_drag_per_s"},
                 "a cable without mass_per_metre_kg");
   } else if (from.contains("wraps")) {
-    refuse_keys(from, place, {"node_tolerance_m", "bending_stiffness_n_m2", "creep"},
+    refuse_keys(from, place, {"bending_stiffness_n_m2", "creep"},
                 "a cable with mass_per_metre_kg that runs over bodies");
     if (!from.contains("nodes")) {
-      refuse_keys(from, place, {"contact_friction", "linear_drag_per_s"},
+      refuse_keys(from, place, {"node_tolerance_m", "contact_friction", "linear_drag_per_s"},
                   "a cable with mass_per_metre_kg that runs over bodies and has no nodes");
     }
   } else {

@@ -7,6 +7,7 @@
 
 #include "render/picture/hanging.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -369,10 +370,26 @@ class PathBuilder {
     add(b.head_angle, unit_vector(b.head_angle));
   }
 
+  /// With the bend that it holds.
+  void add_held_span(std::size_t i, double from) {
+    const Segment& segment = cable_.segments[i];
+    const double piece = node_spacing(cable_);
+    const int pieces = held_at(cable_, i).pieces;
+    Vec2 tail = segment.tail;
+    for (int k = 1; k <= pieces; ++k) {
+      const Vec2 head = k < pieces ? place_of_held(cable_, i, k) : segment.head;
+      const Vec2 e = (head - tail).normalized();
+      add_point(tail, e, from + (k - 1) * piece);
+      add_point(head, e, from + k * piece);
+      tail = head;
+    }
+  }
+
   void add_span(std::size_t i) {
     const Span& span = spans_[i];
     if (!span.drawn) return;
     const double from = bounds_[span.tail].head_material;
+    if (is_held(cable_, i)) return add_held_span(i, from);
     const double to = bounds_[span.head].tail_material + (i == 0 ? cable_.length : 0.0);
     const GiveWay before = give_way(span.tail), after = give_way(span.head);
     const Vec2 tail_shift = before.shift(before.length), head_shift = after.shift(0.0);

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/held_spans.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -243,6 +244,7 @@ void update_rolled_cable(const World& world, CableState& cable) {
       first = met;
     } else {
       segment.rest_length = met - left_before;
+      if (is_held(cable, i)) segment.rest_length -= held_at(cable, i).spare;
       inspect(cable, segment, rounding, sum);
     }
     left_before = link.material + radius * (leaves - angle);

@@ -2,7 +2,6 @@
 #include "sim/cable/held.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -10,41 +9,19 @@
 
 namespace pinchlab {
 
-namespace {
-
-/// From the frame of a piece's line into the plane.
-Vec2 along(const Vec2& direction, const Vec2& v) {
-  return v.x() * direction + v.y() * left(direction);
-}
-
-}  // namespace
-
 int piece_of(const NodeChain& chain, int number) {
   return number == 0 ? chain.cable : chain.first_piece + number - 1;
 }
 
 void settle_held(World& world, const NodeChain& chain, int first) {
   CableState& piece = at(world.cables, piece_of(chain, first));
-  const int count = piece.pieces;
-  const double l = chain.piece_length;
-  Vec2 end = Vec2::Zero();
-  for (int i = 0; i < count; ++i) {
-    const double angle = at(world.cables, piece_of(chain, first + i)).turned;
-    end += l * Vec2(std::cos(angle), std::sin(angle));
-  }
-  const double off = std::atan2(end.y(), end.x());
-  Vec2 reached = Vec2::Zero(), sum = Vec2::Zero();
-  for (int i = 0; i < count; ++i) {
-    double& angle = at(world.cables, piece_of(chain, first + i)).turned;
-    angle -= off;
-    reached += l * Vec2(std::cos(angle), std::sin(angle));
-    if (i + 1 == count) break;
-    at(world.bodies, node_before(chain, first + i + 1)).seat = reached;
-    sum += reached;
-  }
-  piece.length = end.norm();
+  const HeldLine line = lay_held(
+      piece.pieces, chain.piece_length,
+      [&](int i) -> double& { return at(world.cables, piece_of(chain, first + i)).turned; },
+      [&](int i) -> Vec2& { return at(world.bodies, node_before(chain, first + i)).seat; });
+  piece.length = line.length;
   piece.links[1].material = piece.links[0].material + piece.length;
-  piece.held = chain.mass_per_metre * l * (sum - Vec2(0.5 * (count - 1) * piece.length, 0.0));
+  piece.held = chain.mass_per_metre * chain.piece_length * line.moment;
 }
 
 double held_bend(const World& world, const NodeChain& chain, int first) {
@@ -63,7 +40,7 @@ void carry_held(World& world, const NodeChain& chain) {
     const Vec2 direction = (link_centre(world, piece.links[1]) - start).normalized();
     for (int i = 1; i < piece.pieces; ++i) {
       const int node = node_before(chain, first + i);
-      at(world.position, node) = start + along(direction, at(world.bodies, node).seat);
+      at(world.position, node) = start + along_line(direction, at(world.bodies, node).seat);
     }
     first += piece.pieces;
   }
@@ -98,7 +75,7 @@ Vec2 end_velocity(const World& world, const Link& end) {
 }
 
 Vec2 first_moment(const CableState& piece) {
-  return along(piece.segments[1].direction, piece.held);
+  return along_line(piece.segments[1].direction, piece.held);
 }
 
 double potential_energy_held(const World& world, const NodeChain& chain, const Vec2& gravity) {
@@ -115,9 +92,8 @@ double potential_energy_held(const World& world, const NodeChain& chain, const V
   return -gravity.dot(moment);
 }
 
-Vec2 held_force(const CableState& piece, const Vec2& gravity) {
-  const Segment& line = piece.segments[1];
-  return gravity.dot(left(first_moment(piece))) / line.length * left(line.direction);
+Vec2 held_force(const Vec2& moment, const Segment& line, const Vec2& gravity) {
+  return gravity.dot(left(moment)) / line.length * left(line.direction);
 }
 
 }  // namespace pinchlab

@@ -14,9 +14,43 @@
 // its statics are those of the nodes, exactly: a cable that hangs at rest stays as it hangs,
 // whatever becomes one. Of the kinetic energy h has no part.
 
+#include <cmath>
+
+#include "sim/tangent.h"
 #include "sim/world.h"
 
 namespace pinchlab {
+
+/// From the frame of a piece's line into the plane.
+inline Vec2 along_line(const Vec2& direction, const Vec2& v) {
+  return v.x() * direction + v.y() * left(direction);
+}
+
+/// A piece of n of the finest: its rod's length c (m), and h / rho l in the frame of its line (m).
+struct HeldLine {
+  double length = 0.0;
+  Vec2 moment = Vec2::Zero();
+};
+
+/// That of `count` of the finest, l (m) long. `turned(i)`, rad, of each, is changed to its direction
+/// to the line; `seat(i)`, m, is set to where the node before it is in the frame of the line, but
+/// for the first.
+template <typename Turned, typename Seat>
+HeldLine lay_held(int count, double l, Turned turned, Seat seat) {
+  Vec2 end = Vec2::Zero();
+  for (int i = 0; i < count; ++i) end += l * Vec2(std::cos(turned(i)), std::sin(turned(i)));
+  const double off = std::atan2(end.y(), end.x());
+  Vec2 reached = Vec2::Zero(), sum = Vec2::Zero();
+  for (int i = 0; i < count; ++i) {
+    turned(i) -= off;
+    if (i > 0) {
+      seat(i) = reached;
+      sum += reached;
+    }
+    reached += l * Vec2(std::cos(turned(i)), std::sin(turned(i)));
+  }
+  return {end.norm(), sum - Vec2(0.5 * (count - 1) * end.norm(), 0.0)};
+}
 
 /// Of the finest pieces, from the chain's start on.
 int piece_of(const NodeChain& chain, int number);
@@ -54,7 +88,8 @@ Vec2 first_moment(const CableState& piece);
 /// bodies that do.
 double potential_energy_held(const World& world, const NodeChain& chain, const Vec2& gravity);
 
-/// Force that the weight of h has on the piece's end, and its opposite on its start (N).
-Vec2 held_force(const CableState& piece, const Vec2& gravity);
+/// Force that the weight of h (kg m, in the plane) has on the end of the line that holds it, and its
+/// opposite on its start (N).
+Vec2 held_force(const Vec2& moment, const Segment& line, const Vec2& gravity);
 
 }  // namespace pinchlab

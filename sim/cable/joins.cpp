@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/links.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/sleeve.h"
@@ -98,6 +99,7 @@ void meet_body(World& world, CableState& cable, std::size_t segment, int body, i
     insert_link(world, cable, segment, body, corner, orientation);
     return;
   }
+  if (is_held(cable, segment)) let_go(world, cable, segment);
   const int number = static_cast<int>(&cable - world.cables.data());
   const MassedSpan before = span_of(world, cable, segment);
   const int head = static_cast<int>(segment);

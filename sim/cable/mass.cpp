@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/tangent.h"
@@ -44,7 +45,7 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.z_b = left(span.centre_b) + span.p_b * span.direction;
   span.pinched = segment.pinched;
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
-  span.material = std::max(segment.rest_length, 0.0);
+  span.material = std::max(material_of_span(cable, i), 0.0);
   span.density = cable.density;
   return span;
 }
@@ -311,8 +312,9 @@ double potential_energy(const World& world, const CableState& cable, const Vec2&
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     const Segment& span = cable.segments[i];
     if (i >= first_segment(cable)) {
-      const double mass = 0.5 * cable.density * std::max(span.rest_length, 0.0);
+      const double mass = 0.5 * cable.density * std::max(material_of_span(cable, i), 0.0);
       energy -= mass * gravity.dot(span.tail + span.head);
+      if (is_held(cable, i)) energy -= gravity.dot(first_moment(cable, i));
     }
     if (cable.links[i].orientation == 0) continue;
     const MassedArc arc = arc_of(world, cable, i);  // z = left(x)

@@ -9,6 +9,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/mass.h"
@@ -38,24 +39,16 @@ void set_wound(World& world, int node, bool wound) {
   properties.outlined = !wound;
 }
 
-/// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
-void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
-  const int tail = previous_link(cable, static_cast<int>(segment));
-  const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
-  Segment& old = cable.segments[segment];
-  const double share = (material - begins) / old.rest_length;
-  free_node(world, body, old.tail + share * (old.head - old.tail),
-            velocity_between(flow_at(world, cable, segment, false),
-                             flow_at(world, cable, segment, true), share, old.direction));
-
+/// Inserts a node, at that material coordinate (m).
+void insert(World& world, CableState& cable, std::size_t segment, int node, double material) {
   // As in insert_link: what closes a loop gets it last.
   const bool seam = segment == 0;
   const std::size_t position = seam ? cable.links.size() : segment;
   Link link;
-  link.body = body;
+  link.body = node;
   link.material = material;
-  Segment arriving = old;
-  if (seam) arriving.alpha = old.alpha + cable.turning;
+  Segment arriving = cable.segments[segment];
+  if (seam) arriving.alpha += cable.turning;
   const auto place = static_cast<std::ptrdiff_t>(position);
   cable.links.insert(cable.links.begin() + place, link);
   cable.segments.insert(cable.segments.begin() + place, arriving);
@@ -65,6 +58,18 @@ void put_in(World& world, CableState& cable, std::size_t segment, int body, doub
   }
   count_changes(world, cable, 1);
   update_wraps_and_rest_lengths(world, cable);
+}
+
+/// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
+void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
+  const int tail = previous_link(cable, static_cast<int>(segment));
+  const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
+  const Segment& old = cable.segments[segment];
+  const double share = (material - begins) / old.rest_length;
+  free_node(world, body, old.tail + share * (old.head - old.tail),
+            velocity_between(flow_at(world, cable, segment, false),
+                             flow_at(world, cable, segment, true), share, old.direction));
+  insert(world, cable, segment, body, material);
 }
 
 /// Numbers of nodes, counted on round a loop.
@@ -93,12 +98,13 @@ int body_of_node(const CableState& cable, long k) {
 }
 
 /// Those on a segment that are at least `margin` (m of material) away from its ends; none where it
-/// lies along a body.
+/// lies along a body, or holds them itself.
 Numbers nodes_on(const World& world, const CableState& cable, std::size_t segment, double margin) {
   const Segment& span = cable.segments[segment];
   const int tail = previous_link(cable, static_cast<int>(segment));
   if (span.pinched || !(span.rest_length > 2.0 * margin)) return {};
   if (is_side(at(cable.links, tail), cable.links[segment])) return {};
+  if (is_held(cable, segment)) return {};
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
   return nodes_within(cable, begins + margin, begins + span.rest_length - margin);
 }
@@ -113,6 +119,20 @@ void string_all(World& world, CableState& cable, double margin) {
       put_in(world, cable, s, body_of_node(cable, k), place_of_node(cable, k));
       s = position;
     }
+  }
+}
+
+/// Those that a segment holds, with it.
+void carry_held_nodes(World& world, const CableState& cable, std::size_t segment) {
+  const FinestPiece& span = held_at(cable, segment);
+  const int before = cable.links[segment - 1].body;
+  const Vec2 from = at(world.velocity, before), to = at(world.velocity, cable.links[segment].body);
+  const Vec2 line = cable.segments[segment].head - cable.segments[segment].tail;
+  const double turning = cross(line, to - from) / line.squaredNorm();
+  for (int i = 1; i < span.pieces; ++i) {
+    const Vec2 place = place_of_held(cable, segment, i);
+    at(world.position, before + i) = place;
+    at(world.velocity, before + i) = from + turning * left(place - cable.segments[segment].tail);
   }
 }
 
@@ -269,6 +289,12 @@ void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
   carry_wound_nodes(world, cable);
 }
 
+void insert_node(World& world, CableState& cable, std::size_t segment, int node,
+                 const Vec2& position, const Vec2& velocity) {
+  free_node(world, node, position, velocity);
+  insert(world, cable, segment, node, place_of_node(cable, node - cable.first_node));
+}
+
 bool has_given_off(const World& world, const CableState& cable) {
   const double margin = given_off * node_spacing(cable);
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
@@ -341,6 +367,10 @@ void carry_wound_nodes(World& world, const CableState& cable) {
     const int next = next_link(cable, static_cast<int>(i));
     if (next < 0) continue;
     const Segment& span = at(cable.segments, next);
+    if (is_held(cable, index(next))) {
+      carry_held_nodes(world, cable, index(next));
+      continue;
+    }
     const Numbers on = nodes_within(cable, leaves, leaves + span.rest_length);
     for (long k = on.first; k <= on.last; ++k) {
       const int node = body_of_node(cable, k);

@@ -38,6 +38,10 @@ void lay_down_node(World& world, int node);
 /// slack as they hang at rest (hanging.h).
 void string_nodes(World& world, CableState& cable, const Vec2& gravity);
 
+/// Inserts a node into a segment between two others, there (m) and with that velocity (m/s).
+void insert_node(World& world, CableState& cable, std::size_t segment, int node,
+                 const Vec2& position, const Vec2& velocity);
+
 /// Whether rims have given off nodes; and puts these back.
 bool has_given_off(const World& world, const CableState& cable);
 void give_off_nodes(World& world, CableState& cable);

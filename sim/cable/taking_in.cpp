@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/strung.h"
@@ -164,6 +165,9 @@ void take_in_node(World& world, CableState& cable, int link) {
     return;
   }
   const int body = at(cable.links, link).body;
+  for (const int beside : {link, next_link(cable, link)}) {
+    if (is_held(cable, index(beside))) let_go(world, cable, index(beside));
+  }
   count_bend_anew(cable, link);
   leave_node(world, cable, link);
   lay_down_node(world, body);

@@ -8,8 +8,8 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
-#include "sim/compound.h"
-#include "sim/lines.h"
+#include "sim/motion/adapt_spans.h"
+#include "sim/motion/piece_line.h"
 #include "sim/pieces.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -17,19 +17,6 @@
 namespace pinchlab {
 
 namespace {
-
-// Of what makes one piece two, what lets two be one: so that nothing comes and goes at one border,
-// though two pieces show somewhat less of a curve than one would.
-constexpr double hysteresis = 0.5;
-
-/// A straight line between two ends: of a piece, or of what two would become.
-struct Line {
-  Link from, to;
-  Vec2 direction = Vec2::Zero();
-  double length = 0.0;   // m
-  double tension = 0.0;  // N, of the last step
-  int pieces = 0;        // of the finest
-};
 
 const CableState& piece(const World& world, const NodeChain& chain, int first) {
   return at(world.cables, piece_of(chain, first));
@@ -44,7 +31,9 @@ int before(const World& world, const NodeChain& chain, int first) {
 
 Line line_of(const CableState& cable) {
   const Segment& s = cable.segments[1];
-  return {cable.links[0], cable.links[1], s.direction, s.length, s.tension, cable.pieces};
+  return {cable.links[0], cable.links[1], {cable.links[0].body, cable.links[1].body},
+          s.direction,    s.length,       s.tension,
+          cable.pieces};
 }
 
 Line joined(const World& world, const CableState& first, const CableState& second) {
@@ -52,17 +41,11 @@ Line joined(const World& world, const CableState& first, const CableState& secon
   const double length = d.norm();
   return {first.links[0],
           second.links[1],
+          {first.links[0].body, second.links[1].body},
           length > 0.0 ? Vec2(d / length) : first.segments[1].direction,
           length,
           std::min(first.segments[1].tension, second.segments[1].tension),
           first.pieces + second.pieces};
-}
-
-double curvature(const Line& line, const CableState& other) {
-  const Segment& s = other.segments[1];
-  const double angle =
-      std::atan2(std::abs(cross(line.direction, s.direction)), line.direction.dot(s.direction));
-  return 2.0 * angle / (line.length + s.length);
 }
 
 /// m, by which cable between the line's ends would leave it; the line begins at the chain's piece
@@ -77,44 +60,16 @@ double expected_sag(const Scene& scene, const World& world, const NodeChain& cha
     return line.tension > 0.0 ? across * square / (8.0 * line.tension) : infinity;
   }
   double most = 0.0;
-  if (first > 0) most = curvature(line, piece(world, chain, before(world, chain, first)));
-  if (next < chain.pieces) most = std::max(most, curvature(line, piece(world, chain, next)));
+  if (first > 0)
+    most = curvature(line, piece(world, chain, before(world, chain, first)).segments[1]);
+  if (next < chain.pieces)
+    most = std::max(most, curvature(line, piece(world, chain, next).segments[1]));
   return most * square / 8.0;
 }
 
-/// Whether the body holds an end of the line, or is a shape of what does.
-bool holds_line(const World& world, const Line& line, int body) {
-  const int mover = mover_of(world, body);
-  return line.from.body == body || line.from.body == mover || line.to.body == body ||
-         line.to.body == mover;
-}
-
-/// Whether a body or wall is no further from the line than `times` what both may move in two steps,
-/// with what the cable may be off it.
-bool is_near_something(const Scene& scene, const World& world, const NodeChain& chain,
-                       const Line& line, double times) {
-  const Vec2 start = link_centre(world, line.from);
-  const Vec2 end = link_centre(world, line.to);
-  const double h = world.step_length;
-  const double speed =
-      std::max(end_velocity(world, line.from).norm(), end_velocity(world, line.to).norm()) +
-      h * scene.gravity.norm();
-  const double own = at(world.cables, chain.cable).half_width + chain.tolerance + 2.0 * h * speed;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const BodyProperties& body = world.bodies[b];
-    if (body.node || !body.outlined || holds_line(world, line, static_cast<int>(b))) continue;
-    const double reach = own + 2.0 * h * (world.velocity[b].norm() + h * scene.gravity.norm());
-    if (distance_from_line(start, end, world.position[b]) < body.radius + times * reach)
-      return true;
-  }
-  return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
-    return distance_between_lines(start, end, wall.a, wall.b) < times * own;
-  });
-}
-
-/// J/kg, |v_b - v_a|^2 / 8.
-double spread_of(const World& world, const Line& line) {
-  return 0.125 * (end_velocity(world, line.to) - end_velocity(world, line.from)).squaredNorm();
+/// m, by which the chain may be off its pieces' lines, with its width.
+double off_line(const World& world, const NodeChain& chain) {
+  return at(world.cables, chain.cable).half_width + chain.tolerance;
 }
 
 bool is_to_split(const Scene& scene, const World& world, const NodeChain& chain, int first) {
@@ -125,13 +80,7 @@ bool is_to_split(const Scene& scene, const World& world, const NodeChain& chain,
   if (line.tension < -g * chain.mass_per_metre * chain.piece_length * line.pieces) return true;
   if (spread_of(world, line) > g * chain.tolerance) return true;
   return expected_sag(scene, world, chain, first, line) > chain.tolerance ||
-         is_near_something(scene, world, chain, line, 1.0);
-}
-
-bool is_in_contact(const World& world, int body) {
-  return std::any_of(world.contacts.begin(), world.contacts.end(), [body](const Contact& contact) {
-    return contact.a == body || contact.b == body;
-  });
+         is_near_something(scene, world, line, off_line(world, chain), 1.0);
 }
 
 /// Of the piece that begins at `first` and the next, as large, with which it may become one.
@@ -158,7 +107,7 @@ bool is_to_merge(const Scene& scene, const World& world, const NodeChain& chain,
   if (bend + held_bend(world, chain, first) + held_bend(world, chain, first + count) >= most)
     return false;
   return !is_in_contact(world, node) &&
-         !is_near_something(scene, world, chain, line, 1.0 / hysteresis);
+         !is_near_something(scene, world, line, off_line(world, chain), 1.0 / hysteresis);
 }
 
 /// Hands mass (kg) of the velocity v to what holds an end, or with mass < 0 takes it from there.
@@ -237,24 +186,18 @@ bool is_still(const NodeChain& chain, const Workspace& work) {
   return is_idle(work.parts, index(chain.cable));
 }
 
+/// Whether nodes of a cable that runs over bodies may come and go now.
+bool adapts(const World& world, const Workspace& work, int cable) {
+  return !at(world.cables, cable).finest.empty() && !is_idle(work.parts, index(cable));
+}
+
 /// Lets out the bend of a piece towards where half of its tension would have it.
 void let_out(const Scene& scene, World& world, const NodeChain& chain, int first) {
-  // A share that is to be left: nothing changes. A bend is within the tolerance, and a thousandth
-  // of that does not show; so a cable at rest hangs as it hung.
-  constexpr double enough = 0.999;
   CableState& cable = at(world.cables, piece_of(chain, first));
-  const Segment& segment = cable.segments[1];
   const double spare = cable.pieces * chain.piece_length - cable.length;
-  const double across = cable.held.y() * scene.gravity.dot(left(segment.direction));
-  const bool pulls = segment.tension > 0.0 && spare > 0.0;
-  const double left_over = pulls ? std::max(across / (segment.tension * spare), 0.0) : infinity;
-  if (left_over >= enough) {
-    cable.let_out = 0.0;
-    return;
-  }
-  const double h = world.step_length, rate = std::sqrt(scene.gravity.norm() / cable.length);
-  cable.let_out += h * rate * (rate * (1.0 - left_over) - 2.0 * cable.let_out);
-  const double share = std::max(1.0 - h * cable.let_out, left_over);
+  const double wanted = wanted_share(scene, cable.segments[1], spare, cable.held);
+  const double share = share_let_out(scene, world.step_length, wanted, cable.length, cable.let_out);
+  if (share == 1.0) return;
   for (int i = 0; i < cable.pieces; ++i) {
     at(world.cables, piece_of(chain, first + i)).turned *= share;
   }
@@ -272,7 +215,9 @@ bool wants_other_nodes(const Scene& scene, const World& world, const Workspace& 
         return true;
     }
   }
-  return false;
+  return std::ranges::any_of(world.strung, [&](int c) {
+    return adapts(world, work, c) && wants_other_nodes(scene, world, c);
+  });
 }
 
 void change_nodes(const Scene& scene, World& world, Workspace& work) {
@@ -293,6 +238,9 @@ void change_nodes(const Scene& scene, World& world, Workspace& work) {
       ++world.diagnostics.node_changes;
     }
   }
+  for (const int c : world.strung) {
+    if (adapts(world, work, c)) world.diagnostics.node_changes += change_nodes(scene, world, c);
+  }
   if (!world.pieces_at.empty()) join_pieces(scene, world);
   work.broad_phase.boxes.clear();  // for bodies with other outlines
 }
@@ -304,6 +252,9 @@ void follow_chains(const Scene& scene, World& world, const Workspace& work) {
       if (piece(world, chain, first).pieces > 1) let_out(scene, world, chain, first);
     }
     carry_held(world, chain);
+  }
+  for (const int c : world.strung) {
+    if (adapts(world, work, c)) let_out_spans(scene, world, c);
   }
 }
 

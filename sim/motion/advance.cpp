@@ -476,7 +476,7 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     take_back(world, work);
     changes = world.changes;
   }
-  if (!scene.chains.empty()) {
+  if (!scene.chains.empty() || !world.strung.empty()) {
     adapt_nodes(scene, world, work, world.time() + world.step_length, times);
   }
   if (!world.strung.empty()) {

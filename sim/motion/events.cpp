@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/strung.h"
@@ -77,6 +78,21 @@ int let_rim_have(World& world, Workspace& work, int number, int node) {
   if (!is_to_be_cast_off(world, cable, node)) return take_in(world, work, number, node);
   work.neighbourhoods.follow(cast_off_node(world, cable, node), number);
   return node;
+}
+
+/// Frees a node before and after one that a rim is to have, so that the finest pieces are beside
+/// the rim. Where that one is now.
+int free_beside(World& world, Workspace& work, int number, int node) {
+  CableState& cable = at(world.cables, number);
+  const auto free = [&](int segment, int count) {
+    split_span(world, cable, index(segment), count);
+    work.neighbourhoods.follow(at(cable.links, segment).body, number);
+    ++world.diagnostics.node_changes;
+  };
+  if (is_held(cable, index(node) + 1)) free(node + 1, 1);
+  if (!is_held(cable, index(node))) return node;
+  free(node, held_at(cable, index(node)).pieces - 1);
+  return node + 1;
 }
 
 }  // namespace
@@ -244,7 +260,9 @@ void change_courses(World& world, Workspace& work) {
     item_changed = event.item;
     const Link& link = at(cable.links, event.item);
     if (event.kind == EventKind::link_gone && (is_strung(cable, link) || link.moored)) {
-      item_changed = let_rim_have(world, work, event.cable, event.item);
+      int node = event.item;
+      if (!cable.finest.empty()) node = free_beside(world, work, event.cable, node);
+      item_changed = std::min(let_rim_have(world, work, event.cable, node), event.item);
       ++world.diagnostics.node_changes;
       work.broad_phase.boxes.clear();  // for bodies with other outlines
     } else if (event.kind == EventKind::link_gone) {

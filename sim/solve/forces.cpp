@@ -7,6 +7,7 @@
 #include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
+#include "sim/cable/held_spans.h"
 #include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/solve/motors.h"
@@ -254,9 +255,20 @@ void bend(const World& world, const Parts& parts, const CableState& cable, doubl
 /// By the weight of the bend that a piece holds.
 void turn_held(const World& world, const Parts& parts, const CableState& piece, const Vec2& gravity,
                double k, PartSystem& s) {
-  const Vec2 force = held_force(piece, gravity);
+  const Vec2 force = held_force(first_moment(piece), piece.segments[1], gravity);
   pull(world, parts, piece.links[0], -force, k, s);
   pull(world, parts, piece.links[1], force, k, s);
+}
+
+/// By the weight of the bends that spans hold.
+void turn_held_spans(const World& world, const Parts& parts, const CableState& cable,
+                     const Vec2& gravity, double k, PartSystem& s) {
+  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+    if (!is_held(cable, i)) continue;
+    const Vec2 force = held_force(first_moment(cable, i), cable.segments[i], gravity);
+    pull(world, parts, at(cable.links, previous_link(cable, static_cast<int>(i))), -force, k, s);
+    pull(world, parts, cable.links[i], force, k, s);
+  }
 }
 
 /// Loads the part's bodies with the cables that they carry, and their motors.
@@ -356,7 +368,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
     massed = massed || is_massed(cable);
-    bends = bends || cable.bends_with >= 0 || cable.pieces > 1;
+    bends = bends || cable.bends_with >= 0 || cable.pieces > 1 || !cable.finest.empty();
     const auto segments = static_cast<double>(cable.segments.size());
     s.extent = std::max(s.extent, cable.length * std::max(1.0, 0.1 * segments));
   }
@@ -369,6 +381,7 @@ void apply_forces(const Scene& scene, const World& world, const TimeSpan& t, con
     const CableState& cable = at(world.cables, c);
     if (cable.bends_with >= 0) bend(world, parts, cable, t.kick, s);
     if (cable.pieces > 1) turn_held(world, parts, cable, scene.gravity, t.kick, s);
+    if (!cable.finest.empty()) turn_held_spans(world, parts, cable, scene.gravity, t.kick, s);
   }
 }
 

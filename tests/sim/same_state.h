@@ -25,6 +25,11 @@ inline bool same_rim(const Rim& p, const Rim& q) {
          p.slope == q.slope;
 }
 
+inline bool same_finest(const FinestPiece& p, const FinestPiece& q) {
+  return p.pieces == q.pieces && p.turned == q.turned && p.seat == q.seat && p.spare == q.spare &&
+         p.held == q.held && p.let_out == q.let_out;
+}
+
 inline bool same_link(const Link& p, const Link& q) {
   return p.body == q.body && p.orientation == q.orientation && p.corner == q.corner &&
          p.radius == q.radius && p.offset == q.offset && p.material == q.material &&
@@ -79,7 +84,7 @@ inline bool same_state(const World& a, const World& b) {
                  return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
                         p.pieces == q.pieces && p.turned == q.turned && p.held == q.held &&
                         p.let_out == q.let_out && equal(p.links, q.links, same_link) &&
-                        equal(p.rims, q.rims, same_rim) &&
+                        equal(p.rims, q.rims, same_rim) && equal(p.finest, q.finest, same_finest) &&
                         equal(p.segments, q.segments, same_segment);
                }) &&
          equal(a.contacts, b.contacts, same_contact) &&

@@ -205,8 +205,11 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
             "that runs over bodies and has no nodes; leave it out");
   EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}],
                       "node_tolerance_m": 0.01})"),
+            "no error");
+  EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}], "nodes": null,
+                      "node_tolerance_m": 0.01})"),
             "s.json: /cables/0/node_tolerance_m: has no effect on a cable with mass_per_metre_kg "
-            "that runs over bodies; leave it out");
+            "that runs over bodies and has no nodes; leave it out");
   EXPECT_EQ(error(R"({"nodes": "automatic"})"), "no error");
   EXPECT_EQ(error(R"({"wraps": [{"body": "wheel", "turn": "clockwise"}], "nodes": "automatic",
                       "linear_drag_per_s": 1})"),

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/motion/piece_line.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/held.h"
+#include "sim/compound.h"
+#include "sim/lines.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// Whether the line passes the body, or what it is a shape of.
+bool passes(const World& world, const Line& line, int body) {
+  const int mover = mover_of(world, body);
+  return std::ranges::any_of(line.passes, [&](int b) { return b == body || b == mover; });
+}
+
+}  // namespace
+
+double curvature(const Line& line, const Segment& other) {
+  const double angle = std::atan2(std::abs(cross(line.direction, other.direction)),
+                                  line.direction.dot(other.direction));
+  return 2.0 * angle / (line.length + other.length);
+}
+
+bool is_near_something(const Scene& scene, const World& world, const Line& line, double off,
+                       double times) {
+  const Vec2 start = link_centre(world, line.from);
+  const Vec2 end = link_centre(world, line.to);
+  const double h = world.step_length;
+  const double speed =
+      std::max(end_velocity(world, line.from).norm(), end_velocity(world, line.to).norm()) +
+      h * scene.gravity.norm();
+  const double own = off + 2.0 * h * speed;
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const BodyProperties& body = world.bodies[b];
+    if (body.node || !body.outlined || passes(world, line, static_cast<int>(b))) continue;
+    const double reach = own + 2.0 * h * (world.velocity[b].norm() + h * scene.gravity.norm());
+    if (distance_from_line(start, end, world.position[b]) < body.radius + times * reach)
+      return true;
+  }
+  return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
+    return distance_between_lines(start, end, wall.a, wall.b) < times * own;
+  });
+}
+
+double spread_of(const World& world, const Line& line) {
+  return 0.125 * (end_velocity(world, line.to) - end_velocity(world, line.from)).squaredNorm();
+}
+
+bool is_in_contact(const World& world, int node) {
+  return std::any_of(world.contacts.begin(), world.contacts.end(), [node](const Contact& contact) {
+    return contact.a == node || contact.b == node;
+  });
+}
+
+double wanted_share(const Scene& scene, const Segment& line, double spare, const Vec2& held) {
+  if (!(line.tension > 0.0 && spare > 0.0)) return infinity;
+  const double across = held.y() * scene.gravity.dot(left(line.direction));
+  return std::max(across / (line.tension * spare), 0.0);
+}
+
+double share_let_out(const Scene& scene, double step_length, double wanted, double c,
+                     double& rate) {
+  // A share that is to be left: nothing changes. A bend is within the tolerance, and a thousandth
+  // of that does not show; so a cable at rest hangs as it hung.
+  constexpr double enough = 0.999;
+  if (wanted >= enough) {
+    rate = 0.0;
+    return 1.0;
+  }
+  const double swing = std::sqrt(scene.gravity.norm() / c);
+  rate += step_length * swing * (swing * (1.0 - wanted) - 2.0 * rate);
+  return std::max(1.0 - step_length * rate, wanted);
+}
+
+}  // namespace pinchlab

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// Straight pieces of cables with mass whose number of nodes adapts, and what asks for nodes in
+// them: adapt_nodes.h has the reasons.
+
+#include <array>
+
+#include "sim/world.h"
+
+namespace pinchlab {
+
+/// Of what makes one piece two, what lets two be one: so that nothing comes and goes at one border,
+/// though two pieces show somewhat less of a curve than one would.
+constexpr double hysteresis = 0.5;
+
+/// A straight line between two ends: of a piece, or of what two would become.
+struct Line {
+  Link from, to;
+  std::array<int, 2> passes{-1, -1};  // bodies before and after it, that it cannot meet; or -1
+  Vec2 direction = Vec2::Zero();
+  double length = 0.0;   // m
+  double tension = 0.0;  // N, of the last step
+  int pieces = 0;        // of the finest
+};
+
+/// 1/m, as a line and the piece before or after it tell.
+double curvature(const Line& line, const Segment& other);
+
+/// Whether a body or wall is no further from the line than `times` what both may move in two steps,
+/// with what the cable may be off it (m).
+bool is_near_something(const Scene& scene, const World& world, const Line& line, double off,
+                       double times);
+
+/// J/kg, |v_b - v_a|^2 / 8.
+double spread_of(const World& world, const Line& line);
+
+/// Whether a node is in touch with something.
+bool is_in_contact(const World& world, int node);
+
+/// The share of its bend that a piece is to have after a step: which is let out towards what it
+/// would be, of all of it, under half of the tension (`wanted`), c (m) being the length of its line.
+/// `rate`: of the letting out (1/s), which follows.
+double share_let_out(const Scene& scene, double step_length, double wanted, double c, double& rate);
+
+/// What a bend would be, as a share of what it is, under half of the tension of a line that is
+/// `spare` (m) shorter than its cable and holds the first moment h (kg m, in the frame of the line).
+double wanted_share(const Scene& scene, const Segment& line, double spare, const Vec2& held);
+
+}  // namespace pinchlab
