@@ -132,8 +132,8 @@ struct Cable {
   int nodes = 0;  ///< of such a chain; 0: automatic_nodes. Of one that runs over bodies, of all of
                   ///< it; 0: it is straight between them
   int first_node = -1;  ///< of one that runs over bodies: all others follow. By spread_nodes
-  /// m, of nodes of either: how far from straight it may be between two nodes, whose number adapts; 0:
-  /// it is fixed.
+  /// m, of nodes of either: how far from straight it may be between two of them, whose number
+  /// adapts; 0: it is fixed.
   double node_tolerance = 0.0;
   double bending_stiffness = 0.0;  ///< N m^2, EI, of such a chain
   int bends_with = -1;  ///< of a piece between nodes: the next one, against which it bends; or -1

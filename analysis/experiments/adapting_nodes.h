@@ -22,8 +22,9 @@ struct Adapting {
 
 /// Error against time, of fixed numbers of nodes and such that adapt (demos/scenes/shape_scenes.h).
 struct AdaptingNodes {
-  std::vector<Adapting> falls;  ///< of a folded chain
-  std::vector<Adapting> drawn;  ///< a cable that is drawn taut and let down
+  std::vector<Adapting> falls;   ///< of a folded chain
+  std::vector<Adapting> drawn;   ///< a cable that is drawn taut and let down
+  std::vector<Adapting> lifted;  ///< a crane's load
 };
 
 AdaptingNodes measure_adapting_nodes();

@@ -39,7 +39,7 @@ struct ShapelyScene {
 ShapelyScene dropped_shapes(std::uint64_t seed);
 
 /// The same on a rope with mass and five to thirty-four nodes, taut or slack, that hangs between
-/// the bodies that it runs over.
+/// the bodies that it runs over. For even seeds the number of nodes adapts (2 mm).
 ShapelyScene shapes_on_hanging_rope(std::uint64_t seed);
 
 }  // namespace pinchlab::experiments

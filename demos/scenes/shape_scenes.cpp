@@ -330,4 +330,29 @@ Scene drawn_taut(int nodes, int steps_per_frame, double tolerance) {
   return scene;
 }
 
+Scene crane(int nodes, int steps_per_frame, double tolerance) {
+  constexpr double half_width = 0.005, drum = 0.15;  // m
+  Scene scene;
+  scene.steps_per_frame = steps_per_frame;
+  scene.bodies.push_back(body("load", BodyKind::free, 2.1 + half_width, 1.2, 0.2, 50.0));
+  scene.bodies.push_back(body("sheave", BodyKind::fixed_axle, 2.0, 3.0, 0.1, 2.0));
+  scene.bodies.push_back(body("winch", BodyKind::fixed_axle, 0.0, 0.0, drum, 5.0));
+  Body& winch = scene.bodies[2];
+  winch.driven_angular_velocity = 0.0;
+  winch.torque_limit = 300.0;
+  winch.motor = {{0.2, 0.0}, {0.4, -6.0}, {1.8, -6.0}, {2.0, 0.0},
+                 {2.5, 0.0}, {2.8, 6.0},  {4.3, 6.0},  {4.6, 0.0}};
+  Attachment rim = on(2);
+  rim.point = {-drum - half_width, 0.0};
+  scene.cables.push_back(cable(Attachment{0, {0.0, 0.2}}, {{1, 1, 0}, {2, 1, 2}}, rim, half_width));
+  Cable& rope = scene.cables[0];
+  rope.mass_per_metre = 0.8;
+  rope.nodes = nodes;
+  rope.node_tolerance = tolerance;
+  rope.linear_drag = 0.8;
+  scene.walls.push_back({Vec2(1.0, 0.0), Vec2(4.0, 0.0), 0.5, 0.0});
+  spread_nodes(scene);
+  return scene;
+}
+
 }  // namespace pinchlab::build

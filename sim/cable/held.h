@@ -32,9 +32,9 @@ struct HeldLine {
   Vec2 moment = Vec2::Zero();
 };
 
-/// That of `count` of the finest, l (m) long. `turned(i)`, rad, of each, is changed to its direction
-/// to the line; `seat(i)`, m, is set to where the node before it is in the frame of the line, but
-/// for the first.
+/// That of `count` of the finest, l (m) long. `turned(i)`, rad, of each, is changed to its own
+/// direction to the line; `seat(i)`, m, is set to where the node before it is in the frame of the
+/// line, but for the first.
 template <typename Turned, typename Seat>
 HeldLine lay_held(int count, double l, Turned turned, Seat seat) {
   Vec2 end = Vec2::Zero();
@@ -88,8 +88,8 @@ Vec2 first_moment(const CableState& piece);
 /// bodies that do.
 double potential_energy_held(const World& world, const NodeChain& chain, const Vec2& gravity);
 
-/// Force that the weight of h (kg m, in the plane) has on the end of the line that holds it, and its
-/// opposite on its start (N).
+/// Force that the weight of h (kg m, in the plane) has on the end of the line that holds it, and
+/// its opposite on its start (N).
 Vec2 held_force(const Vec2& moment, const Segment& line, const Vec2& gravity);
 
 }  // namespace pinchlab

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Spans of a cable with mass that runs over bodies which hold nodes, and their bend: held.h has how.
+// Spans of a cable with mass that runs over bodies which hold nodes with the bend that they had, as
+// rigid bodies: held.h has how.
 //
 // Such a span goes from node to node (strung.h), so that the same material is on it as long as it
-// is there, and next to rims pieces are the finest: these take nodes in and give them off as ever.
-// Its n finest pieces have the mass rho n l, of which half moves with either end as with any other
-// span (mass.h), and the rest length c. Unlike a chain's it bears no push: where its ends come
-// nearer to each other than c it is slack, and no rigid body (motion/adapt_nodes.h has it split).
+// is there. Beside rims pieces are the finest: these take nodes in and give them off as ever, and a
+// node is freed from what a span holds before a rim has the one before it. Its n finest pieces have
+// the mass rho n l, of which half moves with either end as with any other span (mass.h), and c as
+// rest length. It is a rod, and bears a push until the step's end, at which it becomes two
+// (motion/adapt_spans.h).
 
 #include "base/at.h"
 #include "sim/cable/strung.h"

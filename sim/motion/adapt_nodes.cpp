@@ -101,8 +101,13 @@ bool is_to_merge(const Scene& scene, const World& world, const NodeChain& chain,
   const double bend = std::abs(cross(line.direction, off));
   if (bend >= most || expected_sag(scene, world, chain, first, line) >= most) return false;
   const Vec2 middle = 0.5 * (end_velocity(world, line.from) + end_velocity(world, line.to));
+  const double mass = at(world.bodies, node).mass;
+  const Vec2 pull = mass * scene.gravity +
+                    held_force(first_moment(one), one.segments[1], scene.gravity) -
+                    held_force(first_moment(two), two.segments[1], scene.gravity);
   const double lost =
-      spread_of(world, line) + 0.5 * (at(world.velocity, node) - middle).squaredNorm();
+      spread_of(world, line) + swing_of(mass, at(world.velocity, node) - middle, pull, line,
+                                        one.segments[1], two.segments[1]);
   if (lost >= scene.gravity.norm() * most) return false;
   if (bend + held_bend(world, chain, first) + held_bend(world, chain, first + count) >= most)
     return false;

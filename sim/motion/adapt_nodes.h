@@ -31,7 +31,10 @@
 // where it is pushed by more than its own weight, since a cable gives way; and where a body or wall
 // is near, whose place on it only nodes can tell. Two become one where all of that is below half of
 // its limit, the node (with the bends that both hold) within half of the tolerance of the straight
-// line, and neither is pushed. So nothing comes and goes at one border.
+// line, and neither is pushed. The node's own swing is reckoned with as well: its motion, v^2 / 2,
+// and where it is off its balance under the tensions T, by a force f across the line, f^2 / 2 k m
+// with k = T_1 / c_1 + T_2 / c_2: their sum stays the same as a wave passes, so that no node goes
+// each time that it turns back. So nothing comes and goes at one border.
 //
 // A bend that is held does not give by itself as the tension T rises. At equilibrium the least
 // energy -T c - R(theta) h . g has, of a bend f times as great (to second order in it),

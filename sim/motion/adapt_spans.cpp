@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/held.h"
 #include "sim/cable/held_spans.h"
 #include "sim/motion/piece_line.h"
 #include "sim/tangent.h"
@@ -67,6 +68,12 @@ bool is_to_split(const Scene& scene, const World& world, int number, std::size_t
          is_moved(scene, world, cable, line, tolerance, 1.0);
 }
 
+/// N, of the bend that a segment may hold on its head; on its tail the opposite.
+Vec2 bend_pull(const Scene& scene, const CableState& cable, std::size_t segment) {
+  if (!is_held(cable, segment)) return Vec2::Zero();
+  return held_force(first_moment(cable, segment), cable.segments[segment], scene.gravity);
+}
+
 /// Of the segments on either side of a link.
 bool is_to_merge(const Scene& scene, const World& world, int number, std::size_t segment) {
   const CableState& cable = at(world.cables, number);
@@ -84,8 +91,13 @@ bool is_to_merge(const Scene& scene, const World& world, int number, std::size_t
   const double share = static_cast<double>(pieces_of(cable, segment)) / line.pieces;
   const Vec2 there =
       (1.0 - share) * at(world.velocity, line.from.body) + share * at(world.velocity, line.to.body);
-  if (0.5 * (at(world.velocity, node) - there).squaredNorm() >= most * scene.gravity.norm())
-    return false;
+  const double mass =
+      0.5 * cable.density * (material_of_span(cable, segment) + material_of_span(cable, next));
+  const Vec2 pull =
+      mass * scene.gravity + bend_pull(scene, cable, segment) - bend_pull(scene, cable, next);
+  const double swing = swing_of(mass, at(world.velocity, node) - there, pull, line,
+                                cable.segments[segment], cable.segments[next]);
+  if (swing >= most * scene.gravity.norm()) return false;
   return !is_moved(scene, world, cable, line, tolerance, hysteresis) && !is_in_contact(world, node);
 }
 

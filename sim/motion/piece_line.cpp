@@ -54,6 +54,19 @@ double spread_of(const World& world, const Line& line) {
   return 0.125 * (end_velocity(world, line.to) - end_velocity(world, line.from)).squaredNorm();
 }
 
+double swing_of(double mass, const Vec2& motion, const Vec2& pull, const Line& line,
+                const Segment& before, const Segment& after) {
+  const double energy = 0.5 * motion.squaredNorm();
+  const double stiffness = before.tension / before.length + after.tension / after.length;  // N/m
+  if (!(stiffness > 0.0)) return energy;
+  const double drawn =
+      cross(line.direction, after.tension * after.direction - before.tension * before.direction);
+  // Where all falls with it, less of what pulls is to be borne.
+  const double borne = cross(line.direction, pull);
+  const double across = drawn + std::clamp(-drawn, std::min(borne, 0.0), std::max(borne, 0.0));
+  return energy + 0.5 * across * across / (stiffness * mass);
+}
+
 bool is_in_contact(const World& world, int node) {
   return std::any_of(world.contacts.begin(), world.contacts.end(), [node](const Contact& contact) {
     return contact.a == node || contact.b == node;
