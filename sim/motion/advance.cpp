@@ -321,6 +321,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, const Round&
   course.crept = false;
   if (!course.located) {
     met = cross_interval(scene, world, work, movers, length, watch);
+    for (const int p : movers.parts) find_overrun_nodes(world, work, p);
     if (near.divided) find_pairs_of_interval(scene, world, work);
   } else if (!try_whole_interval(scene, world, work, movers, length, watch)) {
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);

@@ -189,6 +189,13 @@ void find_gone_links(const World& world, Workspace& work, int number) {
   }
 }
 
+void find_overrun_nodes(const World& world, Workspace& work, int number) {
+  const auto has_nodes = [&world](int c) { return at(world.cables, c).nodes > 0; };
+  if (world.strung.empty()) return;
+  const std::span<const int> cables = cables_of(work.parts, at(work.parts.list, number));
+  if (std::ranges::any_of(cables, has_nodes)) find_gone_links(world, work, number);
+}
+
 void find_span_hits(const Scene& scene, const World& world, Workspace& work) {
   for (Happening& event : work.events) {
     if (event.kind != EventKind::hit) continue;

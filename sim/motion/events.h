@@ -26,6 +26,11 @@ void find_catches(const World& world, Workspace& work, int part);
 /// Links of a part that have come off, likewise.
 void find_gone_links(const World& world, Workspace& work, int part);
 
+/// The same after an interval whose events were not located, of a part whose cables have nodes:
+/// rims that have come upon nodes are to have these now. What links of other cables have come off
+/// is seen at the positions (links.h).
+void find_overrun_nodes(const World& world, Workspace& work, int part);
+
 /// Bodies that have met spans, likewise.
 void find_span_hits(const Scene& scene, const World& world, Workspace& work);
 
