@@ -98,8 +98,8 @@ Scene folded_chain(int pieces, int steps_per_frame, double tolerance = 0.0);
 Scene drawn_taut(int nodes, int steps_per_frame, double tolerance = 0.0);
 
 /// A winch, body 2, sets a load of 50 kg, body 0, on the floor by a rope of 0.8 kg/m over a sheave,
-/// pays out half a metre more, so that the rope hangs, and lifts the load again, all in 5 s. The rope's
-/// nodes adapt, unless the tolerance (m) is 0.
+/// pays out half a metre more, so that the rope hangs, and lifts the load again, all in 5 s. The
+/// rope's nodes adapt, unless the tolerance (m) is 0.
 Scene crane(int nodes, int steps_per_frame, double tolerance);
 
 }  // namespace pinchlab::build

@@ -34,16 +34,16 @@ bool is_near_something(const Scene& scene, const World& world, const Line& line,
 /// J/kg, |v_b - v_a|^2 / 8.
 double spread_of(const World& world, const Line& line);
 
-/// J/kg, of a node's swing between two pieces: of its motion (m/s) to the line, and of how far it is
-/// off where it would be in balance across that, bearing `pull` (N), or less, beside the tensions.
+/// J/kg, of a node's swing between two pieces: of its motion (m/s) to the line, and of how far it
+/// is off where it would be in balance across that, bearing `pull` (N), or less, beside tensions.
 double swing_of(double mass, const Vec2& motion, const Vec2& pull, const Line& line,
                 const Segment& before, const Segment& after);
 
 /// Whether a node is in touch with something.
 bool is_in_contact(const World& world, int node);
 
-/// The share of its bend that a piece is to have after a step: it is let out towards `wanted`, c (m)
-/// being the length of its line. `rate`: of the letting out (1/s), which follows.
+/// The share of its bend that a piece is to have after a step: it is let out towards `wanted`,
+/// c (m) being the length of its line. `rate`: of the letting out (1/s), which follows.
 double share_let_out(const Scene& scene, double step_length, double wanted, double c, double& rate);
 
 /// What a bend would be, as a share of what it is, under half of its line's tension. The line is

@@ -32,6 +32,12 @@ bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
   });
 }
 
+/// The share of what moved at rows' bodies before that curved ways make of it at most, in an
+/// interval in which nothing turns far. What makes it move faster is no way's curvature, but rows
+/// that next to repeat one another and contradict each other by theirs, as the span of a cable
+/// between discs that are about to pinch it does their friction.
+constexpr double most_hastened = 4.0;
+
 /// What counts as energy made (J), where the solver knows it but for round-off: of speeds, as a
 /// share of what the rows have changed.
 double least_energy(const SolveScratch& set) {
@@ -58,7 +64,8 @@ double momentum(const PartSystem& s) {
 bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   if (cannot_make_energy(s, set)) return false;
   if (set.by_dual) return set.dual.energy > least_energy(set);
-  double made = 0.0, impulse = 0.0, made_up = 0.0, fastest = 0.0;  // J, J s/m, J, m/s; twice
+  double made = 0.0, curved = 0.0, impulse = 0.0, made_up = 0.0;  // J, J, J s/m, J; twice
+  double fastest = 0.0, before = 0.0, after = 0.0;                // m/s, the first twice
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
     if (row.impulse == 0.0) continue;
@@ -69,7 +76,12 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
     const double of_third =
         speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
-    made += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
+    made += row.impulse * (of_a + of_b + of_third);
+    curved += 2.0 * row.impulse * row.curved;
+    before = std::max({before, std::abs(bodies.ja.dot(s.free_velocity[a])),
+                       std::abs(bodies.jb.dot(s.free_velocity[b]))});
+    after = std::max(
+        {after, std::abs(bodies.ja.dot(s.velocity[a])), std::abs(bodies.jb.dot(s.velocity[b]))});
     impulse += std::abs(row.impulse);
     made_up += std::abs(row.impulse) *
                std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
@@ -77,6 +89,7 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   }
   // Ten times active_set.cpp's tolerance: what that has let pass makes no energy.
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;
+  if (!(after > most_hastened * before)) made += curved;
   if (made <= impulse * rounding + 2.0 * made_up) return false;
   // Impulses that are nothing but round-off may go with what slides as well as against it.
   constexpr double residual = 1e-14;  // of the momentum: a hundred units in its last place
