@@ -108,12 +108,12 @@ struct alignas(64) Segment {
 /// The finest piece between two nodes of a cable with mass that runs over bodies, of those whose
 /// number adapts, or what begins with it: held_spans.h.
 struct FinestPiece {
-  int pieces = 1;             // of the finest in the span that begins with it; 0: in another's
-  double turned = 0.0;        // rad, to the straight line of that span
-  Vec2 seat = Vec2::Zero();   // m, in the frame of that line: the node before, if the span holds it
-  double spare = 0.0;         // m, by which that line is shorter than its material
-  Vec2 held = Vec2::Zero();   // kg m, likewise, first moment of the bend that it holds
-  double let_out = 0.0;       // 1/s, at which tension straightens that bend
+  int pieces = 1;            // of the finest in the span that begins with it; 0: in another's
+  double turned = 0.0;       // rad, to the straight line of that span
+  Vec2 seat = Vec2::Zero();  // m, in the frame of that line: the node before, if the span holds it
+  double spare = 0.0;        // m, by which that line is shorter than its material
+  Vec2 held = Vec2::Zero();  // kg m, likewise, first moment of the bend that it holds
+  double let_out = 0.0;      // 1/s, at which tension straightens that bend
 };
 
 struct alignas(64) CableState {
@@ -152,10 +152,10 @@ struct alignas(64) CableState {
   double turned = 0.0;       // rad, of the finest piece to the line of what it is part of
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
   // Of any:
-  int first_node = -1, nodes = 0;  // bodies, of one with mass that runs over bodies: strung.h
+  int first_node = -1, nodes = 0;   // bodies, of one with mass that runs over bodies: strung.h
   std::vector<FinestPiece> finest;  // of nodes whose number adapts, by adapt_nodes: one more
-  double grip = 1.0;               // factor on the friction of its pinches
-  double bend = 0.0;               // N m a rad, between it and `bends_with`
+  double grip = 1.0;                // factor on the friction of its pinches
+  double bend = 0.0;                // N m a rad, between it and `bends_with`
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).
