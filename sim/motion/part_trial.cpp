@@ -165,6 +165,7 @@ IntervalTrial try_part(const Scene& scene, World& world, Workspace& work, Part& 
   t.repair = world.step_length;
   t.lag = pace.lag;
   t.clamps = true;
+  t.straight = attempt.most_rounds == 0;
   t.kick = pace.lag + 0.5 * t.length;
   t.start = work.start.time;
   apply_forces(scene, world, t, work.parts, part, s);

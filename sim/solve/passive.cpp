@@ -17,25 +17,6 @@ namespace pinchlab {
 
 namespace {
 
-/// Whether curved ways cannot make so much (J, twice) of the bodies' motion, whose energy swings by
-/// a share of itself where something turns or waves run (turning.h, waves.h). What doubles it are
-/// rows that next to repeat one another and contradict each other by their curvature, as the span
-/// of a cable between discs that are about to pinch it does their friction. Where something drives,
-/// motion may come of it from rest.
-bool is_beyond_curvature(const PartSystem& s, double made) {
-  if (!s.motors.empty()) return false;
-  double energy = 0.0;  // J, before the rows' impulses; twice
-  for (std::size_t i = 0; i < s.mobility.size(); ++i) {
-    const Mobility& m = s.mobility[i];
-    const Eigen::Vector3d& v = s.free_velocity[i];
-    if (m.xx > 0.0) energy += v.x() * v.x() / m.xx;
-    if (m.yy > 0.0) energy += v.y() * v.y() / m.yy;
-    if (m.angular > 0.0) energy += v.z() * v.z() / m.angular;
-    if (made <= energy) return false;
-  }
-  return true;
-}
-
 /// Whether that follows without a sum: with A = J M^-1 J^T, where each impulse is an unknown of its
 /// own, J v- = -bias - A p, and sum p (J v- + J v+) = -p A p - 2 p bias; unless impulses are so
 /// large that what the solution leaves of these equations counts, on spans that hardly can give. Of
@@ -45,14 +26,10 @@ bool cannot_make_energy(const PartSystem& s, const SolveScratch& set) {
   const double round_off = s.reach / set.step_length;  // m/s
   // Of a row's equation, as a share of its own impulse's part: some units in its last place.
   constexpr double residual = 1e-15;
-  double curved = 0.0;  // J
-  for (const Row& row : s.rows) {
-    if (!row.on) continue;
-    if (!(std::abs(row.bias - row.curved) <= round_off)) return false;
-    if (!(residual * row.diagonal * std::abs(row.impulse) <= round_off)) return false;
-    curved -= row.impulse * row.curved;
-  }
-  return !(curved > 0.0 && is_beyond_curvature(s, 2.0 * curved));
+  return std::all_of(s.rows.begin(), s.rows.end(), [round_off](const Row& row) {
+    return !row.on || (std::abs(row.bias - row.curved) <= round_off &&
+                       residual * row.diagonal * std::abs(row.impulse) <= round_off);
+  });
 }
 
 /// What counts as energy made (J), where the solver knows it but for round-off: of speeds, as a
@@ -81,8 +58,7 @@ double momentum(const PartSystem& s) {
 bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   if (cannot_make_energy(s, set)) return false;
   if (set.by_dual) return set.dual.energy > least_energy(set);
-  // J, J, J s/m, J, m/s; twice
-  double made = 0.0, curved = 0.0, impulse = 0.0, made_up = 0.0, fastest = 0.0;
+  double made = 0.0, impulse = 0.0, made_up = 0.0, fastest = 0.0;  // J, J s/m, J, m/s; twice
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     const Row& row = s.rows[r];
     if (row.impulse == 0.0) continue;
@@ -93,8 +69,7 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
     const double of_third =
         speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
-    made += row.impulse * (of_a + of_b + of_third);
-    curved += 2.0 * row.impulse * row.curved;
+    made += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
     impulse += std::abs(row.impulse);
     made_up += std::abs(row.impulse) *
                std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
@@ -102,7 +77,6 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   }
   // Ten times active_set.cpp's tolerance: what that has let pass makes no energy.
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;
-  if (!is_beyond_curvature(s, made)) made += curved;
   if (made <= impulse * rounding + 2.0 * made_up) return false;
   // Impulses that are nothing but round-off may go with what slides as well as against it.
   constexpr double residual = 1e-14;  // of the momentum: a hundred units in its last place

@@ -18,8 +18,8 @@ struct Workspace;
 /// had: sum p (J v- + J v+) / 2 > 0 beyond round-off and what is made up for of it. That is exactly
 /// the change of (kinetic) energy that they made, with the work of motors taken out; and so is what
 /// the curvature of ways makes of it (Row::curved), which chords of a curve take or give and the
-/// curve does not, unless bodies run away by it. Elastic segments may give back what they store:
-/// where one bears force, the answer is no.
+/// curve does not. Elastic segments may give back what they store: where one bears force, the
+/// answer is no.
 bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
 
 /// As solve_direct. Constraints, Coulomb's law and the capstan law only ever take energy from

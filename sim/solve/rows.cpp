@@ -248,7 +248,7 @@ void append_tangent_row(const World& world, const Parts& parts, int normal, doub
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);
   if (way < 0) turn_about(s.bodies.back());
-  if (locates_events(world.configuration) && interval.length > 0.0) {
+  if (locates_events(world.configuration) && interval.length > 0.0 && !interval.straight) {
     row.bias = row.curved = way * change_of_sliding(world, contact, interval.length);
   }
   weigh(s, tangent);
