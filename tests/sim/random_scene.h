@@ -93,8 +93,8 @@ inline Scene linkage(unsigned seed) {
   const int count = 2 + static_cast<int>(4.0 * random());
   for (int i = 0; i < count; ++i) {
     const double radius = 0.1 + 0.15 * random();
-    scene.bodies.push_back(body(fmt::format("{}", i).c_str(), BodyKind::free, 0.7 * i,
-                                0.3 * random(), radius, std::pow(10.0, -1.0 + 2.0 * random())));
+    scene.bodies.push_back(body(fmt::format("{}", i), BodyKind::free, 0.7 * i, 0.3 * random(),
+                                radius, std::pow(10.0, -1.0 + 2.0 * random())));
     at(scene.bodies, i).velocity = {2.0 * random() - 1.0, 2.0 * random() - 1.0};
     at(scene.bodies, i).restitution = random() < 0.5 ? 0.0 : random();
     const int other = i - 1;
