@@ -50,7 +50,7 @@ Adapting fall(int pieces, double tolerance) {
   return run;
 }
 
-/// Places of the ring at every frame.
+/// Places of the ring, or of the load, at every frame.
 using Course = std::vector<Vec2>;
 
 /// Mean distance (m); NaN where one has not come to its end.
@@ -84,25 +84,36 @@ Course draw(int nodes, int steps_per_frame, double tolerance, Adapting& run) {
   return course;
 }
 
-std::vector<Adapting> draw_all() {
-  Adapting run;
-  const Course finest = draw(63, 64, 0.0, run);
+/// Fixed numbers of nodes, and tolerances at the last of them. `off(nodes, steps_per_frame,
+/// tolerance, run)` makes a run and tells how far it is off (m).
+template <typename Off>
+std::vector<Adapting> run_all(const std::vector<int>& numbers,
+                              const std::vector<double>& tolerances, Off off) {
   std::vector<Adapting> runs;
   const auto add = [&](int nodes, int steps_per_frame, double tolerance) {
+    Adapting run;
     double least = infinity;
     for (int repeat = 0; repeat < repeats; ++repeat) {
-      const Course course = draw(nodes, steps_per_frame, tolerance, run);
-      run.result = apart(course, finest);
+      run.result = off(nodes, steps_per_frame, tolerance, run);
       least = std::min(least, run.cost_s);
     }
     run.cost_s = least;
     runs.push_back(run);
   };
   for (const int steps : {4, 16}) {
-    for (const int nodes : {7, 15, 31, 63}) add(nodes, steps, 0.0);
-    for (const double tolerance : {1e-3, 2e-3, 5e-3}) add(63, steps, tolerance);
+    for (const int nodes : numbers) add(nodes, steps, 0.0);
+    for (const double tolerance : tolerances) add(numbers.back(), steps, tolerance);
   }
   return runs;
+}
+
+std::vector<Adapting> draw_all() {
+  Adapting first;
+  const Course finest = draw(63, 64, 0.0, first);
+  return run_all({7, 15, 31, 63}, {1e-3, 2e-3, 5e-3},
+                 [&](int nodes, int steps_per_frame, double tolerance, Adapting& run) {
+                   return apart(draw(nodes, steps_per_frame, tolerance, run), finest);
+                 });
 }
 
 double spans_of(const CableState& rope) {
@@ -110,51 +121,36 @@ double spans_of(const CableState& rope) {
       std::ranges::count_if(rope.segments, [](const Segment& span) { return span.length > 0.0; }));
 }
 
-/// The load's height (m) at every frame; empty where a step fails.
-std::vector<double> lift(int nodes, int steps_per_frame, double tolerance, Adapting& run) {
+Course lift(int nodes, int steps_per_frame, double tolerance, Adapting& run) {
   const Scene scene = build::crane(nodes, steps_per_frame, tolerance);
   World world = make_world(scene, Method::pinch);
   Workspace work;
-  std::vector<double> heights;
+  Course course;
   double sum = 0.0;
   const double before = cpu_seconds();
   const auto steps = std::lround(drawn_for * scene.frames_per_second * steps_per_frame);
   for (long i = 0; i < steps; ++i) {
-    if (step(scene, world, work) != StepStatus::ok) return {};
+    if (step(scene, world, work) != StepStatus::ok) break;
     sum += spans_of(world.cables[0]);
-    if ((i + 1) % steps_per_frame == 0) heights.push_back(world.position[0].y());
+    if ((i + 1) % steps_per_frame == 0) course.push_back(world.position[0]);
   }
   run = {nodes + 1,
          steps_per_frame,
          tolerance,
-         sum / static_cast<double>(world.step),
+         sum / static_cast<double>(std::max<std::int64_t>(world.step, 1)),
          0.0,
          cpu_seconds() - before,
          static_cast<int>(world.diagnostics.node_changes)};
-  return heights;
+  return course;
 }
 
 std::vector<Adapting> lift_all() {
-  Adapting run;
-  const std::vector<double> finest = lift(159, 32, 0.0, run);
-  std::vector<Adapting> runs;
-  const auto add = [&](int nodes, int steps_per_frame, double tolerance) {
-    double least = infinity;
-    for (int repeat = 0; repeat < repeats; ++repeat) {
-      const std::vector<double> heights = lift(nodes, steps_per_frame, tolerance, run);
-      double sum = heights.empty() ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-      for (std::size_t i = 0; i < heights.size(); ++i) sum += std::abs(heights[i] - finest[i]);
-      run.result = sum / static_cast<double>(finest.size());
-      least = std::min(least, run.cost_s);
-    }
-    run.cost_s = least;
-    runs.push_back(run);
-  };
-  for (const int steps : {4, 16}) {
-    for (const int nodes : {10, 20, 40, 80}) add(nodes, steps, 0.0);
-    for (const double tolerance : {5e-4, 1e-3, 2e-3, 4e-3}) add(80, steps, tolerance);
-  }
-  return runs;
+  Adapting first;
+  const Course finest = lift(159, 32, 0.0, first);
+  return run_all({10, 20, 40, 80}, {5e-4, 1e-3, 2e-3, 4e-3},
+                 [&](int nodes, int steps_per_frame, double tolerance, Adapting& run) {
+                   return apart(lift(nodes, steps_per_frame, tolerance, run), finest);
+                 });
 }
 
 std::string tolerance_text(const Adapting& run) {

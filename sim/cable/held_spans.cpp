@@ -27,13 +27,6 @@ void settle(CableState& cable, int first) {
   span.held = cable.density * l * line.moment;
 }
 
-/// Of a node that has become free or dormant: new tangents beside it, from here on.
-void begin_beside(const World& world, CableState& cable, std::size_t segment) {
-  update_tangent(world, cable, segment);
-  begin_here(cable.segments[segment]);
-  cable.segments[segment].slack = false;
-}
-
 /// Gives a node that mass (kg) with the velocity v, beside what it has of its cable.
 void join_node(World& world, const CableState& cable, int link, double mass, const Vec2& v) {
   const auto i = index(link);
@@ -91,7 +84,9 @@ void merge_at_node(World& world, CableState& cable, int link) {
   cable.segments.erase(cable.segments.begin() + link);
   cable.segments[segment].tension = tension;
   lay_down_node(world, node);
-  begin_beside(world, cable, segment);
+  update_tangent(world, cable, segment);
+  begin_here(cable.segments[segment]);
+  cable.segments[segment].slack = false;
   count_changes(world, cable, 1);
   update_wraps_and_rest_lengths(world, cable);
 }
