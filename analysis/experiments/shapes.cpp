@@ -98,6 +98,9 @@ std::vector<Ladder> climb_all(bool quick, Progress& progress) {
   ladders.push_back(climb(
       "a load on a drum in layers", [](int n) { return layered_hoist(8, 0.02, n); }, 1.0, nullptr,
       finest, rungs));
+  ladders.push_back(climb(
+      "a load on a heavy rope on a drum in layers", [](int n) { return heavy_hoist(n); }, 1.0,
+      nullptr, finest, rungs));
   progress.done(1.0);
   const Scene atwood = rope_atwood(1);
   const double k = std::sqrt(0.8 * atwood.gravity.norm() / 4.35);  // 1/s

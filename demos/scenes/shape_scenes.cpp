@@ -174,6 +174,16 @@ Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begi
   return scene;
 }
 
+Scene heavy_hoist(int steps_per_frame, bool begins_there) {
+  Scene scene = layered_hoist(8, 0.02, steps_per_frame, begins_there);
+  scene.cables[0].mass_per_metre = 2.0;
+  Body& load = scene.bodies[1];
+  load.kind = BodyKind::free;
+  load.position = {2.0, -3.0};
+  load.mass = 20.0;
+  return scene;
+}
+
 Scene belt_drive(double radius, double tension, double difference, int steps_per_frame) {
   constexpr double speed = 6.0, first = 0.2, inertia = 0.05, apart = 1.0;
   Scene scene;

@@ -53,6 +53,9 @@ Scene pressed_drum(int steps_per_frame);
 /// begins on the drum, or ends there.
 Scene layered_hoist(int turns, double half_width, int steps_per_frame, bool begins_there = true);
 
+/// The same of 8 turns with a rope of 2 kg/m, on which 20 kg swing beside the drum.
+Scene heavy_hoist(int steps_per_frame, bool begins_there = true);
+
 constexpr double belt_stiffness = 1e4;    // N, EA, of belt_drive
 constexpr double belt_half_width = 0.01;  // m
 

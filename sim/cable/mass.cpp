@@ -27,6 +27,19 @@ Vec2 centre_of(const World& world, const Link& link) {
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
 
+/// A span at a drum that fills, or between that and the cable's end on it, where nothing moves.
+void let_fill(const Link& from, const Link& to, MassedSpan& span) {
+  if (wound_end(from, to)) {
+    if (from.layers.way != 0 || to.layers.way != 0) span.p_a = span.p_b = 0.0;
+    return;
+  }
+  if (from.layers.way > 0) span.slope_a = from.layers.growth;
+  if (to.layers.way < 0) span.slope_b = -to.layers.growth;
+  if (span.pinched) return;
+  // A span shorter than that has no room for a turn more or less (lay_outermost_turn).
+  span.distance = std::max(span.distance + span.slope_b - span.slope_a, 0.5 * span.distance);
+}
+
 }  // namespace
 
 MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
@@ -45,6 +58,7 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.z_b = left(span.centre_b) + span.p_b * span.direction;
   span.pinched = segment.pinched;
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
+  if (cable.fills) let_fill(from, to, span);
   span.material = std::max(material_of_span(cable, i), 0.0);
   span.density = cable.density;
   return span;
@@ -52,19 +66,48 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
 
 namespace {
 
-/// On the circle z = left(c) + p e, with e turning from where the cable comes to where it goes.
+/// An arc about the link's own centre: on the circle z = p e, e turning from where the cable comes
+/// to where it goes.
+void lie_on_rim(const CableState& cable, const Link& link, const Vec2& comes, const Vec2& goes,
+                MassedArc& arc) {
+  const double squared = link.radius * link.radius;
+  arc.mass = cable.density * link.radius * std::max(link.wrap, 0.0);
+  arc.first = cable.density * squared * (left(comes) - left(goes));
+  arc.second = arc.mass * squared;
+}
+
+/// The same of what lies in layers, z = orientation r e with r = inner + g th. The direction e is
+/// `free` where the span leaves them, and by the angle x back from there e' = -sigma left(e),
+/// sigma = way orientation, so that
+///     integral r^2 e dx = [sigma (r^2 - 2 g^2) left(e) - 2 g r e],
+///     integral r^3 dx = [r^4 / 4 g].
+void lie_in_layers(const CableState& cable, const Link& link, const Vec2& comes, const Vec2& goes,
+                   MassedArc& arc) {
+  const Layers& layers = link.layers;
+  const double sigma = layers.way * link.orientation, g = layers.growth, outer = link.radius;
+  const auto until = [&](double r, const Vec2& e) -> Vec2 {
+    return sigma * (r * r - 2.0 * g * g) * left(e) - 2.0 * g * r * e;
+  };
+  const Vec2 &held = layers.way > 0 ? comes : goes, &free = layers.way > 0 ? goes : comes;
+  const double wrap = std::max(link.wrap, 0.0);
+  const double squares = outer * outer + layers.inner * layers.inner;
+  arc.wound = true;
+  arc.mass = cable.density * layers.length(wrap);
+  arc.first = link.orientation * cable.density * (until(layers.inner, held) - until(outer, free));
+  arc.second = 0.25 * cable.density * wrap * squares * (outer + layers.inner);
+}
+
 MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  const std::size_t leaving = (i + 1) % cable.links.size();
-  const Vec2 turn = left(cable.segments[i].direction) - left(cable.segments[leaving].direction);
   MassedArc arc;
   arc.body = mover_or_world(world, link);
   arc.centre = centre_of(world, link);
-  arc.mass = cable.density * link.radius * std::max(link.wrap, 0.0);
-  const Vec2 about = cable.density * link.radius * link.radius * turn;  // the circle's own centre
+  const auto lie = link.layers.way != 0 ? lie_in_layers : lie_on_rim;
+  lie(cable, link, cable.segments[i].direction,
+      cable.segments[(i + 1) % cable.links.size()].direction, arc);
   const Vec2 c = left(arc.centre);
-  arc.first = arc.mass * c + about;
-  arc.second = arc.mass * (c.squaredNorm() + link.radius * link.radius) + 2.0 * c.dot(about);
+  arc.second += arc.mass * c.squaredNorm() + 2.0 * c.dot(arc.first);
+  arc.first += arc.mass * c;
   return arc;
 }
 
@@ -73,8 +116,14 @@ double turning_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v
   if (span.a == span.b) return v_a.z();
   if (span.distance == 0.0) return 0.0;
   const Vec2 d = at_place(v_b, left(span.centre_b)) - at_place(v_a, left(span.centre_a));
-  const Vec2 across = span.pinched ? Vec2(-span.direction) : left(span.direction);
-  return across.dot(d) / span.distance;
+  if (span.pinched) return -span.direction.dot(d) / span.distance;
+  const double filling = span.slope_b * v_b.z() - span.slope_a * v_a.z();
+  return (left(span.direction).dot(d) + filling) / span.distance;
+}
+
+/// rad/s by which the direction turns on the body, where p changes by that.
+double winding(double slope, const Vector3d& velocity, double turning) {
+  return slope != 0.0 ? turning - velocity.z() : 0.0;
 }
 
 void add(std::span<Eigen::Matrix3d> to, const MassedSpan& span) {
@@ -92,14 +141,28 @@ double growth_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_
   return 0.5 * span.density * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));
 }
 
-/// dz/dt of a span's end that turns with the body about the circle's centre (m/s).
-Vec2 shift_of(const Vector3d& velocity, const Vec2& centre, double p, double turning,
-              const Vec2& n) {
-  return -velocity.z() * centre + p * turning * n;
+/// What a span's end is made of.
+struct SpanEnd {
+  const Vec2& z;
+  const Vec2& centre;
+  double p, slope;
+};
+
+/// dz/dt of an end that turns with the body about the circle's centre (m/s).
+Vec2 shift_of(const SpanEnd& end, const Vector3d& velocity, double turning, const Vec2& e) {
+  const Vec2 shift = -velocity.z() * end.centre + end.p * turning * left(e);
+  return shift + end.slope * winding(end.slope, velocity, turning) * e;
 }
 
-void add_flow_forces(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b,
-                     Vector3d& f_a, Vector3d& f_b) {
+/// kg/s on either rim: by the span's turning, and on a drum that fills by its own.
+double gain_of_rim(const MassedSpan& span, const SpanEnd& end, const Vector3d& velocity,
+                   double turning) {
+  return span.density * end.p *
+         (end.slope != 0.0 ? winding(end.slope, velocity, turning) : turning);
+}
+
+void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d& v_a,
+                     const Vector3d& v_b, Vector3d& f_a, Vector3d& f_b) {
   const Vec2 u_a = at_place(v_a, span.z_a), u_b = at_place(v_b, span.z_b);
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
@@ -108,28 +171,38 @@ void add_flow_forces(const MassedSpan& span, const Vector3d& v_a, const Vector3d
   const double e_a = 0.5 * rho * u_a.squaredNorm(), e_b = 0.5 * rho * u_b.squaredNorm();  // J/m
 
   // A point mass whose place on the body moves, and what rims gain by the span's turning.
-  const auto end = [&](const Vector3d& velocity, const Vec2& u, const Vec2& z, const Vec2& centre,
-                       double p, double gains, Vector3d& force) {
-    const Vec2 shift = shift_of(velocity, centre, p, turning, n);
-    force -= on_body((growth + gains) * u, z) + mass * velocity.z() * on_body(shift, z);
-    force.z() -= mass * p * turning * n.dot(u);
+  const auto end = [&](const SpanEnd& at_end, const Vector3d& velocity, const Vec2& u, double gains,
+                       Vector3d& force) {
+    const Vec2 shift = shift_of(at_end, velocity, turning, span.direction);
+    force -=
+        on_body((growth + gains) * u, at_end.z) + mass * velocity.z() * on_body(shift, at_end.z);
+    force.z() -= mass * turning * (at_end.p * n + at_end.slope * span.direction).dot(u);
   };
-  end(v_a, u_a, span.z_a, span.centre_a, span.p_a, rho * span.p_a * turning, f_a);
-  end(v_b, u_b, span.z_b, span.centre_b, span.p_b, -rho * span.p_b * turning, f_b);
+  const SpanEnd at_a{span.z_a, span.centre_a, span.p_a, span.slope_a};
+  const SpanEnd at_b{span.z_b, span.centre_b, span.p_b, span.slope_b};
+  end(at_a, v_a, u_a, gain_of_rim(span, at_a, v_a, turning), f_a);
+  end(at_b, v_b, u_b, -gain_of_rim(span, at_b, v_b, turning), f_b);
 
-  // By the flow of material, whose kinetic energy is the mean of the ends'.
+  // By the flow of material, whose kinetic energy is the mean of the ends', from and to layers too.
   const double mean = 0.5 * (e_a + e_b);
-  f_a.z() += mean * span.p_a;
-  f_b.z() -= mean * span.p_b;
+  f_a.z() += (span.slope_a != 0.0 ? mean - e_a : mean) * span.p_a;
+  f_b.z() -= (span.slope_b != 0.0 ? mean - e_b : mean) * span.p_b;
   // By the direction: the flow to and from rims, and the ends' own places.
+  const double weight = mass * gravity.dot(n);  // N, of what moves by dp across the span
   const double about = mean * (span.p_b - span.p_a) + e_a * span.p_a - e_b * span.p_b +
-                       mass * (span.p_a * v_a.z() * n.dot(u_a) + span.p_b * v_b.z() * n.dot(u_b));
+                       mass * v_a.z() * (span.p_a * n + span.slope_a * span.direction).dot(u_a) +
+                       mass * v_b.z() * (span.p_b * n + span.slope_b * span.direction).dot(u_b) -
+                       weight * (span.slope_a + span.slope_b);
+  f_a.z() += weight * span.slope_a;
+  f_b.z() += weight * span.slope_b;
   if (span.a == span.b) {
     f_a.z() += about;
   } else if (!span.pinched && span.distance > 0.0) {  // in a pinch both sides flow alike
-    const Vec2 force = about / span.distance * n;
-    f_b += on_body(force, left(span.centre_b));
-    f_a -= on_body(force, left(span.centre_a));
+    const double force = about / span.distance;
+    f_b += on_body(force * n, left(span.centre_b));
+    f_a -= on_body(force * n, left(span.centre_a));
+    f_b.z() += force * span.slope_b;
+    f_a.z() -= force * span.slope_a;
   }
 }
 
@@ -246,15 +319,20 @@ Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen
   return Vector3d(lacking, lacking, lacking * radius * radius).asDiagonal();
 }
 
-void find_flow_forces(const CableMasses& masses, std::span<const Vector3d> velocities,
-                      std::span<Vector3d> to) {
+void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
+                      std::span<const Vector3d> velocities, std::span<Vector3d> to) {
   std::fill(to.begin(), to.end(), Vector3d::Zero());
   for (const MassedSpan& span : masses.spans) {
-    add_flow_forces(span, at(velocities, span.a), at(velocities, span.b), at(to, span.a),
+    add_flow_forces(span, gravity, at(velocities, span.a), at(velocities, span.b), at(to, span.a),
                     at(to, span.b));
   }
-  for (const MassedArc& arc : masses.arcs) {  // it turns about a circle that turns about the body
+  for (const MassedArc& arc : masses.arcs) {
     const double square = at(velocities, arc.body).z() * at(velocities, arc.body).z();
+    if (arc.wound) {  // it turns about the body
+      at(to, arc.body).head<2>() -= square * left(arc.first);
+      continue;
+    }
+    // About a circle that turns about the body.
     at(to, arc.body) += square * Vector3d(arc.mass * arc.centre.x(), arc.mass * arc.centre.y(),
                                           arc.centre.dot(arc.first));
   }
@@ -268,17 +346,20 @@ void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double fac
     const Vector3d& v_b = at(velocities, span.b);
     const double turning = turning_of(span, v_a, v_b), mass = end_mass(span);
     const double growth = growth_of(span, v_a, v_b, turning);
-    const auto end = [&](const Vector3d& velocity, const Vec2& z, const Vec2& centre, double p,
-                         double gains, Vector3d& rate) {
-      rate += on_body((growth + gains) * g, z);
-      rate.z() += mass * g.dot(shift_of(velocity, centre, p, turning, left(span.direction)));
+    const auto end = [&](const SpanEnd& at_end, const Vector3d& velocity, double gains,
+                         Vector3d& rate) {
+      rate += on_body((growth + gains) * g, at_end.z);
+      rate.z() += mass * g.dot(shift_of(at_end, velocity, turning, span.direction));
     };
-    const double wound = span.density * turning;  // kg/s for each metre of radius
-    end(v_a, span.z_a, span.centre_a, span.p_a, span.p_a * wound, at(to, span.a));
-    end(v_b, span.z_b, span.centre_b, span.p_b, -span.p_b * wound, at(to, span.b));
+    const SpanEnd at_a{span.z_a, span.centre_a, span.p_a, span.slope_a};
+    const SpanEnd at_b{span.z_b, span.centre_b, span.p_b, span.slope_b};
+    end(at_a, v_a, gain_of_rim(span, at_a, v_a, turning), at(to, span.a));
+    end(at_b, v_b, -gain_of_rim(span, at_b, v_b, turning), at(to, span.b));
   }
   for (const MassedArc& arc : masses.arcs) {
-    at(to, arc.body).z() -= arc.mass * at(velocities, arc.body).z() * arc.centre.dot(g);
+    const double turning = at(velocities, arc.body).z();
+    at(to, arc.body).z() +=
+        arc.wound ? turning * g.dot(left(arc.first)) : -arc.mass * turning * arc.centre.dot(g);
   }
 }
 
@@ -303,7 +384,7 @@ Flow flow_at(const World& world, const CableState& cable, std::size_t segment, b
 
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Vector3d> velocities) {
   Vector3d f_a = Vector3d::Zero(), f_b = f_a;
-  add_flow_forces(span, at(velocities, span.a), at(velocities, span.b), f_a, f_b);
+  add_flow_forces(span, Vec2::Zero(), at(velocities, span.a), at(velocities, span.b), f_a, f_b);
   return {span.p_a != 0.0 ? f_a.z() / span.p_a : 0.0, span.p_b != 0.0 ? -f_b.z() / span.p_b : 0.0};
 }
 

@@ -11,6 +11,13 @@
 // whose Hessian joins the body's own mass. T depends on where things are too: material flows,
 // tangents turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in
 // velocities.
+//
+// A drum that fills (Layers) is as if each moment its outermost turn were its rim: p changes with
+// what is wound up, dp = s d(theta - angle), theta being the span's direction and s its slope. What
+// lies below is fixed to the drum, and the spiral's moments are integrals over it,
+//     integral r^2 e dtheta, integral r^3 dtheta.
+// Rows see nothing of s, as the path along a tangent is stationary in a circle's radius. Weight
+// does, as spans move across themselves while a drum fills: V changes by that too.
 
 #include <Eigen/Core>
 #include <span>
@@ -30,15 +37,18 @@ struct MassedSpan {
   Vec2 centre_a = Vec2::Zero(), centre_b = centre_a;  // m, from the bodies' centres
   Vec2 z_a = centre_a, z_b = centre_a;                // m, of the ends
   Vec2 direction = Vec2(1.0, 0.0);
-  double distance = 0.0;  // m, over which ends that move across it turn it
-  bool pinched = false;   // turns with the line of centres
-  double material = 0.0;  // m
-  double density = 0.0;   // kg/m
+  double distance = 0.0;                // m, over which ends that move across it turn it
+  double slope_a = 0.0, slope_b = 0.0;  // m/rad, of p by what the direction turns on the body: not
+                                        // 0 on a drum that fills
+  bool pinched = false;                 // turns with the line of centres
+  double material = 0.0;                // m
+  double density = 0.0;                 // kg/m
 };
 
 /// What lies on a rim.
 struct MassedArc {
   int body = 0;                // or sleeve, likewise
+  bool wound = false;          // in layers: it turns with the body. Else material comes as it goes
   Vec2 centre = Vec2::Zero();  // m, of the circle from the body's centre
   double mass = 0.0;           // kg
   Vec2 first = Vec2::Zero();   // kg m, integral of z
@@ -76,9 +86,10 @@ void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
 /// own: as little as this does not show, and keeps its motion determined.
 Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen::Matrix3d& mass);
 
-/// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`.
-void find_flow_forces(const CableMasses& masses, std::span<const Eigen::Vector3d> velocities,
-                      std::span<Eigen::Vector3d> to);
+/// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`,
+/// and what gravity (m/s^2) does to spans that move across themselves as drums fill.
+void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
+                      std::span<const Eigen::Vector3d> velocities, std::span<Eigen::Vector3d> to);
 
 /// Adds `factor` times the rate at which the weight of what bodies carry changes as material flows,
 /// spans turn and bodies turn at these velocities (N/s, N/s, N m/s), likewise.

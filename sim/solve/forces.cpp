@@ -278,7 +278,7 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
   measure_masses(world, parts, part, s);
   list_velocities(world, bodies, s.sleeves, s.velocity);
   s.flow.resize(s.mobility.size());
-  find_flow_forces(s.masses, s.velocity, s.flow);
+  find_flow_forces(s.masses, scene.gravity, s.velocity, s.flow);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& given = at(scene.bodies, bodies[i]);
     const BodyProperties& body = at(world.bodies, bodies[i]);
@@ -407,7 +407,7 @@ void follow_flow(const Scene& scene, const Start& start, const Parts& parts, con
   }
   s.flow_before.swap(s.flow);
   s.flow.resize(s.mobility.size());
-  find_flow_forces(s.masses, s.flow_velocity, s.flow);
+  find_flow_forces(s.masses, scene.gravity, s.flow_velocity, s.flow);
   note_flow(s, s.flow_velocity);
   if (t.kick > 0.0) add_curved_weight(scene.gravity, start, bodies, t, s);
   for (std::size_t i = 0; i < bodies.size() + s.sleeves.size(); ++i) {

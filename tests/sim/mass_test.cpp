@@ -337,7 +337,7 @@ TEST(Mass, RefuseWhatCannotBe) {
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].mass_per_metre = infinity; }).find("a number"),
             std::string::npos);
-  EXPECT_NE(refusal([](Scene& s) { s.cables[0].start.layers = true; }).find("layers"),
+  EXPECT_NE(refusal([](Scene& s) { s.cables[0].nodes = 3; }).find("spread_nodes"),
             std::string::npos);
 }
 

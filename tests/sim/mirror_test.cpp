@@ -122,7 +122,8 @@ INSTANTIATE_TEST_SUITE_P(
         Population{"Discs", random_scene, 200}, Population{"Elastic", random_elastic, 60},
         Population{"SlippingElastic", slipping_elastic, 60}, Population{"Linkages", linkage, 60},
         Population{"Ropes", falling_on_rope, 60}, Population{"SlippingRopes", slipping_rope, 60},
-        Population{"StrungRopes", strung_rope, 30}, Population{"Adapting", random_hanging, 20},
+        Population{"RopesInLayers", braked_rope, 60}, Population{"StrungRopes", strung_rope, 30},
+        Population{"Adapting", random_hanging, 20},
         Population{"OnPieces", [](int seed) { return random_on_pieces(seed, false); }, 40}),
     [](const auto& of) { return of.param.name; });
 

@@ -159,6 +159,28 @@ inline Scene slipping_rope(unsigned seed) {
   return scene;
 }
 
+/// The rope of `falling_on_rope`, one end of which is wound up in layers on a drum beside the
+/// pulleys, which is braked. It begins or ends there.
+inline Scene braked_rope(unsigned seed) {
+  Scene scene = falling_on_rope(seed);
+  Random random(seed + 2000);
+  Body& drum = scene.bodies[0];
+  drum.kind = BodyKind::fixed_axle;
+  drum.position = {-random.uniform(1.0, 1.5), random.uniform(-1.2, -0.5)};
+  drum.radius = random.uniform(0.1, 0.2);
+  drum.angular_drag = random.uniform(0.2, 3.0);
+  Cable& rope = scene.cables[0];
+  const int orientation = random.below(2) == 0 ? 1 : -1;
+  const double angle = random.uniform(0.0, 6.0), rim = drum.radius + rope.half_width;
+  rope.start = {0, {rim * std::cos(angle), rim * std::sin(angle)}, true};
+  rope.wraps.insert(rope.wraps.begin(), {0, orientation, 1 + random.below(6)});
+  if (random.below(2) == 0) return scene;
+  std::swap(rope.start, rope.end);
+  std::reverse(rope.wraps.begin(), rope.wraps.end());
+  for (Wrap& wrap : rope.wraps) wrap.orientation *= -1;
+  return scene;
+}
+
 /// Either of them, inextensible, with nodes by which it hangs.
 inline Scene strung_rope(unsigned seed) {
   Scene scene = seed % 2 == 0 ? falling_on_rope(seed) : slipping_rope(seed);
