@@ -9,6 +9,7 @@
 #include "sim/compound.h"
 #include "sim/lines.h"
 #include "sim/outline.h"
+#include "sim/seams.h"
 #include "sim/touch.h"
 #include "sim/world.h"
 
@@ -246,20 +247,31 @@ void join_pieces(const Scene& scene, World& world) {
 
 void let_pass_at_ends(const Scene& scene, double allowed, World& world) {
   world.passing_at_ends.clear();
+  BoxTree walls, bodies;
+  find_extents(world.obstacles, walls);
+  for (int b = 0; index(b) < world.bodies.size(); ++b) {
+    const BodyProperties& body = at(world.bodies, b);
+    if (body.node || !body.outlined) continue;
+    const Vec2 reach = Vec2::Constant(body.radius);
+    bodies.add(at(world.position, b) - reach, at(world.position, b) + reach, b);
+  }
+  bodies.build();
+  std::vector<int> near;
   for (int c = 0; index(c) < world.cables.size(); ++c) {
     const CableState& cable = at(world.cables, c);
     if (!cable.piece) continue;
+    const double most = cable.half_width - allowed;
+    const Vec2 reach = Vec2::Constant(most);
     for (const Link& link : cable.links) {
       if (link.body >= 0) continue;
-      const double most = cable.half_width - allowed;
-      for (int b = 0; index(b) < world.bodies.size(); ++b) {
-        const BodyProperties& body = at(world.bodies, b);
-        if (body.node || !body.outlined) continue;
+      bodies.list(link.offset - reach, link.offset + reach, near);
+      for (const int b : near) {
         if (distance_from_outline(world, b, link.offset) < most) {
           world.passing_at_ends.push_back({c, b});
         }
       }
-      for (int w = 0; index(w) < world.obstacles.size(); ++w) {
+      walls.list(link.offset - reach, link.offset + reach, near);
+      for (const int w : near) {
         const Obstacle& wall = at(world.obstacles, w);
         if (distance_from_line(wall.a, wall.b, link.offset) - wall.radius < most) {
           world.passing_at_ends.push_back({c, -1 - w});
@@ -272,21 +284,24 @@ void let_pass_at_ends(const Scene& scene, double allowed, World& world) {
 
 void find_tips(std::vector<Obstacle>& obstacles) {
   constexpr double near = 1e-9;  // of lengths
-  for (std::size_t w = 0; w < obstacles.size(); ++w) {
-    Obstacle& wall = obstacles[w];
+  BoxTree walls;
+  find_extents(obstacles, walls);
+  for (int w = 0; index(w) < obstacles.size(); ++w) {
+    Obstacle& wall = at(obstacles, w);
     if (wall.cable >= 0) continue;
+    const double length = (wall.b - wall.a).norm();
+    const Vec2 room = Vec2::Constant(near * length);
     for (const std::size_t end : {0U, 1U}) {
       const auto& nooks = wall.nooks[end];
       // Between walls on both sides nothing stands out.
       if (nooks[0].length > 0.0 && nooks[1].length > 0.0) continue;
       const Vec2& here = end == 0 ? wall.a : wall.b;
-      const bool repeats = std::any_of(
-          obstacles.begin(), obstacles.begin() + static_cast<std::ptrdiff_t>(w),
-          [&](const Obstacle& other) {
-            const double allowed = near * ((wall.b - wall.a).norm() + (other.b - other.a).norm());
-            return other.cable < 0 &&
-                   std::min((other.a - here).norm(), (other.b - here).norm()) <= allowed;
-          });
+      const bool repeats = walls.any(here - room, here + room, [&](int before) {
+        const Obstacle& other = at(obstacles, before);
+        const double allowed = near * (length + (other.b - other.a).norm());
+        return before < w && other.cable < 0 &&
+               std::min((other.a - here).norm(), (other.b - here).norm()) <= allowed;
+      });
       wall.tips[end] = repeats ? Tipped::of_another : Tipped::own;
     }
   }

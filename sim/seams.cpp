@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/at.h"
 #include "sim/lines.h"
 #include "sim/tangent.h"
 
@@ -57,14 +58,30 @@ bool is_held_in_nook(const Vec2& end, const Vec2& out, double length,
 
 }  // namespace
 
+void find_extents(const std::vector<Obstacle>& obstacles, BoxTree& tree) {
+  tree.clear();
+  for (int w = 0; index(w) < obstacles.size(); ++w) {
+    const Obstacle& wall = at(obstacles, w);
+    const Vec2 room = Vec2::Constant(wall.radius + near * (wall.b - wall.a).norm());
+    tree.add(wall.a.cwiseMin(wall.b) - room, wall.a.cwiseMax(wall.b) + room, w);
+  }
+  tree.build();
+}
+
 void join_walls(std::vector<Obstacle>& obstacles) {
+  BoxTree walls;
+  find_extents(obstacles, walls);
+  std::vector<int> beside;
   for (Obstacle& wall : obstacles) {
     const Vec2 d = wall.b - wall.a;
     for (const std::size_t end : {0U, 1U}) {
       const Vec2& here = end == 0 ? wall.a : wall.b;
+      const Vec2 room = Vec2::Constant(near * d.norm());
+      walls.list(here - room, here + room, beside);
       const Vec2 out = (end == 0 ? Vec2(-d) : d).normalized();
       std::array<double, 2> turned_most{-1.0, -1.0};
-      for (const Obstacle& other : obstacles) {
+      for (const int number : beside) {
+        const Obstacle& other = at(obstacles, number);
         if (&other == &wall) continue;
         const double allowed = near * (d.norm() + (other.b - other.a).norm());
         if (distance_from_line(other.a, other.b, here) > allowed) continue;

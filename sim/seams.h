@@ -3,9 +3,15 @@
 // Where walls meet. A corner of a polygon that lies in the nook between two is beyond the ends of
 // both by round-off, and would be beside neither: for what is in a nook both walls go on.
 
+#include <vector>
+
+#include "sim/box_tree.h"
 #include "sim/world.h"
 
 namespace pinchlab {
+
+/// Puts obstacles into the tree: as far as their surfaces reach, and what meets them by round-off.
+void find_extents(const std::vector<Obstacle>& obstacles, BoxTree& tree);
 
 /// Finds which walls meet which at their ends, or with an end between the other's: Obstacle::nooks.
 /// Ends meet what is nearer than a part in 1e9 of the two walls' lengths.

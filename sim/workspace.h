@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/box_tree.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/diagnostics.h"
 #include "sim/motion/neighbourhoods.h"
@@ -123,6 +124,7 @@ struct Workspace {
   std::vector<int> known_events;        // of them, before the trial; by begin_trial
 
   Neighbourhoods neighbourhoods;  // by advance
+  BoxTree surroundings;           // of nodes that come and go; by wants_other_nodes
   StepStart step_start;           // of a step that has been divided
   Instant before;                 // at the start of the step; with diagnostics, by step
   std::vector<double> speeds;     // m/s, of a part's bodies before an impact; by strike_and_hasten

@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "demos/scenes/build.h"
 #include "demos/scenes/library.h"
+#include "sim/nodes.h"
 #include "sim/step.h"
 
 namespace pinchlab::experiments {
@@ -85,6 +86,30 @@ Scene discs_on_spans(int count) {
   return scene;
 }
 
+/// Cables that hang over slabs, of as many nodes as they need, a disc beside each.
+Scene hanging_cables(int count) {
+  constexpr double span = 1.0, half_width = 0.005;  // m
+  Scene scene = discs_in_a_row("hanging-cables", count, [](int) { return span; });
+  for (int i = 0; i < count; ++i) {
+    const double x = disc_spacing * i;
+    scene.bodies[index(i)].kind = BodyKind::fixed_axle;
+    scene.cables.push_back(
+        build::cable(build::at(x, 0.0), {}, build::at(x + span, 0.0), half_width));
+    Cable& cable = scene.cables.back();
+    cable.name = "cable " + std::to_string(i);
+    cable.slack = 0.25;
+    cable.mass_per_metre = 0.8;
+    cable.nodes = 31;
+    cable.node_tolerance = 2e-3;
+    Wall slab;
+    slab.a = {x, -3.0 * span};
+    slab.b = {x + span, -3.0 * span};
+    scene.walls.push_back(slab);
+  }
+  spread_nodes(scene);
+  return scene;
+}
+
 Scene frictionless_chain(int pulleys) {
   Scene scene = chain_scene(pulleys);
   for (Body& body : scene.bodies) body.cable_friction = 0.0;
@@ -118,10 +143,12 @@ const std::vector<GrowingScene>& growing_scenes() {
       {"pulleys without friction under one cable, a step",
        {11, 33, 101, 331, 1001},
        frictionless_chain},
+      {"hanging cables whose nodes adapt, a step", {10, 100, 1000}, hanging_cables},
       {"swinging cables, `make_world`",
        {100, 1000, 10000},
        [](int n) { return disconnected_scene(n, n); },
        0},
+      {"hanging cables whose nodes adapt, `make_world`", {10, 100, 1000}, hanging_cables, 0},
       {"pinched stress scene, `make_world`",
        {20, 200, 2000},
        [](int n) { return stress_scene(n, pinched_spacing); },

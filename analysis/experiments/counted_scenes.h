@@ -28,7 +28,8 @@ struct GrowingScene {
 };
 
 /// Swinging cables, balls that bounce, discs that land on spans, discs on walls, pulleys without
-/// friction under one cable, and make_world of swinging cables and of the pinched stress scene.
+/// friction under one cable, hanging cables whose nodes adapt, and make_world of swinging cables,
+/// of those, and of the pinched stress scene.
 const std::vector<GrowingScene>& growing_scenes();
 
 /// `steps` steps of a scene of counted_scenes. False where there is none of that number.

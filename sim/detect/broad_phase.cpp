@@ -9,6 +9,7 @@
 #include "sim/lines.h"
 #include "sim/outline.h"
 #include "sim/pieces.h"
+#include "sim/seams.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -316,18 +317,15 @@ void list_near_pieces(const World& world, const Box& box, BroadPhase& broad) {
       if (overlap(box, other, 0) && overlap(box, other, 1)) broad.near_pieces.push_back(b);
     }
   }
-  for (int w = 0; index(w) < world.obstacles.size(); ++w) {
+  broad.walls.any(box.low, box.high, [&](int w) {
     const Obstacle& wall = at(world.obstacles, w);
-    for (const std::size_t end : {0U, 1U}) {
-      const Vec2& tip = end == 0 ? wall.a : wall.b;
-      if (wall.tips[end] != Tipped::own || !overlap(box, {tip, tip}, 0) ||
-          !overlap(box, {tip, tip}, 1)) {
-        continue;
-      }
-      broad.near_pieces.push_back(-1 - w);
-      break;
-    }
-  }
+    const auto is_near = [&](std::size_t end, const Vec2& tip) {
+      return wall.tips[end] == Tipped::own && overlap(box, {tip, tip}, 0) &&
+             overlap(box, {tip, tip}, 1);
+    };
+    if (is_near(0, wall.a) || is_near(1, wall.b)) broad.near_pieces.push_back(-1 - w);
+    return false;
+  });
 }
 
 /// Appends what is near and in a piece's way.
@@ -353,6 +351,7 @@ void list_pieces(const World& world, BroadPhase& broad) {
   broad.meets_pieces.clear();
   broad.no_nodes.clear();
   if (world.pieces_at.empty()) return;
+  find_extents(world.obstacles, broad.walls);
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
     broad.meets_pieces.push_back(meets_spans(at(world.bodies, b)));
     if (broad.meets_pieces.back()) broad.no_nodes.push_back(b);

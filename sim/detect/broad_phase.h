@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/at.h"
+#include "sim/box_tree.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -72,6 +73,7 @@ struct BroadPhase {
   std::vector<PiecePair> piece_pairs;  // sorted
   std::vector<PieceEnds> pieces;       // that are awake: while `boxes` are those of a world; by
                                        // list_pieces
+  BoxTree walls;                       // obstacles, where there are pieces; likewise
   std::vector<int> near_pieces;        // bodies and, as -1 - wall, walls: of find_piece_pairs
   std::vector<int> no_nodes;           // bodies that pieces may meet, likewise
   std::vector<char> meets_pieces;      // of each body, likewise

@@ -72,7 +72,8 @@ double off_line(const World& world, const NodeChain& chain) {
   return at(world.cables, chain.cable).half_width + chain.tolerance;
 }
 
-bool is_to_split(const Scene& scene, const World& world, const NodeChain& chain, int first) {
+bool is_to_split(const Scene& scene, const World& world, const BoxTree& near,
+                 const NodeChain& chain, int first) {
   const CableState& cable = piece(world, chain, first);
   if (cable.pieces < 2) return false;
   const Line line = line_of(cable);
@@ -80,11 +81,12 @@ bool is_to_split(const Scene& scene, const World& world, const NodeChain& chain,
   if (line.tension < -g * chain.mass_per_metre * chain.piece_length * line.pieces) return true;
   if (spread_of(world, line) > g * chain.tolerance) return true;
   return expected_sag(scene, world, chain, first, line) > chain.tolerance ||
-         is_near_something(scene, world, line, off_line(world, chain), 1.0);
+         is_near_something(scene, world, near, line, off_line(world, chain), 1.0);
 }
 
 /// Of the piece that begins at `first` and the next, as large, with which it may become one.
-bool is_to_merge(const Scene& scene, const World& world, const NodeChain& chain, int first) {
+bool is_to_merge(const Scene& scene, const World& world, const BoxTree& near,
+                 const NodeChain& chain, int first) {
   const CableState& one = piece(world, chain, first);
   const int count = one.pieces;
   if (first % (2 * count) != 0 || first + 2 * count > chain.pieces) return false;
@@ -112,7 +114,7 @@ bool is_to_merge(const Scene& scene, const World& world, const NodeChain& chain,
   if (bend + held_bend(world, chain, first) + held_bend(world, chain, first + count) >= most)
     return false;
   return !is_in_contact(world, node) &&
-         !is_near_something(scene, world, line, off_line(world, chain), 1.0 / hysteresis);
+         !is_near_something(scene, world, near, line, off_line(world, chain), 1.0 / hysteresis);
 }
 
 /// Hands mass (kg) of the velocity v to what holds an end, or with mass < 0 takes it from there.
@@ -196,6 +198,12 @@ bool adapts(const World& world, const Workspace& work, int cable) {
   return !at(world.cables, cable).finest.empty() && !is_idle(work.parts, index(cable));
 }
 
+bool any_adapts(const Scene& scene, const World& world, const Workspace& work) {
+  return std::ranges::any_of(scene.chains,
+                             [&](const NodeChain& chain) { return !is_still(chain, work); }) ||
+         std::ranges::any_of(world.strung, [&](int c) { return adapts(world, work, c); });
+}
+
 /// Lets out the bend of a piece towards where half of its tension would have it.
 void let_out(const Scene& scene, World& world, const NodeChain& chain, int first) {
   CableState& cable = at(world.cables, piece_of(chain, first));
@@ -212,24 +220,31 @@ void let_out(const Scene& scene, World& world, const NodeChain& chain, int first
 
 }  // namespace
 
-bool wants_other_nodes(const Scene& scene, const World& world, const Workspace& work) {
+bool wants_other_nodes(const Scene& scene, const World& world, Workspace& work) {
+  if (!any_adapts(scene, world, work)) return false;
+  find_surroundings(scene, world, work.surroundings);
+  const BoxTree& near = work.surroundings;
   for (const NodeChain& chain : scene.chains) {
     if (is_still(chain, work)) continue;
     for (int first = 0; first < chain.pieces; first += piece(world, chain, first).pieces) {
-      if (is_to_split(scene, world, chain, first) || is_to_merge(scene, world, chain, first))
+      if (is_to_split(scene, world, near, chain, first) ||
+          is_to_merge(scene, world, near, chain, first))
         return true;
     }
   }
   return std::ranges::any_of(world.strung, [&](int c) {
-    return adapts(world, work, c) && wants_other_nodes(scene, world, c);
+    return adapts(world, work, c) && wants_other_nodes(scene, world, near, c);
   });
 }
 
 void change_nodes(const Scene& scene, World& world, Workspace& work) {
+  // What others gain in speed by taking nodes over is allowed for in the next step.
+  find_surroundings(scene, world, work.surroundings);
+  const BoxTree& near = work.surroundings;
   for (const NodeChain& chain : scene.chains) {
     if (is_still(chain, work)) continue;
     for (int first = 0; first < chain.pieces;) {
-      if (is_to_split(scene, world, chain, first)) {
+      if (is_to_split(scene, world, near, chain, first)) {
         split(world, chain, first);
         ++world.diagnostics.node_changes;
       } else {
@@ -238,13 +253,14 @@ void change_nodes(const Scene& scene, World& world, Workspace& work) {
     }
     // What has just become two is not to become one: both limits are apart.
     for (int first = 0; first < chain.pieces; first += piece(world, chain, first).pieces) {
-      if (!is_to_merge(scene, world, chain, first)) continue;
+      if (!is_to_merge(scene, world, near, chain, first)) continue;
       merge(world, chain, first);
       ++world.diagnostics.node_changes;
     }
   }
   for (const int c : world.strung) {
-    if (adapts(world, work, c)) world.diagnostics.node_changes += change_nodes(scene, world, c);
+    if (adapts(world, work, c))
+      world.diagnostics.node_changes += change_nodes(scene, world, near, c);
   }
   if (!world.pieces_at.empty()) join_pieces(scene, world);
   work.broad_phase.boxes.clear();  // for bodies with other outlines

@@ -54,7 +54,7 @@ struct Workspace;
 
 /// Whether a chain, or a cable that runs over bodies (adapt_spans.h), is to get other pieces at the
 /// end of a step.
-bool wants_other_nodes(const Scene& scene, const World& world, const Workspace& work);
+bool wants_other_nodes(const Scene& scene, const World& world, Workspace& work);
 
 /// Gives them those pieces, the velocities being those of the positions' time. What the workspace
 /// knows of parts and pairs is then to be found anew, and velocities are to meet the new pieces.

@@ -53,19 +53,20 @@ double expected_sag(const CableState& cable, std::size_t first, std::size_t last
 }
 
 /// Of what moves and presses a line of nodes: whether more than `times` what is allowed.
-bool is_moved(const Scene& scene, const World& world, const CableState& cable, const Line& line,
-              double tolerance, double times) {
+bool is_moved(const Scene& scene, const World& world, const BoxTree& near, const CableState& cable,
+              const Line& line, double tolerance, double times) {
   return spread_of(world, line) > times * scene.gravity.norm() * tolerance ||
-         is_near_something(scene, world, line, cable.half_width + tolerance, 1.0 / times);
+         is_near_something(scene, world, near, line, cable.half_width + tolerance, 1.0 / times);
 }
 
-bool is_to_split(const Scene& scene, const World& world, int number, std::size_t segment) {
+bool is_to_split(const Scene& scene, const World& world, const BoxTree& near, int number,
+                 std::size_t segment) {
   const CableState& cable = at(world.cables, number);
   if (!is_held(cable, segment)) return false;
   const double tolerance = at(scene.cables, number).node_tolerance;
   const Line line = line_between(cable, segment, segment);
   return !(line.tension > 0.0) || expected_sag(cable, segment, segment, line) > tolerance ||
-         is_moved(scene, world, cable, line, tolerance, 1.0);
+         is_moved(scene, world, near, cable, line, tolerance, 1.0);
 }
 
 /// N, of the bend that a segment may hold on its head; on its tail the opposite.
@@ -75,7 +76,8 @@ Vec2 bend_pull(const Scene& scene, const CableState& cable, std::size_t segment)
 }
 
 /// Of the segments on either side of a link.
-bool is_to_merge(const Scene& scene, const World& world, int number, std::size_t segment) {
+bool is_to_merge(const Scene& scene, const World& world, const BoxTree& near, int number,
+                 std::size_t segment) {
   const CableState& cable = at(world.cables, number);
   const std::size_t next = segment + 1;
   if (!is_between_nodes(cable, segment) || !is_between_nodes(cable, next)) return false;
@@ -98,24 +100,26 @@ bool is_to_merge(const Scene& scene, const World& world, int number, std::size_t
   const double swing = swing_of(mass, at(world.velocity, node) - there, pull, line,
                                 cable.segments[segment], cable.segments[next]);
   if (swing >= most * scene.gravity.norm()) return false;
-  return !is_moved(scene, world, cable, line, tolerance, hysteresis) && !is_in_contact(world, node);
+  return !is_moved(scene, world, near, cable, line, tolerance, hysteresis) &&
+         !is_in_contact(world, node);
 }
 
 }  // namespace
 
-bool wants_other_nodes(const Scene& scene, const World& world, int number) {
+bool wants_other_nodes(const Scene& scene, const World& world, const BoxTree& near, int number) {
   const CableState& cable = at(world.cables, number);
   for (std::size_t s = 1; s < cable.segments.size(); ++s) {
-    if (is_to_split(scene, world, number, s) || is_to_merge(scene, world, number, s)) return true;
+    if (is_to_split(scene, world, near, number, s) || is_to_merge(scene, world, near, number, s))
+      return true;
   }
   return false;
 }
 
-int change_nodes(const Scene& scene, World& world, int number) {
+int change_nodes(const Scene& scene, World& world, const BoxTree& near, int number) {
   CableState& cable = at(world.cables, number);
   int changes = 0;
   for (std::size_t s = 1; s < cable.segments.size();) {
-    if (!is_to_split(scene, world, number, s)) {
+    if (!is_to_split(scene, world, near, number, s)) {
       ++s;
       continue;
     }
@@ -125,7 +129,7 @@ int change_nodes(const Scene& scene, World& world, int number) {
   // What has just become two is not to become one: both limits are apart. One of every two nodes
   // goes at most, so that pieces grow alike.
   for (std::size_t s = 1; s < cable.segments.size(); ++s) {
-    if (!is_to_merge(scene, world, number, s)) continue;
+    if (!is_to_merge(scene, world, near, number, s)) continue;
     merge_at_node(world, cable, static_cast<int>(s));
     ++changes;
   }

@@ -9,11 +9,13 @@
 
 namespace pinchlab {
 
+class BoxTree;
+
 /// Whether the cable is to get other nodes at the end of a step.
-bool wants_other_nodes(const Scene& scene, const World& world, int cable);
+bool wants_other_nodes(const Scene& scene, const World& world, const BoxTree& near, int cable);
 
 /// Gives it these, the velocities being those of the positions' time. How many have come and gone.
-int change_nodes(const Scene& scene, World& world, int cable);
+int change_nodes(const Scene& scene, World& world, const BoxTree& near, int cable);
 
 /// Lets out bends that tension straightens.
 void let_out_spans(const Scene& scene, World& world, int cable);

@@ -21,6 +21,12 @@ bool passes(const World& world, const Line& line, int body) {
   return std::ranges::any_of(line.passes, [&](int b) { return b == body || b == mover; });
 }
 
+/// m, by which a body may move in two steps.
+double motion_of(const Scene& scene, const World& world, std::size_t body) {
+  const double h = world.step_length;
+  return 2.0 * h * (world.velocity[body].norm() + h * scene.gravity.norm());
+}
+
 }  // namespace
 
 double curvature(const Line& line, const Segment& other) {
@@ -29,8 +35,23 @@ double curvature(const Line& line, const Segment& other) {
   return 2.0 * angle / (line.length + other.length);
 }
 
-bool is_near_something(const Scene& scene, const World& world, const Line& line, double off,
-                       double times) {
+void find_surroundings(const Scene& scene, const World& world, BoxTree& near) {
+  near.clear();
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const BodyProperties& body = world.bodies[b];
+    if (body.node || !body.outlined) continue;
+    const Vec2 reach = Vec2::Constant(body.radius + motion_of(scene, world, b) / hysteresis);
+    near.add(world.position[b] - reach, world.position[b] + reach, static_cast<int>(b));
+  }
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const Wall& wall = scene.walls[w];
+    near.add(wall.a.cwiseMin(wall.b), wall.a.cwiseMax(wall.b), -1 - static_cast<int>(w));
+  }
+  near.build();
+}
+
+bool is_near_something(const Scene& scene, const World& world, const BoxTree& near,
+                       const Line& line, double off, double times) {
   const Vec2 start = link_centre(world, line.from);
   const Vec2 end = link_centre(world, line.to);
   const double h = world.step_length;
@@ -38,16 +59,18 @@ bool is_near_something(const Scene& scene, const World& world, const Line& line,
       std::max(end_velocity(world, line.from).norm(), end_velocity(world, line.to).norm()) +
       h * scene.gravity.norm();
   const double own = off + 2.0 * h * speed;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const BodyProperties& body = world.bodies[b];
-    if (body.node || !body.outlined || passes(world, line, static_cast<int>(b))) continue;
-    const double reach = own + 2.0 * h * (world.velocity[b].norm() + h * scene.gravity.norm());
-    if (distance_from_line(start, end, world.position[b]) < body.radius + times * reach)
-      return true;
-  }
-  return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall& wall) {
-    return distance_between_lines(start, end, wall.a, wall.b) < times * own;
-  });
+  const auto meets = [&](int number) {
+    if (number < 0) {
+      const Wall& wall = at(scene.walls, -1 - number);
+      return distance_between_lines(start, end, wall.a, wall.b) < times * own;
+    }
+    if (passes(world, line, number)) return false;
+    const double reach = own + motion_of(scene, world, index(number));
+    return distance_from_line(start, end, at(world.position, number)) <
+           at(world.bodies, number).radius + times * reach;
+  };
+  const Vec2 room = Vec2::Constant(times * own);
+  return near.any(start.cwiseMin(end) - room, start.cwiseMax(end) + room, meets);
 }
 
 double spread_of(const World& world, const Line& line) {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "sim/box_tree.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -26,10 +27,14 @@ struct Line {
 /// 1/m, as a line and the piece before or after it tell.
 double curvature(const Line& line, const Segment& other);
 
-/// Whether a body or wall is no further from the line than `times` what both may move in two steps,
-/// with what the cable may be off it (m).
-bool is_near_something(const Scene& scene, const World& world, const Line& line, double off,
-                       double times);
+/// What lines may come near: bodies but nodes, each with the room that its own motion asks for,
+/// and, as -1 - wall, walls.
+void find_surroundings(const Scene& scene, const World& world, BoxTree& near);
+
+/// Whether a body or wall is no further from the line than `times` (at most 1 / hysteresis) what
+/// both may move in two steps, with what the cable may be off it (m).
+bool is_near_something(const Scene& scene, const World& world, const BoxTree& near,
+                       const Line& line, double off, double times);
 
 /// J/kg, |v_b - v_a|^2 / 8.
 double spread_of(const World& world, const Line& line);

@@ -12,6 +12,7 @@
 #include "sim/cable/held_spans.h"
 #include "sim/cable/mass.h"
 #include "sim/diagnostics.h"
+#include "sim/motion/piece_line.h"
 #include "sim/nodes.h"
 #include "sim/scene_error.h"
 #include "sim/tangent.h"
@@ -122,8 +123,10 @@ TEST(AdaptSpans, EachChangeKeepsWhatItMust) {
     other.cables[0].node_tolerance = i % 3 == 2 ? 1e-3 : 0.05 * (1 + i % 4);
     const Whole before = measure(other, world);
     const int nodes = live_nodes(world);
-    const bool wants = wants_other_nodes(other, world, 0);
-    const int changes = change_nodes(other, world, 0);
+    BoxTree near;
+    find_surroundings(other, world, near);
+    const bool wants = wants_other_nodes(other, world, near, 0);
+    const int changes = change_nodes(other, world, near, 0);
     EXPECT_EQ(wants, changes > 0);
     if (changes == 0) continue;
     (live_nodes(world) > nodes ? splits : merges) += 1;
