@@ -251,14 +251,18 @@ void find_turns(const World& world, Workspace& work, int number, double length) 
 }  // namespace
 
 void note_sliding(const World& world, Part& part, Workspace& work) {
-  part.slid = part.may_turn = false;
+  const std::span<Slip> slips = work.start.contact_slip;
+  const std::span<char> touching = work.start.touching;
+  bool slid = false, may_turn = false;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
-    at(work.start.contact_slip, c) = contact.slip;
-    at(work.start.touching, c) = contact.touching ? 1 : 0;
-    part.slid = part.slid || contact.slip != Slip::stick;
-    part.may_turn = part.may_turn || !is_of_discs(contact);
+    slips[index(c)] = contact.slip;
+    touching[index(c)] = contact.touching ? 1 : 0;
+    slid = slid || contact.slip != Slip::stick;
+    may_turn = may_turn || !is_of_discs(contact);
   }
+  part.slid = slid;
+  part.may_turn = may_turn;
 }
 
 void find_jumps(const Scene& scene, const World& world, Workspace& work, int number,
