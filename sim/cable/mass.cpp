@@ -27,7 +27,8 @@ Vec2 centre_of(const World& world, const Link& link) {
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
 
-/// A span at a drum that fills, or between that and the cable's end on it, where nothing moves.
+/// Of a span that leaves a drum which fills; or lies between that and the cable's end on it, where
+/// nothing moves.
 void let_fill(const Link& from, const Link& to, MassedSpan& span) {
   if (wound_end(from, to)) {
     if (from.layers.way != 0 || to.layers.way != 0) span.p_a = span.p_b = 0.0;
@@ -36,7 +37,8 @@ void let_fill(const Link& from, const Link& to, MassedSpan& span) {
   if (from.layers.way > 0) span.slope_a = from.layers.growth;
   if (to.layers.way < 0) span.slope_b = -to.layers.growth;
   if (span.pinched) return;
-  // A span shorter than that has no room for a turn more or less (lay_outermost_turn).
+  // The first has no bound on a span as short as the slope, w / pi, which has no room for a turn
+  // more or less (lay_outermost_turn).
   span.distance = std::max(span.distance + span.slope_b - span.slope_a, 0.5 * span.distance);
 }
 
