@@ -229,7 +229,6 @@ void update_rolled_cable(const World& world, CableState& cable) {
   cable.overfull = false;
   if (!stands) cable.unwound = false;
   const std::size_t count = cable.links.size();
-  const bool holds = cable.density > 0.0;  // by the line of the cache that is at hand
   double left_before = 0.0;  // m, material coordinate where the cable leaves the link before
   double first = 0.0;        // where it meets the first
   double arrives = cable.segments[0].alpha;
@@ -245,7 +244,7 @@ void update_rolled_cable(const World& world, CableState& cable) {
       first = met;
     } else {
       segment.rest_length = met - left_before;
-      if (holds && is_held(cable, i)) segment.rest_length -= held_at(cable, i).spare;
+      if (is_held(cable, i)) segment.rest_length -= held_at(cable, i).spare;
       inspect(cable, segment, rounding, sum);
     }
     left_before = link.material + radius * (leaves - angle);

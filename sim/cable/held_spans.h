@@ -21,8 +21,10 @@ inline int first_piece(const CableState& cable, std::size_t segment) {
   return cable.links[segment - 1].body - cable.first_node + 1;
 }
 
-/// Whether a segment holds nodes.
+/// Whether a segment holds nodes. Those of cables without mass do not, as a line of the cache tells
+/// that every step reads.
 inline bool is_held(const CableState& cable, std::size_t segment) {
+  if (cable.density == 0.0) return false;
   if (cable.finest.empty() || segment == 0 || !is_strung(cable, cable.links[segment - 1]))
     return false;
   return at(cable.finest, first_piece(cable, segment)).pieces > 1;

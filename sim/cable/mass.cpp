@@ -123,11 +123,6 @@ double turning_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v
   return (left(span.direction).dot(d) + filling) / span.distance;
 }
 
-/// rad/s by which the direction turns on the body, where p changes by that.
-double winding(double slope, const Vector3d& velocity, double turning) {
-  return slope != 0.0 ? turning - velocity.z() : 0.0;
-}
-
 void add(std::span<Eigen::Matrix3d> to, const MassedSpan& span) {
   const double mass = end_mass(span);
   add_moments(at(to, span.a), mass, mass * span.z_a, mass * span.z_a.squaredNorm());
@@ -143,24 +138,29 @@ double growth_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_
   return 0.5 * span.density * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));
 }
 
-/// What a span's end is made of.
+/// One of a span's ends.
 struct SpanEnd {
   const Vec2& z;
   const Vec2& centre;
   double p, slope;
 };
+SpanEnd end_a(const MassedSpan& span) {
+  return {span.z_a, span.centre_a, span.p_a, span.slope_a};
+}
+SpanEnd end_b(const MassedSpan& span) {
+  return {span.z_b, span.centre_b, span.p_b, span.slope_b};
+}
 
 /// dz/dt of an end that turns with the body about the circle's centre (m/s).
 Vec2 shift_of(const SpanEnd& end, const Vector3d& velocity, double turning, const Vec2& e) {
   const Vec2 shift = -velocity.z() * end.centre + end.p * turning * left(e);
-  return shift + end.slope * winding(end.slope, velocity, turning) * e;
+  return shift + end.slope * (turning - velocity.z()) * e;
 }
 
 /// kg/s on either rim: by the span's turning, and on a drum that fills by its own.
 double gain_of_rim(const MassedSpan& span, const SpanEnd& end, const Vector3d& velocity,
                    double turning) {
-  return span.density * end.p *
-         (end.slope != 0.0 ? winding(end.slope, velocity, turning) : turning);
+  return span.density * end.p * (end.slope != 0.0 ? turning - velocity.z() : turning);
 }
 
 void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d& v_a,
@@ -180,8 +180,7 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
         on_body((growth + gains) * u, at_end.z) + mass * velocity.z() * on_body(shift, at_end.z);
     force.z() -= mass * turning * (at_end.p * n + at_end.slope * span.direction).dot(u);
   };
-  const SpanEnd at_a{span.z_a, span.centre_a, span.p_a, span.slope_a};
-  const SpanEnd at_b{span.z_b, span.centre_b, span.p_b, span.slope_b};
+  const SpanEnd at_a = end_a(span), at_b = end_b(span);
   end(at_a, v_a, u_a, gain_of_rim(span, at_a, v_a, turning), f_a);
   end(at_b, v_b, u_b, -gain_of_rim(span, at_b, v_b, turning), f_b);
 
@@ -353,8 +352,7 @@ void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double fac
       rate += on_body((growth + gains) * g, at_end.z);
       rate.z() += mass * g.dot(shift_of(at_end, velocity, turning, span.direction));
     };
-    const SpanEnd at_a{span.z_a, span.centre_a, span.p_a, span.slope_a};
-    const SpanEnd at_b{span.z_b, span.centre_b, span.p_b, span.slope_b};
+    const SpanEnd at_a = end_a(span), at_b = end_b(span);
     end(at_a, v_a, gain_of_rim(span, at_a, v_a, turning), at(to, span.a));
     end(at_b, v_b, -gain_of_rim(span, at_b, v_b, turning), at(to, span.b));
   }

@@ -256,8 +256,8 @@ void note_sliding(const World& world, Part& part, Workspace& work) {
   bool slid = false, may_turn = false;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
-    slips[index(c)] = contact.slip;
-    touching[index(c)] = contact.touching ? 1 : 0;
+    at(slips, c) = contact.slip;
+    at(touching, c) = contact.touching ? 1 : 0;
     slid = slid || contact.slip != Slip::stick;
     may_turn = may_turn || !is_of_discs(contact);
   }

@@ -422,9 +422,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
     // would feed back as speed: there they only pull.
     const bool is_rod = cable.rod && (exact || cable.joint != Joint::none);
-    if (is_rod || (cable.density > 0.0 && is_held(cable, index(row.item)))) {
-      hold_both_ways(interval, row);
-    }
+    if (is_rod || is_held(cable, index(row.item))) hold_both_ways(interval, row);
     if (cable.elastic && !segment.pinched && !part.may_slide) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
