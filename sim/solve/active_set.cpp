@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/at.h"
+#include "sim/solve/complementary.h"
 #include "sim/solve/dual_active_set.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/ordering.h"
@@ -126,10 +127,6 @@ void check(const PartSystem& s, SolveScratch& set) {
       }
     }
   }
-}
-
-bool is_unilateral(const Row& row) {
-  return (row.kind == RowKind::segment && !row.clamped) || row.kind == RowKind::normal;
 }
 
 /// Whether the solution's negative impulses are round-off: whether, with zero in their place, every
@@ -316,6 +313,25 @@ bool solve_for_rows(PartSystem& s, SolveScratch& set) {
   return true;
 }
 
+/// Bounds friction anew for the states that there are; whether all of it stays as it was.
+bool bounds_stand(PartSystem& s, SolveScratch& set) {
+  std::vector<double>& before = set.bounds;
+  const auto list = [&s](auto take) {
+    for (const Friction& friction : s.frictions) {
+      take(at(s.rows, friction.row).on ? friction.bound : -1.0);
+    }
+    for (const int r : s.pressed) take(at(s.rows, r).clamped ? 1.0 : 0.0);
+  };
+  before.clear();
+  list([&before](double bound) { before.push_back(bound); });
+  bound_friction(s, set);
+  clamp_pinches(s);
+  std::size_t k = 0;
+  bool same = true;
+  list([&](double bound) { same = same && bound == before[k++]; });
+  return same;
+}
+
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time. Remedies come in
@@ -324,6 +340,8 @@ bool settle(PartSystem& s, SolveScratch& set) {
   // at a time and settle before the next.
   constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
                 before_dropping = 80, most_solves = 150;
+  constexpr int most_bounds = 6;  // of friction, that solutions for all states change
+  int bounds_tried = 0;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
   std::size_t fewest = all;
   int left = patience;
@@ -344,7 +362,16 @@ bool settle(PartSystem& s, SolveScratch& set) {
     clamp_pinches(s);
     if (!s.sleeves.empty()) drop_rubbing(s);
     set.solves = solves;
-    if (solves <= before_dual || !solve_for_rows(s, set)) {
+    const bool circles = solves > before_dual;
+    if (!circles || !solve_for_rows(s, set)) {
+      if (circles && bounds_tried < most_bounds) {
+        ++bounds_tried;
+        if (solve_complementary(s, set)) {
+          if (bounds_stand(s, set)) return true;
+          continue;
+        }
+        bounds_tried = most_bounds;
+      }
       set.by_dual = false;
       solve_for_states(s, set);
       check(s, set);

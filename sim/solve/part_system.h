@@ -301,6 +301,11 @@ struct PartSystem {
   double tolerance() const { return 0.1 * reach; }
 };
 
+/// Whether the row pulls, or pushes, and never both.
+inline bool is_unilateral(const Row& row) {
+  return (row.kind == RowKind::segment && !row.clamped) || row.kind == RowKind::normal;
+}
+
 inline bool is_friction(const Row& row) {
   return row.friction >= 0;
 }

@@ -3,10 +3,12 @@
 // Storage of the direct solve, for the part being solved. Nothing of it outlives the solve.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "sim/solve/capstan.h"
 #include "sim/solve/dual_active_set.h"
+#include "sim/solve/lemke.h"
 #include "sim/solve/profile_lu.h"
 #include "sim/solve/terms.h"
 
@@ -39,6 +41,31 @@ struct OrderScratch {
   Lists<int> rows_of_body;                 // that mobile bodies couple
   std::vector<int> fill;                   // cursor of rows_of_body while it is made
   std::vector<int> row_stamp, body_stamp;  // of each, the last search that has come to it
+};
+
+/// What an unknown of solve_complementary is, or the sliding speed that it is.
+enum class Unknown : std::int8_t {
+  unilateral,        // an impulse, of a segment or a normal
+  either,            // of what bears force both ways
+  friction,          // bounded, along its row; the next two follow
+  friction_against,  // likewise, against it
+  sliding,           // m/s, one way or the other
+  forward,           // m/s, of a run; the next follows
+  backward,
+};
+
+/// Storage of solve_complementary, which writes all of it.
+struct ComplementaryScratch {
+  Complementarity problem;
+  std::vector<Unknown> kinds;
+  std::vector<double> units;       // u of each unknown: complementary.cpp,
+  double impulse_unit = 1.0;       // and g
+  std::vector<int> column_of_row;  // its first unknown, or -1
+  std::vector<char> beside_run;    // rows: a run that may slide is
+  std::vector<int> rows, runs;     // that take part
+  std::vector<int> column_of_run;  // its first unknown, or -1
+  std::vector<double> w;           // of each unknown
+  std::vector<Term> limit;
 };
 
 struct SolveScratch {
@@ -84,6 +111,8 @@ struct SolveScratch {
   std::vector<Flip> flips;    // by the checks after each solve: check, check_runs, check_rubbing
   OrderScratch ordering;
   DualScratch dual;
+  ComplementaryScratch complementary;
+  std::vector<double> bounds;  // of frictions, before they are made anew; by bounds_stand
 };
 
 }  // namespace pinchlab

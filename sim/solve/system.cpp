@@ -383,6 +383,12 @@ void correct_solution(PartSystem& s, SolveScratch& set) {
   refine_symmetric(s, set, 1);
 }
 
+void express_states(PartSystem& s, SolveScratch& set) {
+  if (!set.capstan.runs.empty()) make_groups(s, set);
+  number_unknowns(s, set);
+  if (!set.symmetric) express(s, set);
+}
+
 void solve_for_states(PartSystem& s, SolveScratch& set) {
   set.direct = set.contradicts = false;
   set.suspicious = true;

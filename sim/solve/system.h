@@ -22,6 +22,10 @@ void solve_for_states(PartSystem& system, SolveScratch& scratch);
 /// but for round-off of that change.
 void correct_solution(PartSystem& system, SolveScratch& scratch);
 
+/// Numbers the unknowns of such a system and lists its groups and equations, of states whose
+/// solution is known.
+void express_states(PartSystem& system, SolveScratch& scratch);
+
 /// Velocities of the part's bodies = free velocities + what the rows' impulses do.
 void apply_impulses(PartSystem& system);
 

@@ -181,7 +181,7 @@ TEST(RandomScenes, FallBackRarely) {
     fallbacks += world.diagnostics.fallbacks;
   }
   RecordProperty("fallbacks", std::to_string(fallbacks));
-  EXPECT_LT(static_cast<double>(fallbacks), 0.005 * static_cast<double>(steps)) << fallbacks;
+  EXPECT_LT(static_cast<double>(fallbacks), 0.0005 * static_cast<double>(steps)) << fallbacks;
 }
 
 // Friction has no such guarantee, of cables or of bodies: its states may cycle.

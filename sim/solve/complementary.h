@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+// All states of a part at once, where guesses of them go round in circles.
+//
+// In the plane Coulomb's law and the capstan's are linear complementarity conditions, and so are
+// those of what pulls or pushes. With impulses p, w = J v + bias of the rows, and sliding speeds
+// sigma = sigma+ - sigma-, all of them >= 0 and each pair's product 0:
+//     p                      and  w   of segments and normals; of the segment before a run
+//                                 w - sigma, of that after it w + sigma, of what presses w + sigma
+//     beta+, beta-           and  lambda + w, lambda - w,    p = beta+ - beta- of friction,
+//     lambda                 and  mu N - beta+ - beta-
+//     sigma+                 and  limit+ - T_out,            a run's, T_out the impulse after it,
+//     sigma-                 and  T_out - limit-,            limits by passages from that before
+// with limit+ = k T_in + mu N - p_middle and so on (capstan.h). For z >= 0 the matrix has
+//     z' M z = p' J M^-1 J' p + lambda mu N + sigma+ (k - 1) T_in + ...  >= 0
+// where no middle body that rubs comes before an arc: it is copositive, and Lemke's method finds a
+// solution if velocities are that all conditions allow (lemke.h).
+
+namespace pinchlab {
+
+struct PartSystem;
+struct SolveScratch;
+
+/// Finds a solution: impulses, velocities, states and sliding speeds. Whether there is one; its
+/// conditions hold to within the part's reach in a step. Where round-off of positions contradicts
+/// itself it is left as it is (the rows' biases are without it then). What bears force both ways,
+/// or is without a bound, does so if it is on, as it is now.
+bool solve_complementary(PartSystem& system, SolveScratch& scratch);
+
+}  // namespace pinchlab

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lemke's method by itself: its conditions on problems that have a solution, and those that have
+// none.
+
+#include "sim/solve/lemke.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "tests/sim/random.h"
+
+namespace pinchlab::testing {
+namespace {
+
+Complementarity problem_of(const Eigen::MatrixXd& m, const Eigen::VectorXd& q) {
+  Complementarity problem;
+  problem.begin(static_cast<int>(q.size()));
+  for (int i = 0; i < problem.size; ++i) {
+    at(problem.q, i) = q(i);
+    for (int k = 0; k < problem.size; ++k) problem.entry(i, k) = m(i, k);
+  }
+  return problem;
+}
+
+/// By how much a solution misses its conditions at most, over the largest of its numbers.
+double missing(const Complementarity& problem, const Eigen::MatrixXd& m, const Eigen::VectorXd& q) {
+  const auto z = Eigen::Map<const Eigen::VectorXd>(problem.z.data(), problem.size);
+  const Eigen::VectorXd w = m * z + q;
+  const double size =
+      std::max({1.0, z.cwiseAbs().maxCoeff(), (m.cwiseAbs() * z.cwiseAbs()).maxCoeff()});
+  double worst = 0.0;
+  for (int i = 0; i < problem.size; ++i) {
+    const bool either = at(problem.either, i) != 0;
+    worst = std::max(worst, either ? std::abs(w(i)) : -w(i));
+    if (!either) worst = std::max({worst, -z(i), std::min(std::abs(z(i)), std::abs(w(i)))});
+  }
+  return worst / size;
+}
+
+Eigen::MatrixXd random_matrix(Random& random, int rows, int columns) {
+  Eigen::MatrixXd m(rows, columns);
+  for (int i = 0; i < rows; ++i) {
+    for (int k = 0; k < columns; ++k) m(i, k) = random.uniform(-1.0, 1.0);
+  }
+  return m;
+}
+
+TEST(Lemke, SolvesWhatIsPositiveDefinite) {
+  Random random(1);
+  for (int trial = 0; trial < 500; ++trial) {
+    const int n = 1 + random.below(12);
+    const Eigen::MatrixXd j = random_matrix(random, n, n + 2);
+    const Eigen::MatrixXd m = j * j.transpose();
+    const Eigen::VectorXd q = random_matrix(random, n, 1);
+    Complementarity problem = problem_of(m, q);
+    for (int i = 0; i < n; ++i) at(problem.either, i) = random.below(4) == 0;
+    ASSERT_TRUE(solve_complementarity(problem)) << trial;
+    EXPECT_LT(missing(problem, m, q), 1e-9) << trial;
+  }
+}
+
+// Contacts with friction and runs with a capstan's law on directions that may repeat one another:
+// copositive. Velocities that may stop solve them.
+TEST(Lemke, SolvesFriction) {
+  Random random(2);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const int contacts = 1 + random.below(4), spans = random.below(5);
+    const int n = 4 * contacts + spans + 2 * std::max(spans - 1, 0);
+    const int movements = 1 + random.below(8);  // fewer than rows: they repeat one another
+    const Eigen::MatrixXd j = random_matrix(random, 2 * contacts + spans, movements);
+    const Eigen::VectorXd free = random_matrix(random, movements, 1);
+    // Of each row's impulse its unknowns, with their signs.
+    Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(2 * contacts + spans, n);
+    Eigen::MatrixXd laws = Eigen::MatrixXd::Zero(n, n);
+    for (int c = 0; c < contacts; ++c) {
+      const int normal = 4 * c, along = 4 * c + 1, against = 4 * c + 2, sliding = 4 * c + 3;
+      shares(2 * c, normal) = shares(2 * c + 1, along) = 1.0;
+      shares(2 * c + 1, against) = -1.0;
+      laws(along, sliding) = laws(against, sliding) = 1.0;
+      laws(sliding, along) = laws(sliding, against) = -1.0;
+      laws(sliding, normal) = random.uniform(0.0, 1.5);
+    }
+    const int first = 4 * contacts;
+    for (int k = 0; k < spans; ++k) shares(2 * contacts + k, first + k) = 1.0;
+    for (int k = 0; k + 1 < spans; ++k) {
+      const int in = first + k, out = in + 1, forward = first + spans + 2 * k;
+      const int backward = forward + 1;
+      const double factor = random.below(3) == 0 ? 1.0 : random.uniform(1.0, 5.0);
+      laws(in, forward) = laws(out, backward) = -1.0;
+      laws(out, forward) = laws(in, backward) = 1.0;
+      laws(forward, in) = factor;
+      laws(forward, out) = laws(backward, in) = -1.0;
+      laws(backward, out) = 1.0;
+      laws(backward, in) = -1.0 / factor;
+    }
+    const Eigen::MatrixXd m = shares.transpose() * j * j.transpose() * shares + laws;
+    const Eigen::VectorXd q = shares.transpose() * j * free;
+    Complementarity problem = problem_of(m, q);
+    ASSERT_TRUE(solve_complementarity(problem)) << trial;
+    EXPECT_LT(missing(problem, m, q), 1e-9) << trial;
+  }
+}
+
+// Numbers of few kinds, so that nearly every choice of a pivot is a tie.
+TEST(Lemke, DoesNotCircleWhereAllTies) {
+  Random random(3);
+  for (int trial = 0; trial < 500; ++trial) {
+    const int n = 2 + random.below(9);
+    Eigen::MatrixXd j(n, 3);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < 3; ++k) j(i, k) = random.below(3) - 1;
+    }
+    Eigen::VectorXd free(3);
+    for (int k = 0; k < 3; ++k) free(k) = random.below(3) - 1;
+    const Eigen::MatrixXd m = j * j.transpose();
+    const Eigen::VectorXd q = j * free;
+    Complementarity problem = problem_of(m, q);
+    ASSERT_TRUE(solve_complementarity(problem)) << trial;
+    EXPECT_LT(missing(problem, m, q), 1e-12) << trial;
+  }
+}
+
+TEST(Lemke, TellsThatThereIsNoSolution) {
+  Complementarity immovable = problem_of(Eigen::MatrixXd::Zero(1, 1), Eigen::VectorXd{{-1.0}});
+  EXPECT_FALSE(solve_complementarity(immovable));
+  // Two rows that ask for opposite ways of one body.
+  Complementarity squeezed =
+      problem_of(Eigen::MatrixXd{{1.0, -1.0}, {-1.0, 1.0}}, Eigen::VectorXd{{-1.0, -1.0}});
+  EXPECT_FALSE(solve_complementarity(squeezed));
+  // No further than by round-off of what they ask for.
+  squeezed.round_off = 1.0;
+  EXPECT_TRUE(solve_complementarity(squeezed));
+}
+
+TEST(Lemke, CorrectsWhatASolutionMisses) {
+  Random random(4);
+  const Eigen::MatrixXd j = random_matrix(random, 6, 6);
+  const Eigen::MatrixXd m = j * j.transpose();
+  const Eigen::VectorXd q = -Eigen::VectorXd::Ones(6);
+  Complementarity problem = problem_of(m, q);
+  ASSERT_TRUE(solve_complementarity(problem));
+  const std::vector<double> solution = problem.z;
+  for (std::size_t i = 0; i < solution.size(); ++i) {
+    if (problem.bears[i] != 0) problem.z[i] += random.uniform(-0.1, 0.1);
+  }
+  const Eigen::VectorXd w =
+      m * Eigen::Map<const Eigen::VectorXd>(problem.z.data(), problem.size) + q;
+  std::vector<double> misses(6, 0.0);
+  for (int i = 0; i < 6; ++i) {
+    if (at(problem.bears, i) != 0) at(misses, i) = w(i);
+  }
+  correct(misses, problem);
+  for (std::size_t i = 0; i < solution.size(); ++i) {
+    EXPECT_NEAR(problem.z[i], solution[i], 1e-12) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab::testing
