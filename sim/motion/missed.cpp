@@ -14,9 +14,9 @@ namespace pinchlab {
 
 namespace {
 
-// Of a part's extent, some units in its last place. In an interval that is short it would become a
+// Of a part's extent, two units in its last place. In an interval that is short it would become a
 // speed that lets cable slide.
-constexpr double position_rounding = 1e-15;
+constexpr double position_rounding = 5e-16;
 
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;

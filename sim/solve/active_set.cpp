@@ -332,6 +332,17 @@ bool bounds_stand(PartSystem& s, SolveScratch& set) {
   return same;
 }
 
+/// Lets sleeves bear friction that did not, where the solution presses them; whether there are any.
+bool presses_others(PartSystem& s, SolveScratch& set) {
+  set.flips.clear();
+  if (s.sleeves.empty()) return false;
+  const Tolerances least = tolerances(s, set);
+  check_rubbing(s, set, std::max(least.speed, s.reach / set.step_length), least.impulse);
+  std::erase_if(set.flips, [&s](const Flip& flip) { return at(s.rows, flip.row).on; });
+  for (const Flip& flip : set.flips) apply(s, set, flip);
+  return !set.flips.empty();
+}
+
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time. Remedies come in
@@ -367,7 +378,8 @@ bool settle(PartSystem& s, SolveScratch& set) {
       if (circles && bounds_tried < most_bounds) {
         ++bounds_tried;
         if (solve_complementary(s, set)) {
-          if (bounds_stand(s, set)) return true;
+          const bool stand = bounds_stand(s, set);
+          if (!presses_others(s, set) && stand) return true;
           continue;
         }
         bounds_tried = most_bounds;

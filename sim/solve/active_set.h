@@ -21,9 +21,10 @@ struct SolveScratch;
 /// one in a fixed, irregular order. Where a slack cable is pulled tight, segments near those that
 /// get taut are made taut ahead of their turn, and where bodies in touch are struck, contacts that
 /// the blow runs through bear force ahead of theirs. What negative impulses round-off has made is
-/// no contradiction. If friction makes the states cycle, they are sought once more from where
-/// nothing slides, and if they cycle again what has flipped sticks for the rest of the step;
-/// projected sweeps are the last resort.
+/// no contradiction. If friction makes the states cycle, all of them are found at once
+/// (complementary.h). Where there is no solution, or too much for that, they are sought once more
+/// from where nothing slides, and if they cycle again what has flipped sticks for the rest of the
+/// step; projected sweeps are the last resort.
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                   SolveScratch& scratch);
 

@@ -9,6 +9,7 @@
 #include "sim/solve/capstan.h"
 #include "sim/solve/lemke.h"
 #include "sim/solve/part_system.h"
+#include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
 #include "sim/solve/system.h"
 
@@ -109,6 +110,7 @@ class Assembly {
   }
 
   bool is_out_of_reach(const Row& row, bool beside_run) const;
+  bool is_frozen(int rub) const;
   bool takes_part(int row, bool beside_run) const;
   void add(int equation, int unknown, double coefficient) {
     problem_.entry(equation, unknown) += scale(equation) * coefficient * unit(unknown);
@@ -118,8 +120,18 @@ class Assembly {
   }
   void add_run(const Run& run, int number, int column);
   void add_law(const Run& run, int way, int equation);
+  void add_sleeve(const SleevePlace& one, int column);
   void set_values();
   void find_speeds();
+
+  /// Calls `take` with each sleeve that may slip and the first of its unknowns.
+  template <typename Take>
+  void for_sleeves(Take take) const {
+    for (const SleevePlace& one : s_.sleeves) {
+      const int column = column_of(one.rub);
+      if (column >= 0 && at(scratch_.kinds, column) == Unknown::rubbing) take(one, column);
+    }
+  }
 
   /// Calls `take` with each run that may slide and the first of its unknowns.
   template <typename Take>
@@ -132,6 +144,12 @@ class Assembly {
   ComplementaryScratch& scratch_;
   Complementarity& problem_;
 };
+
+/// Whether the sleeve sticks for this step, whose friction the row is.
+bool Assembly::is_frozen(int rub) const {
+  return std::ranges::any_of(
+      s_.sleeves, [rub](const SleevePlace& one) { return one.rub == rub && one.frozen; });
+}
 
 /// What segments between sliding runs have left is their group's: one that is within reach may
 /// have members that are a little beyond.
@@ -209,6 +227,10 @@ void Assembly::number() {
       append(Unknown::friction, unit);
       append(Unknown::friction_against, unit);
       append(Unknown::sliding, unit);
+    } else if (row.kind == RowKind::sleeve_rub && !is_frozen(r)) {
+      append(Unknown::rubbing, unit);
+      append(Unknown::forward, unit);
+      append(Unknown::backward, unit);
     } else {
       append(is_unilateral(row) ? Unknown::unilateral : Unknown::either, unit);
     }
@@ -254,6 +276,24 @@ void Assembly::add_run(const Run& run, int number, int column) {
   }
 }
 
+/// Friction p holds the sleeve as long as it is more than -f of slipping forward, and less than
+/// that of slipping backward.
+void Assembly::add_sleeve(const SleevePlace& one, int column) {
+  for (const Slip slip : {Slip::forward, Slip::backward}) {
+    const int way = sign(slip);
+    const int sliding = way > 0 ? column + 1 : column + 2;
+    add(column, sliding, -way);
+    add(sliding, column, way);
+    at(problem_.q, sliding) +=
+        scale(sliding) * way * list_friction(s_, one, slip, set_.friction_terms);
+    for (const Term& term : set_.friction_terms) {
+      for_shares(term.index, [&](const Share& p) {
+        add(sliding, p.unknown, way * term.coefficient * p.coefficient);
+      });
+    }
+  }
+}
+
 void Assembly::assemble() {
   problem_.begin(static_cast<int>(scratch_.kinds.size()));
   s_.velocity = s_.free_velocity;
@@ -273,8 +313,9 @@ void Assembly::assemble() {
         });
       });
     }
-    at(problem_.either, column) = at(scratch_.kinds, column) == Unknown::either;
-    if (at(scratch_.kinds, column) != Unknown::friction) continue;
+    const Unknown kind = at(scratch_.kinds, column);
+    at(problem_.either, column) = kind == Unknown::either || kind == Unknown::rubbing;
+    if (kind != Unknown::friction) continue;
     const Friction& friction = at(s_.frictions, row.friction);
     const int sliding = column + 2;
     for (const int k : {column, column + 1}) {
@@ -284,6 +325,7 @@ void Assembly::assemble() {
     for_shares(friction.normal,
                [&](const Share& p) { add(sliding, p.unknown, friction.bound * p.coefficient); });
   }
+  for_sleeves([this](const SleevePlace& one, int column) { add_sleeve(one, column); });
   const Run* const first = set_.capstan.runs.data();
   for_runs(
       [&](const Run& run, int column) { add_run(run, static_cast<int>(&run - first), column); });
@@ -331,6 +373,14 @@ void Assembly::find_speeds() {
     }
     at(w, sliding) += scale(sliding) * friction.bound * at(s_.rows, friction.normal).impulse;
   }
+  for_sleeves([&](const SleevePlace& one, int column) {
+    see(one.rub, value(column + 2) - value(column + 1));
+    for (const Slip slip : {Slip::forward, Slip::backward}) {
+      const int equation = slip == Slip::forward ? column + 1 : column + 2;
+      at(w, equation) = scale(equation) * sign(slip) *
+                        (at(s_.rows, one.rub).impulse + friction_of(s_, one, slip));
+    }
+  });
   for_runs([&](const Run& run, int column) {
     see(run.row_in, -run.speed);
     see(run.row_out, run.speed);
@@ -383,6 +433,10 @@ void Assembly::set_states() {
     if (state != to) flipped = set_.solves;
     state = to;
   };
+  for (std::size_t r = 0; r < s_.rows.size(); ++r) {  // what is beyond reach, by any guess
+    Row& row = s_.rows[r];
+    if (row.idle && scratch_.column_of_row[r] < 0 && is_unilateral(row)) row.on = false;
+  }
   for (const int r : scratch_.rows) {
     Row& row = at(s_.rows, r);
     const int column = column_of(r);
@@ -390,6 +444,12 @@ void Assembly::set_states() {
     if (kind == Unknown::unilateral) {
       change(row.on, bears(column), row.flipped);
       row.idle = row.idle && !row.on;
+    } else if (kind == Unknown::rubbing) {
+      const Slip slip = bears(column + 1)   ? Slip::forward
+                        : bears(column + 2) ? Slip::backward
+                                            : Slip::stick;
+      change(row.slip, slip, row.flipped);
+      row.on = true;
     } else if (kind == Unknown::friction) {
       const bool slides = bears(column + 2);
       const Slip slip = slides && bears(column)       ? Slip::backward
@@ -412,7 +472,7 @@ void Assembly::set_states() {
 
 /// Whether there is nothing but what the conditions above are of.
 bool suits(const PartSystem& s, const SolveScratch& set) {
-  return s.sleeves.empty() && (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
+  return (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
          std::ranges::none_of(set.capstan.passages,
                               [](const Passage& passage) { return passage.middle_out >= 0; });
 }

@@ -11,6 +11,8 @@
 //     lambda                 and  mu N - beta+ - beta-
 //     sigma+                 and  limit+ - T_out,            a run's, T_out the impulse after it,
 //     sigma-                 and  T_out - limit-,            limits by passages from that before
+//     sigma+                 and  p + f+,  sigma- and  -p - f-, of a sleeve's friction p where
+//                                 w = sigma (rubbing.h),
 // with limit+ = k T_in + mu N - p_middle and so on (capstan.h). For z >= 0 the matrix has
 //     z' M z = p' J M^-1 J' p + lambda mu N + sigma+ (k - 1) T_in + ...  >= 0
 // where no middle body that rubs comes before an arc: it is copositive, and Lemke's method finds a
@@ -24,7 +26,9 @@ struct SolveScratch;
 /// Finds a solution: impulses, velocities, states and sliding speeds. Whether there is one; its
 /// conditions hold to within the part's reach in a step. Where round-off of positions contradicts
 /// itself it is left as it is (the rows' biases are without it then). What bears force both ways,
-/// or is without a bound, does so if it is on, as it is now.
+/// or is without a bound, or is a sleeve's friction, does so if it is on, as it is now. Two laws
+/// are no part of this: that of cable which is pushed on to an arc, and that of a rope which
+/// presses its rim one way and not the other.
 bool solve_complementary(PartSystem& system, SolveScratch& scratch);
 
 }  // namespace pinchlab

@@ -292,10 +292,37 @@ void drop_rubbing(PartSystem& s) {
   }
 }
 
+double list_friction(const PartSystem& s, const SleevePlace& one, Slip way,
+                     std::vector<Term>& terms) {
+  const RubLaw& law = law_of(one, way);
+  terms.clear();
+  const auto add = [&terms](int row, double coefficient) {
+    if (coefficient != 0.0) terms.push_back({row, coefficient});
+  };
+  add(one.row_in, law.in);
+  add(one.row_out, law.out);
+  for (int t = law.terms_begin; t < law.terms_end; ++t) {
+    add(at(s.rub_terms, t).index, at(s.rub_terms, t).coefficient);
+  }
+  for (int r = 0; one.share > 0.0 && index(r) < s.rows.size(); ++r) {
+    const RowResponse& response = at(s.responses, r);
+    double along = 0.0;
+    if (response.a == one.body) along += law.carried.dot(response.ra.head<2>());
+    if (response.b == one.body) along += law.carried.dot(response.rb.head<2>());
+    const ThirdBody* third = third_of(s, index(r));
+    if (third && third->place == one.body) along += law.carried.dot(third->response.head<2>());
+    add(r, along);
+  }
+  return known_friction(s, one, law) + law.carried.dot(at(s.free_velocity, one.body).head<2>());
+}
+
+double friction_of(const PartSystem& s, const SleevePlace& one, Slip way) {
+  return friction_of(s, one, law_of(one, way));
+}
+
 void express_rubbing(PartSystem& s, SolveScratch& set) {
   std::vector<Term>& sum = set.rubbing;
   const auto add = [&](int row, double coefficient) {
-    if (coefficient == 0.0) return;
     for (int k = set.impulse_begin[index(row)]; k < set.impulse_end[index(row)]; ++k) {
       const Term term = set.impulse_terms[index(k)];
       const auto same = std::find_if(
@@ -309,25 +336,14 @@ void express_rubbing(PartSystem& s, SolveScratch& set) {
   };
   for (SleevePlace& one : s.sleeves) {
     if (one.rub < 0 || !slips(at(s.rows, one.rub))) continue;
-    const RubLaw& law = law_of(one, at(s.rows, one.rub).slip);
+    const double known = list_friction(s, one, at(s.rows, one.rub).slip, set.friction_terms);
     sum.clear();
-    add(one.row_in, -law.in);
-    add(one.row_out, -law.out);
-    for (int t = law.terms_begin; t < law.terms_end; ++t) {
-      add(at(s.rub_terms, t).index, -at(s.rub_terms, t).coefficient);
-    }
     double own = 1.0;
-    for (int r = 0; one.share > 0.0 && index(r) < s.rows.size(); ++r) {
-      const RowResponse& response = at(s.responses, r);
-      double along = 0.0;
-      if (response.a == one.body) along += law.carried.dot(response.ra.head<2>());
-      if (response.b == one.body) along += law.carried.dot(response.rb.head<2>());
-      const ThirdBody* third = third_of(s, index(r));
-      if (third && third->place == one.body) along += law.carried.dot(third->response.head<2>());
-      if (r == one.rub) {
-        own += along;
+    for (const Term& term : set.friction_terms) {
+      if (term.index == one.rub) {
+        own += term.coefficient;
       } else {
-        add(r, -along);
+        add(term.index, -term.coefficient);
       }
     }
     set.impulse_begin[index(one.rub)] = static_cast<int>(set.impulse_terms.size());
@@ -335,9 +351,7 @@ void express_rubbing(PartSystem& s, SolveScratch& set) {
       set.impulse_terms.push_back({term.index, term.coefficient / own});
     }
     set.impulse_end[index(one.rub)] = static_cast<int>(set.impulse_terms.size());
-    one.known =
-        -(known_friction(s, one, law) + law.carried.dot(at(s.free_velocity, one.body).head<2>())) /
-        own;
+    one.known = -known / own;
   }
 }
 

@@ -30,6 +30,7 @@
 // does not lift off.
 
 #include <span>
+#include <vector>
 
 #include "sim/solve/part_system.h"
 
@@ -57,6 +58,13 @@ void make_sleeve_rows(const Scene& scene, const World& world, const Parts& parts
 
 /// Before a solve: friction that is left out bears nothing.
 void drop_rubbing(PartSystem& system);
+
+/// f of a sleeve that slips that way, for the present impulses and velocities (N s).
+double friction_of(const PartSystem& system, const SleevePlace& one, Slip way);
+
+/// The same as a sum: of rows' impulses, by `terms`, and of what is known, which it returns (N s).
+double list_friction(const PartSystem& system, const SleevePlace& one, Slip way,
+                     std::vector<Term>& terms);
 
 /// Impulses of sleeves that slip, in terms of the unknowns, after those of all other rows.
 void express_rubbing(PartSystem& system, SolveScratch& scratch);

@@ -49,6 +49,7 @@ enum class Unknown : std::int8_t {
   either,            // of what bears force both ways
   friction,          // bounded, along its row; the next two follow
   friction_against,  // likewise, against it
+  rubbing,           // a sleeve's; forward and backward follow
   sliding,           // m/s, one way or the other
   forward,           // m/s, of a run; the next follows
   backward,
@@ -108,7 +109,8 @@ struct SolveScratch {
   std::vector<int> last_end;  // of each body of the part: the last of its chain, or -1
   ProfileLu lu;
   std::vector<Term> rubbing;  // of unknowns: an impulse while it is expressed, by express_rubbing
-  std::vector<Flip> flips;    // by the checks after each solve: check, check_runs, check_rubbing
+  std::vector<Term> friction_terms;  // of rows, by list_friction
+  std::vector<Flip> flips;  // by the checks after each solve: check, check_runs, check_rubbing
   OrderScratch ordering;
   DualScratch dual;
   ComplementaryScratch complementary;
