@@ -343,21 +343,31 @@ bool presses_others(PartSystem& s, SolveScratch& set) {
   return !set.flips.empty();
 }
 
+/// Solves for all states at once; whether it has. `again`: friction has other bounds then.
+bool solve_for_all(PartSystem& s, SolveScratch& set, bool& again) {
+  if (!solve_complementary(s, set)) return false;
+  const bool stand = bounds_stand(s, set);
+  again = presses_others(s, set) || !stand;
+  if (again) return true;
+  // What these states have for a solution is exact, but may be another where there are several.
+  solve_for_states(s, set);
+  check(s, set);
+  if (!set.flips.empty()) take_complementary(s, set);
+  return true;
+}
+
 /// Flips states until the solution contradicts none; whether it came to that.
 bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time. Remedies come in
-  // the order of what they give up: nothing but time, what has slid so far, sliding for the whole
-  // step, friction, the solution. After each there are solves enough for a dozen states to flip one
-  // at a time and settle before the next.
-  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
-                before_dropping = 80, most_solves = 150;
-  constexpr int most_bounds = 6;  // of friction, that solutions for all states change
-  int bounds_tried = 0;
+  // the order of what they give up: time, what has slid so far, of several solutions the nearest,
+  // sliding for the whole step, friction, the solution. After each some states may flip and settle.
+  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_all = 50,
+                before_freezing = 57, before_dropping = 87, most_solves = 157;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
   std::size_t fewest = all;
   int left = patience;
   int growing = 0, reached = 0;  // solves in succession that ask for more force only, and before
-  bool spread = false;
+  bool spread = false, finds_all = true;
   for (int solves = 1; solves <= most_solves; ++solves) {
     if (solves == before_sticking) {
       stick_friction(s, set.capstan);
@@ -373,16 +383,12 @@ bool settle(PartSystem& s, SolveScratch& set) {
     clamp_pinches(s);
     if (!s.sleeves.empty()) drop_rubbing(s);
     set.solves = solves;
-    const bool circles = solves > before_dual;
-    if (!circles || !solve_for_rows(s, set)) {
-      if (circles && bounds_tried < most_bounds) {
-        ++bounds_tried;
-        if (solve_complementary(s, set)) {
-          const bool stand = bounds_stand(s, set);
-          if (!presses_others(s, set) && stand) return true;
-          continue;
-        }
-        bounds_tried = most_bounds;
+    if (solves <= before_dual || !solve_for_rows(s, set)) {
+      if (finds_all && solves >= before_all && solves + 1 < before_freezing) {
+        bool again = false;
+        finds_all = solve_for_all(s, set, again);
+        if (again) continue;
+        if (finds_all) return true;
       }
       set.by_dual = false;
       solve_for_states(s, set);

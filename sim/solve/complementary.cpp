@@ -68,6 +68,8 @@ class Assembly {
   void assemble();
   void allow(double round_off);
   bool refine(double round_off);
+  void clear_rounding(double round_off);
+  void set_values();
   void set_states();
 
  private:
@@ -84,8 +86,10 @@ class Assembly {
   void for_shares(int row, Take take) const {
     const int column = column_of(row);
     if (column < 0) return;
-    take(Share{column, 1.0});
-    if (at(scratch_.kinds, column) == Unknown::friction) take(Share{column + 1, -1.0});
+    const bool bounded = at(scratch_.kinds, column) == Unknown::friction;
+    const double way = bounded ? at(scratch_.ways, row) : 1.0;
+    take(Share{column, way});
+    if (bounded) take(Share{column + 1, -way});
   }
 
   bool is_impulse(int unknown) const { return at(scratch_.kinds, unknown) < Unknown::sliding; }
@@ -121,7 +125,6 @@ class Assembly {
   void add_run(const Run& run, int number, int column);
   void add_law(const Run& run, int way, int equation);
   void add_sleeve(const SleevePlace& one, int column);
-  void set_values();
   void find_speeds();
 
   /// Calls `take` with each sleeve that may slip and the first of its unknowns.
@@ -176,6 +179,7 @@ bool Assembly::takes_part(int number, bool beside_run) const {
 void Assembly::list() {
   const std::size_t rows = s_.rows.size(), runs = set_.capstan.runs.size();
   scratch_.column_of_row.assign(rows, -1);
+  scratch_.ways.assign(rows, 1.0);
   scratch_.column_of_run.assign(runs, -1);
   scratch_.beside_run.assign(rows, 0);
   std::vector<int>&listed = scratch_.rows, &listed_runs = scratch_.runs;
@@ -196,10 +200,12 @@ void Assembly::list() {
     }
   }
   const auto gives = [this](int r) { return at(s_.rows, r).diagonal + at(s_.rows, r).compliance; };
-  const auto row_key = [&](int r) { return std::tuple(gives(r), at(s_.rows, r).clearance, r); };
+  s_.velocity = s_.free_velocity;
+  const auto speed = [this](int r) { return row_speed(s_, index(r)) - at(s_.rows, r).bias; };
+  const auto row_key = [&](int r) { return std::tuple(gives(r), speed(r), r); };
   const auto run_key = [&](int k) {
-    const Run& run = at(set_.capstan.runs, k);
-    return std::tuple(gives(run.row_in), gives(run.row_out), k);
+    const int in = at(set_.capstan.runs, k).row_in, out = at(set_.capstan.runs, k).row_out;
+    return std::tuple(gives(in), gives(out), speed(in), speed(out), k);
   };
   std::ranges::sort(listed, {}, row_key);
   std::ranges::sort(listed_runs, {}, run_key);
@@ -224,6 +230,7 @@ void Assembly::number() {
     at(scratch_.column_of_row, r) = static_cast<int>(scratch_.kinds.size());
     const double unit = unit_of_row(r);
     if (is_friction(row) && is_bounded(at(s_.frictions, row.friction))) {
+      at(scratch_.ways, r) = row_speed(s_, index(r)) < 0.0 ? -1.0 : 1.0;
       append(Unknown::friction, unit);
       append(Unknown::friction_against, unit);
       append(Unknown::sliding, unit);
@@ -296,7 +303,6 @@ void Assembly::add_sleeve(const SleevePlace& one, int column) {
 
 void Assembly::assemble() {
   problem_.begin(static_cast<int>(scratch_.kinds.size()));
-  s_.velocity = s_.free_velocity;
   for (const int r : scratch_.rows) {
     const int column = column_of(r);
     const Row& row = at(s_.rows, r);
@@ -427,6 +433,14 @@ bool Assembly::refine(double round_off) {
   return holds;
 }
 
+/// Leaves no pull or push by which its own row's speed changes by less than `round_off` (m/s).
+void Assembly::clear_rounding(double round_off) {
+  for (std::size_t i = 0; i < scratch_.kinds.size(); ++i) {
+    if (scratch_.kinds[i] != Unknown::unilateral) continue;
+    if (problem_.z[i] <= round_off * scratch_.units[i]) problem_.z[i] = 0.0;
+  }
+}
+
 void Assembly::set_states() {
   const auto bears = [this](int column) { return at(problem_.bears, column) != 0; };
   const auto change = [this](auto& state, auto to, int& flipped) {
@@ -451,10 +465,10 @@ void Assembly::set_states() {
       change(row.slip, slip, row.flipped);
       row.on = true;
     } else if (kind == Unknown::friction) {
-      const bool slides = bears(column + 2);
-      const Slip slip = slides && bears(column)       ? Slip::backward
-                        : slides && bears(column + 1) ? Slip::forward
-                                                      : Slip::stick;
+      const bool along = at(scratch_.ways, r) > 0.0, slides = bears(column + 2);
+      const Slip slip = slides && bears(along ? column : column + 1)   ? Slip::backward
+                        : slides && bears(along ? column + 1 : column) ? Slip::forward
+                                                                       : Slip::stick;
       change(row.slip, slip, row.flipped);
     }
   }
@@ -470,9 +484,10 @@ void Assembly::set_states() {
   });
 }
 
-/// Whether there is nothing but what the conditions above are of.
+/// Whether there is nothing but what the conditions above are of, and no motor: one that winds in
+/// what hardly can give is to stall (motors.h), and would throw that if it were held exactly.
 bool suits(const PartSystem& s, const SolveScratch& set) {
-  return (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
+  return s.motors.empty() && (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
          std::ranges::none_of(set.capstan.passages,
                               [](const Passage& passage) { return passage.middle_out >= 0; });
 }
@@ -501,23 +516,28 @@ bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
   assembly.assemble();
   assembly.allow(round_off);
   if (!solve_complementarity(set.complementary.problem)) return false;
-  if (!assembly.refine(round_off)) return false;
-  assembly.set_states();
-  return true;
+  return assembly.refine(round_off);
 }
 
 }  // namespace
+
+void take_complementary(PartSystem& s, SolveScratch& set) {
+  Assembly assembly(s, set);
+  assembly.clear_rounding(s.reach / set.step_length);
+  assembly.set_values();
+  assembly.set_states();
+  express_states(s, set);
+  set.direct = set.by_dual = set.contradicts = false;
+  set.suspicious = true;
+}
 
 bool solve_complementary(PartSystem& s, SolveScratch& set) {
   if (!suits(s, set)) return false;
   const double round_off = s.reach / set.step_length;
   const bool solved = solve_once(s, set, round_off) ||
                       (leave_round_off(s, round_off) && solve_once(s, set, round_off));
-  if (!solved) return false;
-  express_states(s, set);
-  set.direct = set.by_dual = set.contradicts = false;
-  set.suspicious = true;
-  return true;
+  if (solved) take_complementary(s, set);
+  return solved;
 }
 
 }  // namespace pinchlab

@@ -31,4 +31,7 @@ struct SolveScratch;
 /// presses its rim one way and not the other.
 bool solve_complementary(PartSystem& system, SolveScratch& scratch);
 
+/// The solution found last once more, after another solve of the same rows.
+void take_complementary(PartSystem& system, SolveScratch& scratch);
+
 }  // namespace pinchlab

@@ -47,8 +47,8 @@ struct OrderScratch {
 enum class Unknown : std::int8_t {
   unilateral,        // an impulse, of a segment or a normal
   either,            // of what bears force both ways
-  friction,          // bounded, along its row; the next two follow
-  friction_against,  // likewise, against it
+  friction,          // bounded, one way; the next two follow
+  friction_against,  // likewise, the other way
   rubbing,           // a sleeve's; forward and backward follow
   sliding,           // m/s, one way or the other
   forward,           // m/s, of a run; the next follows
@@ -64,6 +64,7 @@ struct ComplementaryScratch {
   std::vector<int> column_of_row;  // its first unknown, or -1
   std::vector<char> beside_run;    // rows: a run that may slide is
   std::vector<int> rows, runs;     // that take part
+  std::vector<double> ways;  // rows: 1, or -1 where the first unknown of friction is against it
   std::vector<int> column_of_run;  // its first unknown, or -1
   std::vector<double> w;           // of each unknown
   std::vector<Term> limit;
