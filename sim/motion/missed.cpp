@@ -14,10 +14,6 @@ namespace pinchlab {
 
 namespace {
 
-// Of a part's extent, two units in its last place. In an interval that is short it would become a
-// speed that lets cable slide.
-constexpr double position_rounding = 5e-16;
-
 bool is_exact_row(const Row& row) {
   if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
   return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
@@ -81,7 +77,6 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
     // Without tension no segment of a group is held to its length.
     const bool bears = row.on && !(shares && row.impulse == 0.0);
     if (!bears) missed = std::min(missed, 0.0);
-    if (group >= 0 && std::abs(missed) <= position_rounding * s.extent) continue;
     double curvature = missed / t.length;
     // Of a row that bears no force the way itself has gained J v + bias, which has bent back.
     if (!bears && missed < 0.0 && group < 0) curvature -= std::max(row_speed(s, r), 0.0);

@@ -343,17 +343,20 @@ bool presses_others(PartSystem& s, SolveScratch& set) {
   return !set.flips.empty();
 }
 
-/// Solves for all states at once; whether it has. `again`: friction has other bounds then.
-bool solve_for_all(PartSystem& s, SolveScratch& set, bool& again) {
-  if (!solve_complementary(s, set)) return false;
-  const bool stand = bounds_stand(s, set);
-  again = presses_others(s, set) || !stand;
-  if (again) return true;
-  // What these states have for a solution is exact, but may be another where there are several.
-  solve_for_states(s, set);
-  check(s, set);
-  if (!set.flips.empty()) take_complementary(s, set);
-  return true;
+/// Solves for all states at once; whether it has.
+bool solve_for_all(PartSystem& s, SolveScratch& set) {
+  constexpr int most_bounds = 6;  // of friction, which each solution may change
+  for (int k = 0; k < most_bounds; ++k) {
+    if (!solve_complementary(s, set)) return false;
+    const bool stand = bounds_stand(s, set);
+    if (presses_others(s, set) || !stand) continue;
+    // What these states have for a solution is exact, but may be another where there are several.
+    solve_for_states(s, set);
+    check(s, set);
+    if (!set.flips.empty()) take_complementary(s, set);
+    return true;
+  }
+  return false;
 }
 
 /// Flips states until the solution contradicts none; whether it came to that.
@@ -361,13 +364,13 @@ bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time. Remedies come in
   // the order of what they give up: time, what has slid so far, of several solutions the nearest,
   // sliding for the whole step, friction, the solution. After each some states may flip and settle.
-  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_all = 50,
-                before_freezing = 57, before_dropping = 87, most_solves = 157;
+  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
+                before_dropping = 80, most_solves = 150;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
   std::size_t fewest = all;
   int left = patience;
   int growing = 0, reached = 0;  // solves in succession that ask for more force only, and before
-  bool spread = false, finds_all = true;
+  bool spread = false;
   for (int solves = 1; solves <= most_solves; ++solves) {
     if (solves == before_sticking) {
       stick_friction(s, set.capstan);
@@ -375,6 +378,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
       left = patience;
     }
     if (solves == before_freezing) {
+      if (solve_for_all(s, set)) return true;
       freeze_friction(s, set.capstan);
       set.froze = true;
     }
@@ -384,12 +388,6 @@ bool settle(PartSystem& s, SolveScratch& set) {
     if (!s.sleeves.empty()) drop_rubbing(s);
     set.solves = solves;
     if (solves <= before_dual || !solve_for_rows(s, set)) {
-      if (finds_all && solves >= before_all && solves + 1 < before_freezing) {
-        bool again = false;
-        finds_all = solve_for_all(s, set, again);
-        if (again) continue;
-        if (finds_all) return true;
-      }
       set.by_dual = false;
       solve_for_states(s, set);
       check(s, set);
