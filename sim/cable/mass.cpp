@@ -62,6 +62,7 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
   if (cable.fills) let_fill(from, to, span);
   span.material = std::max(material_of_span(cable, i), 0.0);
+  span.loose = segment.pinched ? 0.0 : span.material - segment.length;
   span.density = cable.density;
   return span;
 }
@@ -190,12 +191,13 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
   f_b.z() -= (span.slope_b != 0.0 ? mean - e_b : mean) * span.p_b;
   // By the direction: the flow to and from rims, and the ends' own places.
   const double weight = mass * gravity.dot(n);  // N, of what moves by dp across the span
+  const double spare = 0.5 * rho * span.loose * gravity.dot(span.direction);  // N
   const double about = mean * (span.p_b - span.p_a) + e_a * span.p_a - e_b * span.p_b +
                        mass * v_a.z() * (span.p_a * n + span.slope_a * span.direction).dot(u_a) +
                        mass * v_b.z() * (span.p_b * n + span.slope_b * span.direction).dot(u_b) -
-                       weight * (span.slope_a + span.slope_b);
-  f_a.z() += weight * span.slope_a;
-  f_b.z() += weight * span.slope_b;
+                       weight * (span.slope_a + span.slope_b) + spare * (span.p_a + span.p_b);
+  f_a.z() += weight * span.slope_a - spare * span.p_a;
+  f_b.z() += weight * span.slope_b - spare * span.p_b;
   if (span.a == span.b) {
     f_a.z() += about;
   } else if (!span.pinched && span.distance > 0.0) {  // in a pinch both sides flow alike

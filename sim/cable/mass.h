@@ -12,6 +12,12 @@
 // tangents turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in
 // velocities.
 //
+// A span that is not taut, or is stretched, has material M longer or shorter by S than itself. With
+// the arcs' weight beside it, its own, V = -rho M g . (x_a + x_b) / 2, does not act then as if its
+// halves turned with the rims at its ends. What is left is the power
+//     -K (p_a omega_a + p_b omega_b - (p_a + p_b) phi'),      K = rho S (g . e) / 2,
+// where phi is the angle of its direction e.
+//
 // A drum that fills (Layers) is as if each moment its outermost turn were its rim: p changes with
 // what is wound up, dp = s d(theta - angle), theta being the span's direction and s its slope. What
 // lies below is fixed to the drum, and the spiral's moments are integrals over it,
@@ -42,6 +48,7 @@ struct MassedSpan {
                                         // 0 on a drum that fills
   bool pinched = false;                 // turns with the line of centres
   double material = 0.0;                // m
+  double loose = 0.0;                   // m, by which that is longer than the span
   double density = 0.0;                 // kg/m
 };
 
