@@ -384,10 +384,17 @@ Flow flow_at(const World& world, const CableState& cable, std::size_t segment, b
   return {u - along * span.direction, along};
 }
 
+FlowForces flow_forces(const MassedSpan& span, std::span<const Vector3d> velocities) {
+  FlowForces forces;
+  add_flow_forces(span, Vec2::Zero(), at(velocities, span.a), at(velocities, span.b), forces.on_a,
+                  forces.on_b);
+  return forces;
+}
+
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Vector3d> velocities) {
-  Vector3d f_a = Vector3d::Zero(), f_b = f_a;
-  add_flow_forces(span, Vec2::Zero(), at(velocities, span.a), at(velocities, span.b), f_a, f_b);
-  return {span.p_a != 0.0 ? f_a.z() / span.p_a : 0.0, span.p_b != 0.0 ? -f_b.z() / span.p_b : 0.0};
+  const FlowForces forces = flow_forces(span, velocities);
+  return {span.p_a != 0.0 ? forces.on_a.z() / span.p_a : 0.0,
+          span.p_b != 0.0 ? -forces.on_b.z() / span.p_b : 0.0};
 }
 
 double potential_energy(const World& world, const CableState& cable, const Vec2& gravity) {

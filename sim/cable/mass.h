@@ -103,6 +103,12 @@ void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
 void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double factor,
                       std::span<const Eigen::Vector3d> velocities, std::span<Eigen::Vector3d> to);
 
+/// The former of one span, on what moves with its ends (N, N, N m).
+struct FlowForces {
+  Eigen::Vector3d on_a = Eigen::Vector3d::Zero(), on_b = on_a;
+};
+FlowForces flow_forces(const MassedSpan& span, std::span<const Eigen::Vector3d> velocities);
+
 /// What this is to the turning of the sleeves at either end, as a tension of the span (N): at a, at
 /// b. Places are of `velocities`.
 Vec2 flow_tensions(const MassedSpan& span, std::span<const Eigen::Vector3d> velocities);

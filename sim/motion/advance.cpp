@@ -109,6 +109,7 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<con
     const bool violated = course.violated || has_changed(world, work.parts, part, changes) ||
                           is_squeezed(world, work.parts, part);
     if (!violated && !course.happened) continue;
+    if (course.happened) catch_up(scene, world, part, course.time, work);
     apply_no_forces(scene, world, part, course.time, work);
     const bool repaired = repair(scene, world, work, part);
     if (repaired) {
@@ -235,7 +236,9 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   if (!course.happened) return;
   ++(only_jump(work.events) ? course.jumps : course.events);
   ++d.events;
-  catch_up(scene, world, parts, course.time, work);
+  // What crosses events leaves nodes where rims should have had them: spans next to nothing long,
+  // whose turning has no bound.
+  if (course.located) catch_up(scene, world, parts, course.time, work);
   change_courses(world, work);
   if (work.neighbourhoods.divided) find_pairs_of_interval(scene, world, work);
 }

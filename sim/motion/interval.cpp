@@ -103,19 +103,23 @@ double next_share(double wanted) {
   return std::clamp(wanted, 0.1, 0.7);
 }
 
+/// The share of its length that a trial is to have which turns what bears force too far; 1 after any
+/// other, and where it has come down to the shortest.
+double share_for_turns(const World& world, const IntervalTrial& trial, double length) {
+  const double least = trial.wave > 0.0 ? shortest_followed : shortest_for_turns;
+  if (trial.turned <= most_turned || length <= least * world.step_length) return 1.0;
+  return std::sqrt(most_turned / trial.turned);
+}
+
 /// The length (s) to try next after a trial of `length` that errs by more than the scene allows, or
 /// turns what bears force too far; the same after any other, and where it has come down to the
 /// shortest.
 double sound_length(const World& world, const IntervalTrial& trial, double length) {
   const double allowed = share_of_error * world.configuration.error;
-  const auto is_longer = [&](double least) { return length > least * world.step_length; };
-  double share = 1.0;
-  if (allowed > 0.0 && trial.met && trial.local_error > allowed && is_longer(shortest)) {
-    share = 0.8 * std::cbrt(allowed / trial.local_error);
-  }
-  if (trial.turned > most_turned &&
-      is_longer(trial.wave > 0.0 ? shortest_followed : shortest_for_turns)) {
-    share = std::min(share, std::sqrt(most_turned / trial.turned));
+  double share = share_for_turns(world, trial, length);
+  if (allowed > 0.0 && trial.met && trial.local_error > allowed &&
+      length > shortest * world.step_length) {
+    share = std::min(share, 0.8 * std::cbrt(allowed / trial.local_error));
   }
   return share < 1.0 ? next_share(share) * length : length;
 }
@@ -344,8 +348,11 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
   attempt.locates = false;
   try_interval(scene, world, work, movers, attempt, watch);
   attempt.begins = false;
-  while (is_outrun(world, work.trial, length)) {
-    length *= next_share(interval_for(world, work.trial.wave) / length);
+  for (;;) {
+    double share = share_for_turns(world, work.trial, length);
+    if (is_outrun(world, work.trial, length)) share = interval_for(world, work.trial.wave) / length;
+    if (share >= 1.0) break;
+    length *= next_share(share);
     attempt.length = length;
     try_again(scene, world, work, movers, attempt, watch);
   }
