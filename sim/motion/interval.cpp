@@ -103,8 +103,8 @@ double next_share(double wanted) {
   return std::clamp(wanted, 0.1, 0.7);
 }
 
-/// The share of its length that a trial is to have which turns what bears force too far; 1 after any
-/// other, and where it has come down to the shortest.
+/// The share of its length that a trial is to have which turns what bears force too far; 1 after
+/// any other, and where it has come down to the shortest.
 double share_for_turns(const World& world, const IntervalTrial& trial, double length) {
   const double least = trial.wave > 0.0 ? shortest_followed : shortest_for_turns;
   if (trial.turned <= most_turned || length <= least * world.step_length) return 1.0;

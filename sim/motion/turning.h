@@ -15,8 +15,8 @@
 //     So no interval turns what bears force by more than a sixth of a radian, some ten degrees. A
 // pendulum of a metre comes to that at 10 m/s and 60 steps a second, one of a decimetre at any
 // speed.
-//     Nor does one turn a span with mass far that is not taut: the flow over the rims at its ends is
-// a force F then (cable/mass.h), and what an interval's F h has as energy on what it pushes, at
+//     Nor does one turn a span with mass far that is not taut: the flow over the rims at its ends
+// is a force F then (cable/mass.h), and what an interval's F h has as energy on what it pushes, at
 // rest, is as small a share of that of the span's two ends.
 
 #include <Eigen/Core>

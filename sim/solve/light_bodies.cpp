@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/cable/strung.h"
 #include "sim/cable/waves.h"
 #include "sim/compound.h"
@@ -34,6 +35,18 @@ int number_of(const CableState& cable, const Link& link) {
 /// kg; of a node what of its cable moves with it too, as its mobility has it.
 double mass_of(const BodyProperties& body, const Mobility& mobility) {
   return body.node ? 1.0 / mobility.xx : body.mass;
+}
+
+Eigen::Matrix3d matrix_of(const Mobility& m) {
+  return Eigen::Matrix3d{{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.angular}};
+}
+
+/// For (x, y, angle), on what the body can do (kg, kg m, kg m^2).
+Eigen::Matrix3d masses_of(const BodyProperties& body, const Mobility& mobility) {
+  if (mobility.xz != 0.0 || mobility.yz != 0.0) return inverse_for(body, matrix_of(mobility));
+  const double mass = can_move(body) ? mass_of(body, mobility) : 0.0;
+  const double inertia = mobility.angular > 0.0 ? 1.0 / mobility.angular : 0.0;
+  return Eigen::Vector3d(mass, mass, inertia).asDiagonal();
 }
 
 /// Whether the segment counts for the body at its end `link`; `other` is its other end, or null: as
@@ -153,51 +166,35 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
 
 bool gains_by_steadying(const World& world, const Parts& parts, const Part& part,
                         const PartSystem& s) {
-  const std::span<const int> bodies = bodies_of(parts, part);
-  const auto is_steadied = [&s](int place) {
-    return index(place) < s.span_masses.size() && at(s.span_masses, place).steadied;
-  };
-  const bool coupled =
-      std::ranges::any_of(s.mobility, [](const Mobility& m) { return m.xz != 0.0 || m.yz != 0.0; });
   double gain = 0.0, energy = 0.0;  // J, twice
+  const auto add = [&](const Eigen::Matrix3d& mass, const Eigen::Vector3d& before,
+                       const Eigen::Vector3d& v) {
+    energy += before.dot(mass * before);
+    gain += (v - before).dot(mass * (v + before));
+  };
+  const std::span<const int> bodies = bodies_of(parts, part);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const BodyProperties& body = at(world.bodies, bodies[i]);
-    const Eigen::Vector3d &free = s.free_velocity[i], &v = s.velocity[i];
-    if (const double angular = s.mobility[i].angular; !coupled && angular > 0.0) {
-      energy += free.z() * free.z() / angular;
-      gain += (v.z() - free.z()) * (v.z() + free.z()) / angular;
+    Mobility own = s.mobility[i];
+    Eigen::Vector3d before = s.free_velocity[i];
+    if (i < s.span_masses.size() && s.span_masses[i].steadied) {
+      own = s.span_masses[i].own;
+      own.angular = s.mobility[i].angular;
+      before.head<2>() = s.span_masses[i].velocity;
     }
-    if (!can_move(body)) continue;
-    const bool steadied = is_steadied(static_cast<int>(i));
-    const Vec2 before = steadied ? s.span_masses[i].velocity : Vec2(free.head<2>());
-    const double mass = mass_of(body, steadied ? s.span_masses[i].own : s.mobility[i]);
-    energy += mass * before.squaredNorm();
-    if (steadied || !coupled) gain += mass * (v.head<2>().squaredNorm() - before.squaredNorm());
+    add(masses_of(at(world.bodies, bodies[i]), own), before, s.velocity[i]);
   }
-  // With cables' masses on them the others, and how these turn, are told by what rows give:
-  // sum p (J v- + J v+) / 2. Of impulses that all but cancel that is mostly round-off.
-  double impulse = 0.0, fastest = 0.0;  // N s, m/s
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    const Row& row = s.rows[r];
+  for (const SleevePlace& one : s.sleeves) {
+    const Eigen::Matrix3d mobility = matrix_of(at(s.mobility, one.place));
+    add(inverse_for_sleeve(at(world.bodies, one.sleeve.body), mobility),
+        at(s.free_velocity, one.place), at(s.velocity, one.place));
+  }
+  for (const Row& row : s.rows) {
     if (row.impulse == 0.0) continue;
     if (row.compliance > 0.0) return false;  // it may give back what it stores
     gain += 2.0 * row.impulse * row.curved;
-    if (!coupled) continue;
-    const auto speed = [&](int place, const Eigen::Vector3d& j) {
-      const Eigen::Vector3d twice = at(s.free_velocity, place) + at(s.velocity, place);
-      return is_steadied(place) ? j.z() * twice.z() : j.dot(twice);
-    };
-    const double of_a = speed(s.bodies[r].a, s.bodies[r].ja);
-    const double of_b = speed(s.bodies[r].b, s.bodies[r].jb);
-    const ThirdBody* third = third_of(s, r);
-    const double of_third = third ? speed(third->place, third->j) : 0.0;
-    gain += row.impulse * (of_a + of_b + of_third);
-    impulse += std::abs(row.impulse);
-    fastest = std::max({fastest, std::abs(of_a), std::abs(of_b), std::abs(of_third)});
   }
-  // Far below any gain that shows; and round-off of speeds that large impulses work on.
-  constexpr double rounding = 1e-9, of_impulses = 1e-14;
-  return gain > rounding * energy + of_impulses * impulse * fastest;
+  constexpr double rounding = 1e-9;  // far below any gain that shows
+  return gain > rounding * energy;
 }
 
 void release_light_bodies(PartSystem& system) {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies too light for the steps to follow how they vibrate on taut spans.
 
+#include "sim/solve/light_bodies.h"
+
+#include "sim/parts.h"
+#include "sim/solve/forces.h"
+#include "sim/solve/part_system.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -86,6 +91,44 @@ TEST(LightBodies, OnARailAcrossTheLine) {
   World world = make_world(scene, measured());
   run(scene, world, 1200);
   EXPECT_LT(std::abs(world.position[0].x()), 2e-3);
+}
+
+// Beside a body that carries a rope, of which moving and turning are one: what a light body has
+// gained is its own, whatever impulses cancel there. Of 1e15 N s round-off was far more.
+TEST(LightBodies, GainIsToldBesideARopeWhateverImpulsesCancel) {
+  Scene scene;
+  scene.bodies = {body("light", BodyKind::free, 0.0, 0.0, 0.1, 0.2),
+                  body("drum", BodyKind::free, 1.0, 0.0, 0.3, 6.0)};
+  const World world = make_world(scene, Method::pinch);
+  Parts parts;
+  parts.bodies = {0, 1};
+  Part part;
+  part.bodies_end = 2;
+  PartSystem s;
+  s.mobility = {mobility_of(world.bodies[0], 1e-3), mobility_of(world.bodies[1], 1e-3), {}};
+  s.mobility[1].xz = -0.02;
+  s.span_masses.resize(3);
+  s.span_masses[0].steadied = true;
+  s.span_masses[0].own = s.mobility[0];
+  s.mobility[0].yy *= 1e-12;
+  s.free_velocity = s.velocity = {{0.1, 0.0, 0.2}, {2.0, -0.5, -7.0}, Eigen::Vector3d::Zero()};
+  s.span_masses[0].velocity = {0.1, 0.0};
+  s.rows.resize(2);
+  s.bodies.resize(2);
+  s.responses.resize(2);
+  for (const std::size_t r : {0, 1}) {
+    s.rows[r].impulse = 1e15;
+    s.bodies[r].a = 0;
+    s.bodies[r].b = 1;
+    s.bodies[r].ja = Eigen::Vector3d(r == 0 ? 1.0 : -1.0, 0.0, 0.0);
+  }
+  EXPECT_FALSE(gains_by_steadying(world, parts, part, s));
+  s.velocity[0] = {290.0, 30.0, -1000.0};
+  EXPECT_TRUE(gains_by_steadying(world, parts, part, s));
+  s.velocity[0] = {0.05, 0.0, 0.2};
+  EXPECT_FALSE(gains_by_steadying(world, parts, part, s));
+  s.velocity[1].z() = -7.1;  // with the rope on it
+  EXPECT_TRUE(gains_by_steadying(world, parts, part, s));
 }
 
 }  // namespace
