@@ -76,8 +76,9 @@ TEST(Lemke, SolvesFriction) {
     Eigen::MatrixXd laws = Eigen::MatrixXd::Zero(n, n);
     for (int c = 0; c < contacts; ++c) {
       const int normal = 4 * c, along = 4 * c + 1, against = 4 * c + 2, sliding = 4 * c + 3;
-      shares(2 * c, normal) = shares(2 * c + 1, along) = 1.0;
-      shares(2 * c + 1, against) = -1.0;
+      const int press = 2 * c, rub = press + 1;
+      shares(press, normal) = shares(rub, along) = 1.0;
+      shares(rub, against) = -1.0;
       laws(along, sliding) = laws(against, sliding) = 1.0;
       laws(sliding, along) = laws(sliding, against) = -1.0;
       laws(sliding, normal) = random.uniform(0.0, 1.5);
