@@ -109,7 +109,7 @@ bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<con
     const bool violated = course.violated || has_changed(world, work.parts, part, changes) ||
                           is_squeezed(world, work.parts, part);
     if (!violated && !course.happened) continue;
-    if (course.happened) catch_up(scene, world, part, course.time, work);
+    if (course.happened) catch_up(scene, world, part, course.time, work);  // if it has crossed some
     apply_no_forces(scene, world, part, course.time, work);
     const bool repaired = repair(scene, world, work, part);
     if (repaired) {
