@@ -26,6 +26,8 @@ namespace {
 
 constexpr int frames = 60;  // one second
 constexpr std::array<int, 3> ladder{1, 4, 16};
+constexpr int finer = 64;              // steps a frame, of what gains energy at the ladder's last
+constexpr double least_gained = 1e-9;  // of all energy: more than round-off
 constexpr std::array<const char*, 2> kinds{"located", "at_steps"};  // of events
 
 void note_spans(const Scene& scene, const World& world, Soundness& sound) {
@@ -105,9 +107,6 @@ std::vector<Made> run_samples(int count, int first, Progress& progress,
   return samples;
 }
 
-constexpr double counts = 1e-9;  // of all energy: more than round-off
-constexpr int finer = 64;        // steps a frame, of what gains at the ladder's last
-
 struct ShapelySample : Runs {
   Shapely has;
   double finer_gain = 0.0;
@@ -116,7 +115,7 @@ struct ShapelySample : Runs {
 ShapelySample run_shapely(const ShapelyScene& drawn) {
   const Configuration configuration = configuration_of(kinds[0]);
   ShapelySample sample{run_ladder(drawn.scene, configuration), drawn.has};
-  if (sample.runs.back().energy_gain > counts) {
+  if (sample.runs.back().energy_gain > least_gained) {
     sample.finer_gain = run_scene(drawn.scene, configuration, finer, frames).energy_gain;
   }
   return sample;
@@ -223,19 +222,19 @@ std::string promises(const std::array<std::vector<Sample>, 2>& samples) {
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     for (std::size_t i = 0; i < ladder.size(); ++i) {
       const std::vector<Sample>& s = samples[k];
-      rows.push_back(
-          {kinds[k], fmt::to_string(ladder[i]), count(s, i, has_exploded),
-           broken(
-               s, i, [](const Soundness& r) { return r.driven ? 0.0 : r.energy_gain; }, 1e-9),
-           broken(
-               s, i, [](const Soundness& r) { return r.gap_violation; }, 1e-6),
-           broken(
-               s, i, [](const Soundness& r) { return r.length_error; }, 1e-12),
-           broken(
-               s, i, [](const Soundness& r) { return r.loose_span; }, 1e-9),
-           broken(
-               s, i, [](const Soundness& r) { return r.depth; }, 1e-6),
-           unsettled(s, i), count(s, i, has_clusters)});
+      rows.push_back({kinds[k], fmt::to_string(ladder[i]), count(s, i, has_exploded),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.driven ? 0.0 : r.energy_gain; },
+                          least_gained),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.gap_violation; }, 1e-6),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.length_error; }, 1e-12),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.loose_span; }, 1e-9),
+                      broken(
+                          s, i, [](const Soundness& r) { return r.depth; }, 1e-6),
+                      unsettled(s, i), count(s, i, has_clusters)});
     }
   }
   return markdown_table({"events", "steps a frame", "not finite", "energy gained > 1e-9",
@@ -248,16 +247,17 @@ std::string shapely_promises(const std::vector<ShapelySample>& samples) {
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < ladder.size(); ++i) {
     const auto gain = [](const Soundness& r) { return r.energy_gain; };
-    rows.push_back({fmt::to_string(ladder[i]), count(samples, i, has_exploded),
-                    broken(samples, i, gain, counts),
-                    broken(
-                        samples, i, [](const Soundness& r) { return r.lasting_gain; }, counts),
-                    count(samples, i, [](const Soundness& r) { return r.energy_gain > 1e-2; }),
-                    broken(
-                        samples, i, [](const Soundness& r) { return r.gap_violation; }, 1e-3),
-                    broken(
-                        samples, i, [](const Soundness& r) { return r.length_error; }, 1e-12),
-                    unsettled(samples, i), count(samples, i, has_clusters)});
+    rows.push_back(
+        {fmt::to_string(ladder[i]), count(samples, i, has_exploded),
+         broken(samples, i, gain, least_gained),
+         broken(
+             samples, i, [](const Soundness& r) { return r.lasting_gain; }, least_gained),
+         count(samples, i, [](const Soundness& r) { return r.energy_gain > 1e-2; }),
+         broken(
+             samples, i, [](const Soundness& r) { return r.gap_violation; }, 1e-3),
+         broken(
+             samples, i, [](const Soundness& r) { return r.length_error; }, 1e-12),
+         unsettled(samples, i), count(samples, i, has_clusters)});
   }
   return markdown_table(
       {"steps a frame", "not finite", "energy gained > 1e-9", "for 0.1 s", "> 1e-2",
@@ -271,7 +271,7 @@ std::string left_with_finer(const std::vector<ShapelySample>& samples) {
   double most = 0.0;
   for (const ShapelySample& sample : samples) {
     const double gain = sample.runs.back().energy_gain;
-    if (gain <= counts) continue;
+    if (gain <= least_gained) continue;
     ++runs;
     most = std::max(most, sample.finer_gain / gain);
   }
@@ -298,7 +298,7 @@ std::string promises_on_tables(const std::array<std::vector<Runs>, 2>& samples) 
       const std::vector<Runs>& s = samples[k];
       rows.push_back({kinds[k], fmt::to_string(ladder[i]), count(s, i, has_exploded),
                       broken(
-                          s, i, [](const Soundness& r) { return r.energy_gain; }, 1e-9),
+                          s, i, [](const Soundness& r) { return r.energy_gain; }, least_gained),
                       broken(
                           s, i, [](const Soundness& r) { return r.gap_violation; }, 1e-9),
                       unsettled(s, i), count(s, i, has_clusters)});

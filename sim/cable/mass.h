@@ -94,7 +94,7 @@ void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
 Eigen::Matrix3d least_mass(const World& world, const Sleeve& sleeve, const Eigen::Matrix3d& mass);
 
 /// dT/dq - (dM/dt) v at these velocities (m/s, m/s, rad/s), likewise (N, N, N m): put into `to`,
-/// and what gravity (m/s^2) does to spans that move across themselves as drums fill.
+/// and what gravity (m/s^2) does to spans that are loose or move across themselves as drums fill.
 void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
                       std::span<const Eigen::Vector3d> velocities, std::span<Eigen::Vector3d> to);
 
@@ -103,7 +103,7 @@ void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
 void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double factor,
                       std::span<const Eigen::Vector3d> velocities, std::span<Eigen::Vector3d> to);
 
-/// The former of one span, on what moves with its ends (N, N, N m).
+/// dT/dq - (dM/dt) v of one span, on what moves with its ends (N, N, N m).
 struct FlowForces {
   Eigen::Vector3d on_a = Eigen::Vector3d::Zero(), on_b = on_a;
 };
