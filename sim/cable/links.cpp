@@ -211,13 +211,32 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   if (!cable.rims.empty()) lay_down(world, cable);
 }
 
+namespace {
+
+/// Gives a new middle link the material of the link before it where both meet, so that none is
+/// stored between them: by the tangent, as the arc of a body that has just come off the very end
+/// of the wrap is that end.
+void hold_where_pressed(const World& world, CableState& cable, std::size_t middle) {
+  Link& link = cable.links[middle];
+  const Link& whole = cable.links[middle - 1];
+  const double alpha = cable.segments[middle].alpha;
+  const double pressed = material_at(cable, middle - 1, false, alpha, body_angle(world, whole));
+  const double place = link.signed_radius() * (alpha - body_angle(world, link));
+  link.material = pressed - place;
+  const bool carries = !cable.rims.empty() && !cable.rims[middle - 1].laid.empty() &&
+                       at(world.bodies, link.body).cable_friction == infinity;
+  if (carries) cable.rims[middle].laid = {{place, place, 1.0}};
+}
+
+}  // namespace
+
 void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> pinches) {
   std::vector<Link> links;
   std::vector<Segment> segments;
   std::vector<Rim> rims;
   links.reserve(cable.links.size() + 2 * pinches.size());
   segments.reserve(links.capacity());
-  std::vector<std::size_t> added;  // segments
+  std::vector<std::size_t> middles;  // links
   auto next = pinches.begin();
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     const Link& whole = cable.links[i];
@@ -233,20 +252,13 @@ void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> p
       middle.radius = at(world.bodies, next->body).radius + cable.half_width;
       middle.still = !can_move(at(world.bodies, next->body));
       middle.pinch_middle = true;
-      const double pressed = material_at(cable, i, false, between.alpha, body_angle(world, whole));
-      middle.material =
-          pressed - middle.signed_radius() * (between.alpha - body_angle(world, middle));
       if (!cable.rims.empty()) {
-        const double place = pressed - middle.material;
-        const bool carries =
-            !cable.rims[i].laid.empty() && at(world.bodies, next->body).cable_friction == infinity;
         rims.emplace_back();
-        if (carries) rims.back().laid = {{place, place, 1.0}};
         rims.push_back(cable.rims[i]);
         rims.back().slope = 0.0;
       }
+      middles.push_back(links.size());
       for (const Link& link : {middle, whole}) {
-        added.push_back(links.size());
         links.push_back(link);
         segments.push_back(between);
       }
@@ -256,9 +268,12 @@ void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> p
   cable.segments.swap(segments);
   cable.rims.swap(rims);
   count_changes(world, cable, static_cast<int>(pinches.size()));
-  for (const std::size_t s : added) {
-    update_tangent(world, cable, s);
-    begin_here(cable.segments[s]);
+  for (const std::size_t middle : middles) {
+    for (const std::size_t s : {middle, middle + 1}) {
+      update_tangent(world, cable, s);
+      begin_here(cable.segments[s]);
+    }
+    hold_where_pressed(world, cable, middle);
   }
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);
