@@ -28,6 +28,11 @@ inline double first_heading(const Vec2& e, int orientation) {
   return e.x() == 0.0 ? std::copysign(heading(e), orientation) : heading(e);
 }
 
+/// The direction of a heading (rad).
+inline Vec2 direction_at(double heading) {
+  return {-std::sin(heading), std::cos(heading)};
+}
+
 /// `angle` plus the whole turns that bring it nearest to `reference`, rad.
 inline double unwrapped(double angle, double reference) {
   constexpr double turn = 2.0 * std::numbers::pi;

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/tangent.h"
 
 namespace pinchlab {
 
@@ -15,17 +16,6 @@ namespace {
 /// cable).
 double place_on_rim(const World& world, const Link& link, double alpha) {
   return link.signed_radius() * (alpha - body_angle(world, link));
-}
-
-struct Span {
-  double tail = 0.0, head = 0.0;  // m, places on a rim
-};
-
-/// What the cable lies on of a link's rim.
-Span span_of(const World& world, const CableState& cable, std::size_t i) {
-  const Link& link = cable.links[i];
-  const double tail = place_on_rim(world, link, cable.segments[i].alpha);
-  return {tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i)))};
 }
 
 /// What comes on of one strain is one piece, but for round-off.
@@ -67,7 +57,7 @@ void move_tail(Rim& rim, double place) {
 
 /// Ends what the rim carries where the cable leaves it. So little that tensions cannot tell waits
 /// for more to come.
-void keep(Rim& rim, const Span& span, double radius) {
+void keep(Rim& rim, const RimSpan& span, double radius) {
   const double rounding = 1e-10 * radius;
   if (std::abs(span.head - rim.laid.back().place) > rounding) move_head(rim, span.head);
   if (std::abs(span.tail - rim.laid.front().place) > rounding) move_tail(rim, span.tail);
@@ -93,18 +83,38 @@ double slope_of(const CableState& cable, std::size_t i, std::size_t before) {
   return to.laid.empty() ? 1.0 : slope_at_end(to, false);
 }
 
-/// m/s, by which a link's rim takes less of a segment's material than it turns by, or gives it
-/// less; forward positive.
-double creep_at(const World& world, const Link& link, const Rim& rim, bool at_head) {
+/// rad/s of a segment's direction.
+double turning_of(const World& world, const Segment& segment, const Link& from, const Link& to) {
+  const Vec2 d = velocity_of(world, to) - velocity_of(world, from);
+  const double apart = to.signed_radius() - from.signed_radius();
+  if (segment.pinched) return apart != 0.0 ? -segment.direction.dot(d) / apart : 0.0;
+  return segment.length > 0.0 ? cross(segment.direction, d) / segment.length : 0.0;
+}
+
+/// m/s, by which a link's rim takes less of a segment's material than it turns by against it, or
+/// gives it less; forward positive.
+double creep_at(const World& world, const Link& link, const Rim& rim, bool at_head,
+                double turning) {
   if (rim.laid.empty()) return 0.0;
-  const double speed = link.signed_radius() * at(world.angular_velocity, link.body);
-  const bool comes_on = at_head == (speed < 0.0);
-  const double comes = at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
-  const double goes = slope_at_end(rim, at_head);
-  return (1.0 - (comes_on ? comes : goes)) * speed;
+  const double speed = link.signed_radius() * (at(world.angular_velocity, link.body) - turning);
+  const double soon = at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
+  const Laying laying = laying_at(rim, at_head, soon);
+  const bool takes = at_head == (speed < 0.0);
+  return (1.0 - (takes ? laying.takes : laying.gives)) * speed;
 }
 
 }  // namespace
+
+RimSpan span_on_rim(const World& world, const CableState& cable, std::size_t i) {
+  const Link& link = cable.links[i];
+  const double tail = place_on_rim(world, link, cable.segments[i].alpha);
+  return {tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i)))};
+}
+
+Laying laying_at(const Rim& rim, bool at_head, double taken) {
+  if (rim.laid.empty()) return {};
+  return {taken, slope_at_end(rim, at_head), true};
+}
 
 double laid_material(const Rim& rim, double place) {
   const Laid &first = rim.laid.front(), &last = rim.laid.back();
@@ -123,7 +133,7 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
       at(world.bodies, link.body).cable_friction < infinity) {
     return;
   }
-  const Span span = span_of(world, cable, i);
+  const RimSpan span = span_on_rim(world, cable, i);
   std::vector<Laid>& laid = cable.rims[i].laid;
   laid.assign(1, {span.tail, span.tail, 1.0});
   if (span.head > span.tail) laid.push_back({span.head, span.head, 1.0});
@@ -134,7 +144,7 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
 void lay_down(const World& world, CableState& cable) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Rim& rim = cable.rims[i];
-    if (!rim.laid.empty()) keep(rim, span_of(world, cable, i), cable.links[i].radius);
+    if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);
   }
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
     const std::size_t before = index(previous_link(cable, static_cast<int>(i)));
@@ -150,8 +160,10 @@ void lay_down(const World& world, CableState& cable) {
 
 double creep_speed(const World& world, const CableState& cable, int segment) {
   const int before = previous_link(cable, segment);
-  return creep_at(world, at(cable.links, before), at(cable.rims, before), true) -
-         creep_at(world, at(cable.links, segment), at(cable.rims, segment), false);
+  const Link &from = at(cable.links, before), &to = at(cable.links, segment);
+  const double turning = turning_of(world, at(cable.segments, segment), from, to);
+  return creep_at(world, from, at(cable.rims, before), true, turning) -
+         creep_at(world, to, at(cable.rims, segment), false, turning);
 }
 
 double wrapped_material(const World& world, const CableState& cable, std::size_t i) {
@@ -164,13 +176,10 @@ double energy_carried(const World& world, const CableState& cable, double stiffn
   double energy = 0.0;
   for (std::size_t i = 0; i < cable.rims.size(); ++i) {
     if (cable.rims[i].laid.empty()) continue;
-    Rim rim = cable.rims[i];
-    keep(rim, span_of(world, cable, i), cable.links[i].radius);
-    for (std::size_t k = 1; k < rim.laid.size(); ++k) {
-      const double material = rim.laid[k].material - rim.laid[k - 1].material;
-      const double stretch = rim.laid[k].place - rim.laid[k - 1].place - material;
-      if (material > 0.0) energy += 0.5 * stiffness * stretch * stretch / material;
-    }
+    each_piece(world, cable, i, [&](double from, double to, double slope) {
+      if (slope > 0.0)
+        energy += 0.5 * stiffness * (to - from) * (1.0 - slope) * (1.0 - slope) / slope;
+    });
   }
   return energy;
 }

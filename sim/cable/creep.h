@@ -7,6 +7,8 @@
 //     w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA).
 // On discs that a cable does not slip on; elsewhere rims carry as much as they turn.
 
+#include <algorithm>
+
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -30,6 +32,17 @@ inline double laid_near_end(const Rim& rim, bool at_head, double place) {
   return end.material + beyond * (beyond > 0.0 ? end.slope : rim.comes_on_at_tail);
 }
 
+/// What a rim takes of the segment at one of its ends, and gives it, in m of material a metre of
+/// the rim.
+struct Laying {
+  double takes = 1.0, gives = 1.0;
+  bool keeps = false;  // what lies on the rim turns with the body: it creeps, or is wound up
+};
+
+/// Of the end where the cable leaves the rim, or with `at_head` false where it comes to it, while
+/// the segment there has `taken` m of material a metre.
+Laying laying_at(const Rim& rim, bool at_head, double taken);
+
 /// Gives a link of a cable that creeps, newly on its body, a rim that has carried what it turned by
 /// so far, if it is one that may do otherwise from now on.
 void begin_to_carry(const World& world, CableState& cable, std::size_t link);
@@ -44,6 +57,31 @@ double creep_speed(const World& world, const CableState& cable, int segment);
 
 /// m of material on a link, which has wraps.
 double wrapped_material(const World& world, const CableState& cable, std::size_t link);
+
+/// Where the cable lies on a link's rim (m along it, forward along the cable).
+struct RimSpan {
+  double tail = 0.0, head = 0.0;
+};
+RimSpan span_on_rim(const World& world, const CableState& cable, std::size_t link);
+
+/// Calls f(from, to, slope) for each piece of what a link's rim carries, if it creeps: from where
+/// on it to where (m), and m of material in a metre there.
+template <class F>
+void each_piece(const World& world, const CableState& cable, std::size_t link, const F& f) {
+  const auto [tail, head] = span_on_rim(world, cable, link);
+  const Rim& rim = cable.rims[link];
+  double from = tail, slope = rim.comes_on_at_tail;
+  const auto go_to = [&](double place) {
+    const double to = std::min(place, head);
+    if (to > from) f(from, to, slope);
+    from = std::max(from, to);
+  };
+  for (const Laid& laid : rim.laid) {
+    go_to(laid.place);
+    slope = &laid == &rim.laid.back() ? rim.comes_on_at_head : laid.slope;
+  }
+  go_to(head);
+}
 
 /// J, of the strain of what a cable's rims carry; `stiffness` (N) is finite.
 double energy_carried(const World& world, const CableState& cable, double stiffness);

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/cable/held_spans.h"
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
@@ -36,6 +37,8 @@ void let_fill(const Link& from, const Link& to, MassedSpan& span) {
   }
   if (from.layers.way > 0) span.slope_a = from.layers.growth;
   if (to.layers.way < 0) span.slope_b = -to.layers.growth;
+  span.laying_a.keeps = from.layers.way > 0;
+  span.laying_b.keeps = to.layers.way < 0;
   if (span.pinched) return;
   // The first has no bound on a span as short as the slope, w / pi, which has no room for a turn
   // more or less (lay_outermost_turn).
@@ -60,9 +63,15 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.z_b = left(span.centre_b) + span.p_b * span.direction;
   span.pinched = segment.pinched;
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
+  if (!cable.rims.empty()) {
+    const Rim& before = at(cable.rims, previous_link(cable, static_cast<int>(i)));
+    const double taken = cable.rims[i].slope;  // now, as the interval begins
+    span.laying_a = laying_at(before, true, taken);
+    span.laying_b = laying_at(cable.rims[i], false, taken);
+  }
   if (cable.fills) let_fill(from, to, span);
+  span.length = segment.length;
   span.material = std::max(material_of_span(cable, i), 0.0);
-  span.loose = segment.pinched ? 0.0 : span.material - segment.length;
   span.density = cable.density;
   return span;
 }
@@ -77,6 +86,20 @@ void lie_on_rim(const CableState& cable, const Link& link, const Vec2& comes, co
   arc.mass = cable.density * link.radius * std::max(link.wrap, 0.0);
   arc.first = cable.density * squared * (left(comes) - left(goes));
   arc.second = arc.mass * squared;
+}
+
+/// The same piece by piece, of what the rim has carried over as stretched as it came on.
+void lie_as_laid(const World& world, const CableState& cable, std::size_t i, MassedArc& arc) {
+  const Link& link = cable.links[i];
+  const double p = link.signed_radius(), angle = body_angle(world, link);
+  arc.kept = true;
+  each_piece(world, cable, i, [&](double from, double to, double slope) {
+    const double mass = cable.density * slope;  // kg/m
+    const Vec2 comes = direction_at(from / p + angle), goes = direction_at(to / p + angle);
+    arc.mass += mass * (to - from);
+    arc.first += mass * p * p * (left(comes) - left(goes));
+  });
+  arc.second = arc.mass * p * p;
 }
 
 /// The same of what lies in layers, z = orientation r e with r = inner + g th. The direction e is
@@ -94,7 +117,7 @@ void lie_in_layers(const CableState& cable, const Link& link, const Vec2& comes,
   const Vec2 &held = layers.way > 0 ? comes : goes, &free = layers.way > 0 ? goes : comes;
   const double wrap = std::max(link.wrap, 0.0);
   const double squares = outer * outer + layers.inner * layers.inner;
-  arc.wound = true;
+  arc.kept = true;
   arc.mass = cable.density * layers.length(wrap);
   arc.first = link.orientation * cable.density * (until(layers.inner, held) - until(outer, free));
   arc.second = 0.25 * cable.density * wrap * squares * (outer + layers.inner);
@@ -105,9 +128,13 @@ MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
   MassedArc arc;
   arc.body = mover_or_world(world, link);
   arc.centre = centre_of(world, link);
-  const auto lie = link.layers.way != 0 ? lie_in_layers : lie_on_rim;
-  lie(cable, link, cable.segments[i].direction,
-      cable.segments[(i + 1) % cable.links.size()].direction, arc);
+  if (!cable.rims.empty() && !cable.rims[i].laid.empty()) {
+    lie_as_laid(world, cable, i, arc);
+  } else {
+    const auto lie = link.layers.way != 0 ? lie_in_layers : lie_on_rim;
+    lie(cable, link, cable.segments[i].direction,
+        cable.segments[(i + 1) % cable.links.size()].direction, arc);
+  }
   const Vec2 c = left(arc.centre);
   arc.second += arc.mass * c.squaredNorm() + 2.0 * c.dot(arc.first);
   arc.first += arc.mass * c;
@@ -134,22 +161,37 @@ void add(std::span<Eigen::Matrix3d> to, const MassedArc& arc) {
   add_moments(at(to, arc.body), arc.mass, arc.first, arc.second);
 }
 
+/// m of material in a metre of the rims at a span's ends, as they turn against it: each gives what
+/// lies on it, or takes what comes.
+struct EndsLaid {
+  double a, b;
+};
+EndsLaid laid_at_ends(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b,
+                      double turning) {
+  const Laying &a = span.laying_a, &b = span.laying_b;
+  return {span.p_a * (v_a.z() - turning) > 0.0 ? a.gives : a.takes,
+          span.p_b * (v_b.z() - turning) > 0.0 ? b.takes : b.gives};
+}
+
 /// kg/s, of either end's mass, by what rims that turn give and take.
-double growth_of(const MassedSpan& span, const Vector3d& v_a, const Vector3d& v_b, double turning) {
-  return 0.5 * span.density * (span.p_a * (v_a.z() - turning) - span.p_b * (v_b.z() - turning));
+double growth_of(const MassedSpan& span, const EndsLaid& laid, const Vector3d& v_a,
+                 const Vector3d& v_b, double turning) {
+  return 0.5 * span.density *
+         (laid.a * span.p_a * (v_a.z() - turning) - laid.b * span.p_b * (v_b.z() - turning));
 }
 
 /// One of a span's ends.
 struct SpanEnd {
   const Vec2& z;
   const Vec2& centre;
-  double p, slope;
+  double p, slope, laid;
+  bool keeps;
 };
-SpanEnd end_a(const MassedSpan& span) {
-  return {span.z_a, span.centre_a, span.p_a, span.slope_a};
+SpanEnd end_a(const MassedSpan& span, const EndsLaid& laid) {
+  return {span.z_a, span.centre_a, span.p_a, span.slope_a, laid.a, span.laying_a.keeps};
 }
-SpanEnd end_b(const MassedSpan& span) {
-  return {span.z_b, span.centre_b, span.p_b, span.slope_b};
+SpanEnd end_b(const MassedSpan& span, const EndsLaid& laid) {
+  return {span.z_b, span.centre_b, span.p_b, span.slope_b, laid.b, span.laying_b.keeps};
 }
 
 /// dz/dt of an end that turns with the body about the circle's centre (m/s).
@@ -158,10 +200,10 @@ Vec2 shift_of(const SpanEnd& end, const Vector3d& velocity, double turning, cons
   return shift + end.slope * (turning - velocity.z()) * e;
 }
 
-/// kg/s on either rim: by the span's turning, and on a drum that fills by its own.
+/// kg/s on either rim: by the span's turning, and where it keeps what lies there by its own.
 double gain_of_rim(const MassedSpan& span, const SpanEnd& end, const Vector3d& velocity,
                    double turning) {
-  return span.density * end.p * (end.slope != 0.0 ? turning - velocity.z() : turning);
+  return span.density * end.laid * end.p * (end.keeps ? turning - velocity.z() : turning);
 }
 
 void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d& v_a,
@@ -170,7 +212,8 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
   const Vec2 n = left(span.direction);
   const double rho = span.density, turning = turning_of(span, v_a, v_b);
   const double mass = end_mass(span);
-  const double growth = growth_of(span, v_a, v_b, turning);
+  const EndsLaid laid = laid_at_ends(span, v_a, v_b, turning);
+  const double growth = growth_of(span, laid, v_a, v_b, turning);
   const double e_a = 0.5 * rho * u_a.squaredNorm(), e_b = 0.5 * rho * u_b.squaredNorm();  // J/m
 
   // A point mass whose place on the body moves, and what rims gain by the span's turning.
@@ -181,23 +224,28 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
         on_body((growth + gains) * u, at_end.z) + mass * velocity.z() * on_body(shift, at_end.z);
     force.z() -= mass * turning * (at_end.p * n + at_end.slope * span.direction).dot(u);
   };
-  const SpanEnd at_a = end_a(span), at_b = end_b(span);
+  const SpanEnd at_a = end_a(span, laid), at_b = end_b(span, laid);
   end(at_a, v_a, u_a, gain_of_rim(span, at_a, v_a, turning), f_a);
   end(at_b, v_b, u_b, -gain_of_rim(span, at_b, v_b, turning), f_b);
 
-  // By the flow of material, whose kinetic energy is the mean of the ends', from and to layers too.
+  // By the flow of material, whose kinetic energy is the mean of the ends'; from and to what rims
+  // keep too.
   const double mean = 0.5 * (e_a + e_b);
-  f_a.z() += (span.slope_a != 0.0 ? mean - e_a : mean) * span.p_a;
-  f_b.z() -= (span.slope_b != 0.0 ? mean - e_b : mean) * span.p_b;
+  const double flow_a = laid.a * span.p_a, flow_b = laid.b * span.p_b;  // m^2 a radian, of material
+  f_a.z() += (at_a.keeps ? mean - e_a : mean) * flow_a;
+  f_b.z() -= (at_b.keeps ? mean - e_b : mean) * flow_b;
   // By the direction: the flow to and from rims, and the ends' own places.
   const double weight = mass * gravity.dot(n);  // N, of what moves by dp across the span
-  const double spare = 0.5 * rho * span.loose * gravity.dot(span.direction);  // N
-  const double about = mean * (span.p_b - span.p_a) + e_a * span.p_a - e_b * span.p_b +
+  const double along = span.pinched ? 0.0 : 0.5 * rho * gravity.dot(span.direction);  // N/m
+  const double spare_a = along * (span.material - laid.a * span.length);              // N
+  const double spare_b = along * (span.material - laid.b * span.length);
+  const double about = mean * (flow_b - flow_a) + e_a * flow_a - e_b * flow_b +
                        mass * v_a.z() * (span.p_a * n + span.slope_a * span.direction).dot(u_a) +
                        mass * v_b.z() * (span.p_b * n + span.slope_b * span.direction).dot(u_b) -
-                       weight * (span.slope_a + span.slope_b) + spare * (span.p_a + span.p_b);
-  f_a.z() += weight * span.slope_a - spare * span.p_a;
-  f_b.z() += weight * span.slope_b - spare * span.p_b;
+                       weight * (span.slope_a + span.slope_b) + spare_a * span.p_a +
+                       spare_b * span.p_b;
+  f_a.z() += weight * span.slope_a - spare_a * span.p_a;
+  f_b.z() += weight * span.slope_b - spare_b * span.p_b;
   if (span.a == span.b) {
     f_a.z() += about;
   } else if (!span.pinched && span.distance > 0.0) {  // in a pinch both sides flow alike
@@ -331,7 +379,7 @@ void find_flow_forces(const CableMasses& masses, const Vec2& gravity,
   }
   for (const MassedArc& arc : masses.arcs) {
     const double square = at(velocities, arc.body).z() * at(velocities, arc.body).z();
-    if (arc.wound) {  // it turns about the body
+    if (arc.kept) {  // it turns about the body
       at(to, arc.body).head<2>() -= square * left(arc.first);
       continue;
     }
@@ -348,20 +396,21 @@ void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double fac
     const Vector3d& v_a = at(velocities, span.a);
     const Vector3d& v_b = at(velocities, span.b);
     const double turning = turning_of(span, v_a, v_b), mass = end_mass(span);
-    const double growth = growth_of(span, v_a, v_b, turning);
+    const EndsLaid laid = laid_at_ends(span, v_a, v_b, turning);
+    const double growth = growth_of(span, laid, v_a, v_b, turning);
     const auto end = [&](const SpanEnd& at_end, const Vector3d& velocity, double gains,
                          Vector3d& rate) {
       rate += on_body((growth + gains) * g, at_end.z);
       rate.z() += mass * g.dot(shift_of(at_end, velocity, turning, span.direction));
     };
-    const SpanEnd at_a = end_a(span), at_b = end_b(span);
+    const SpanEnd at_a = end_a(span, laid), at_b = end_b(span, laid);
     end(at_a, v_a, gain_of_rim(span, at_a, v_a, turning), at(to, span.a));
     end(at_b, v_b, -gain_of_rim(span, at_b, v_b, turning), at(to, span.b));
   }
   for (const MassedArc& arc : masses.arcs) {
     const double turning = at(velocities, arc.body).z();
     at(to, arc.body).z() +=
-        arc.wound ? turning * g.dot(left(arc.first)) : -arc.mass * turning * arc.centre.dot(g);
+        arc.kept ? turning * g.dot(left(arc.first)) : -arc.mass * turning * arc.centre.dot(g);
   }
 }
 

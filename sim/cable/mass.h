@@ -12,11 +12,15 @@
 // tangents turn. d/dt (dT/dv) - dT/dq = F leaves the force dT/dq - (dM/dt) v, quadratic in
 // velocities.
 //
-// A span that is not taut, or is stretched, has material M longer or shorter by S than itself. With
-// the arcs' weight beside it, its own, V = -rho M g . (x_a + x_b) / 2, does not act then as if its
-// halves turned with the rims at its ends. What is left is the power
-//     -K (p_a omega_a + p_b omega_b - (p_a + p_b) phi'),      K = rho S (g . e) / 2,
-// where phi is the angle of its direction e.
+// Of material a metre of a rim holds k: 1, or less where it carries cable over as stretched as it
+// came on (creep.h). By a rim's turning a span of the direction e, whose angle is phi, gains
+// k p (omega - phi') at a, and loses it at b. What a rim carries over so turns with the body.
+//
+// A span that is not taut, or is stretched otherwise than what the rims give and take, has material
+// M other than k times its length l. With the arcs' weight beside it, its own,
+// V = -rho M g . (x_a + x_b) / 2, does not act then as if its halves turned with the rims at its
+// ends. What is left at either end is the power
+//     -K p (omega - phi'),      K = rho (M - k l) (g . e) / 2.
 //
 // A drum that fills (Layers) is as if each moment its outermost turn were its rim: p changes with
 // what is wound up, dp = s d(theta - angle), theta being the span's direction and s its slope. What
@@ -29,6 +33,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/cable/creep.h"
 #include "sim/cable/sleeve.h"
 #include "sim/world.h"
 
@@ -47,15 +52,15 @@ struct MassedSpan {
   double slope_a = 0.0, slope_b = 0.0;  // m/rad, of p by what the direction turns on the body: not
                                         // 0 on a drum that fills
   bool pinched = false;                 // turns with the line of centres
-  double material = 0.0;                // m
-  double loose = 0.0;                   // m, by which that is longer than the span
+  double length = 0.0, material = 0.0;  // m
   double density = 0.0;                 // kg/m
+  Laying laying_a{}, laying_b{};
 };
 
 /// What lies on a rim.
 struct MassedArc {
   int body = 0;                // or sleeve, likewise
-  bool wound = false;          // in layers: it turns with the body. Else material comes as it goes
+  bool kept = false;           // it turns with the body. Else material comes as it goes
   Vec2 centre = Vec2::Zero();  // m, of the circle from the body's centre
   double mass = 0.0;           // kg
   Vec2 first = Vec2::Zero();   // kg m, integral of z
@@ -70,6 +75,11 @@ struct CableMasses {
 /// Whether the cable has mass that bodies carry.
 inline bool is_massed(const CableState& cable) {
   return cable.density > 0.0;
+}
+
+/// m of material, by which a span between bodies apart is longer than itself.
+inline double spare_of(const MassedSpan& span) {
+  return span.pinched ? 0.0 : span.material - span.length;
 }
 
 /// kg, at either end.

@@ -44,7 +44,7 @@ double turned_by_flow(const World& world, std::span<const int> bodies, double le
   if (s.carried.empty()) return 0.0;
   double greatest = 0.0;
   for (const MassedSpan& span : s.masses.spans) {
-    if (span.loose <= s.tolerance() || (span.p_a == 0.0 && span.p_b == 0.0)) continue;
+    if (spare_of(span) <= s.tolerance() || (span.p_a == 0.0 && span.p_b == 0.0)) continue;
     const FlowForces forces = flow_forces(span, s.velocity);
     const double pushed = forces.on_a.dot(at(s.mobility, span.a) * forces.on_a) +
                           forces.on_b.dot(at(s.mobility, span.b) * forces.on_b);

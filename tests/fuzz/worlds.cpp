@@ -210,7 +210,6 @@ void add_heavy_cables(json& scene, Choices& choices) {
     }
     if (!chosen || cable["wraps"].empty()) continue;
     cable["mass_per_metre_kg"] = choices.magnitude(-3.0, 3.0);
-    cable.erase("creep");
     any = true;
   }
   if (!any) return;

@@ -120,6 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
     , Mirror,
     ::testing::Values(
         Population{"Discs", random_scene, 200}, Population{"Elastic", random_elastic, 60},
+        Population{"HeavyElastic", heavy_elastic, 60},
         Population{"SlippingElastic", slipping_elastic, 60}, Population{"Linkages", linkage, 60},
         Population{"Ropes", falling_on_rope, 60}, Population{"SlippingRopes", slipping_rope, 60},
         Population{"RopesInLayers", braked_rope, 60}, Population{"StrungRopes", strung_rope, 30},

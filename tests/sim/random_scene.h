@@ -69,6 +69,13 @@ inline Scene random_elastic(unsigned seed) {
   return scene;
 }
 
+/// The same by ropes with mass.
+inline Scene heavy_elastic(unsigned seed) {
+  Scene scene = random_elastic(seed);
+  scene.cables[0].mass_per_metre = std::pow(10.0, Random(seed + 555).uniform(-1.5, 0.3));
+  return scene;
+}
+
 /// The same over pulleys on which the rope slips, with friction or without.
 inline Scene slipping_elastic(unsigned seed) {
   Scene scene = random_elastic(seed);

@@ -80,7 +80,8 @@ TEST(Scale, DemonstrationsMoveAlikeInAllUnitsToTheLastBit) {
 
 TEST(Scale, RandomScenesMoveAlikeInAllUnitsToTheLastBit) {
   for (int seed = 0; seed < 40; ++seed) {
-    for (const Scene& scene : {random_scene(seed), slipping_elastic(seed), linkage(seed)}) {
+    for (const Scene& scene :
+         {random_scene(seed), slipping_elastic(seed), heavy_elastic(seed), linkage(seed)}) {
       for (const auto& [l, m] : units) {
         EXPECT_EQ(first_parted(scene, Method::pinch, l, m, 240), -1)
             << seed << ": " << l << " m, " << m << " kg";
