@@ -62,11 +62,9 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
       trial.violated = true;
     }
     if (!row.on && group >= 0 && !shares) continue;
-    // By the interval's end as much of what was left at its start must be made up for as by `bias`;
-    // nothing where the solver has left it (solve/passive.cpp).
-    const bool stays = violated || (row.clearance < 0.0 && row.bias == row.curved);
+    // By the interval's end as much of what was left at its start must be made up for as by `bias`.
     const bool made_up = row.clearance <= s.reach;
-    const double left = stays ? row.clearance : made_up ? still_left * row.clearance : 0.0;
+    const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
     double missed = clearance_of(world, row) - left;
     if (row.compliance > 0.0) {
       if (!row.on || group >= 0) continue;

@@ -83,52 +83,9 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   return !(made <= residual * momentum(s) * fastest);
 }
 
-namespace {
-
-/// Whether making up for what positions have missed throws bodies, as on a cable that cannot give
-/// and is straight but for an angle a: stopping what comes at v takes v / a, what makes up for a
-/// bias is as many times faster than it, and their product is energy. A row's impulse by itself
-/// would make a speed of p times its diagonal, which tells 1 / a.
-bool repairs_throw(const PartSystem& s, const SolveScratch& set) {
-  // Of the fastest body's speed: no cable bends so little otherwise. Of its square: more than what
-  // leapfrog and events leave of energy, far less than what shows.
-  constexpr double straight = 1e3, most_made = 1e-8;
-  if (!set.direct) return false;
-  double greatest = 0.0, most = 0.0;  // m/s, m^2/s^2
-  for (const Row& row : s.rows) {
-    if (row.impulse == 0.0 || row.compliance > 0.0) continue;
-    const double alone = std::abs(row.impulse) * row.diagonal;
-    greatest = std::max(greatest, alone);
-    most = std::max(most, alone * std::abs(row.bias - row.curved));
-  }
-  if (most == 0.0) return false;
-  const double fastest = std::max(greatest_speed(s.velocity), greatest_speed(s.free_velocity));
-  return greatest > straight * fastest && most > most_made * fastest * fastest;
-}
-
-/// Leaves what positions have missed as it is; whether they have missed anything. What is still
-/// apart may come together.
-bool leave_missed(PartSystem& s) {
-  bool any = false;
-  for (Row& row : s.rows) {
-    if (row.compliance > 0.0 || row.idle || row.bias == row.curved) continue;
-    if (!row.clamped && row.bias > row.curved) continue;
-    row.bias = row.curved;
-    any = true;
-  }
-  return any;
-}
-
-}  // namespace
-
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                      SolveScratch& set) {
   bool settled = solve_direct(world, parts, part, s, set);
-  // A motor winds on, and what it has wound in must not be left.
-  if (s.motors.empty() && repairs_throw(s, set) && leave_missed(s)) {
-    forget_flips(s);
-    settled = solve_direct(world, parts, part, s, set);
-  }
   if (set.by_dual && makes_energy(s, set)) {
     forget_flips(s);
     set.repairs = false;

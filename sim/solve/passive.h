@@ -27,7 +27,7 @@ bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
 /// sliding, or where the states did not settle. Then nothing slides on cables and bare surfaces do
 /// not rub: what is left is a projection. Where even that makes energy, its matrix is next to
 /// singular, and sweeps that start from no impulse stop short of the solution: each of them only
-/// takes energy. What positions have missed within reach is left where making up for it throws.
+/// takes energy.
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                      SolveScratch& scratch);
 
