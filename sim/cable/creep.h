@@ -68,11 +68,11 @@ RimSpan span_on_rim(const World& world, const CableState& cable, std::size_t lin
 /// on it to where (m), and m of material in a metre there.
 template <class F>
 void each_piece(const World& world, const CableState& cable, std::size_t link, const F& f) {
-  const auto [tail, head] = span_on_rim(world, cable, link);
+  const RimSpan on = span_on_rim(world, cable, link);
   const Rim& rim = cable.rims[link];
-  double from = tail, slope = rim.comes_on_at_tail;
+  double from = on.tail, slope = rim.comes_on_at_tail;
   const auto go_to = [&](double place) {
-    const double to = std::min(place, head);
+    const double to = std::min(place, on.head);
     if (to > from) f(from, to, slope);
     from = std::max(from, to);
   };
@@ -80,7 +80,7 @@ void each_piece(const World& world, const CableState& cable, std::size_t link, c
     go_to(laid.place);
     slope = &laid == &rim.laid.back() ? rim.comes_on_at_head : laid.slope;
   }
-  go_to(head);
+  go_to(on.head);
 }
 
 /// J, of the strain of what a cable's rims carry; `stiffness` (N) is finite.
