@@ -37,8 +37,8 @@ void let_fill(const Link& from, const Link& to, MassedSpan& span) {
   }
   if (from.layers.way > 0) span.slope_a = from.layers.growth;
   if (to.layers.way < 0) span.slope_b = -to.layers.growth;
-  span.laying_a.keeps = from.layers.way > 0;
-  span.laying_b.keeps = to.layers.way < 0;
+  span.laying_a.keeps = span.laying_a.keeps || from.layers.way > 0;
+  span.laying_b.keeps = span.laying_b.keeps || to.layers.way < 0;
   if (span.pinched) return;
   // The first has no bound on a span as short as the slope, w / pi, which has no room for a turn
   // more or less (lay_outermost_turn).

@@ -13,6 +13,7 @@
 #include "base/at.h"
 #include "demos/scenes/shape_scenes.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/mass.h"
 #include "sim/diagnostics.h"
 #include "sim/make_world.h"
 #include "tests/sim/random_scene.h"
@@ -106,14 +107,14 @@ Scene wound_up_swinging(int steps_per_frame, double mass_per_metre) {
 
 TEST(Creep, IsOfSecondOrder) {
   const auto expect = [](const std::function<Scene(int)>& scene_at, const std::string& what) {
-    std::vector<Vec2> ends;
+    std::vector<Eigen::VectorXd> ends;  // heights
     for (int steps = 2; steps <= 64; steps *= 2) {
       const Scene scene = scene_at(steps);
       World world = make_world(scene, measured());
-      run(scene, world, 30 * steps);
+      run(scene, world, 60 * steps);
       EXPECT_LT(world.diagnostics.cable_length_error, 1e-12);
-      ends.emplace_back(world.position[0].y(), world.position[1].y());
-      if (what == "hoist") ends.back() = {world.position[1].y(), world.position[2].y()};
+      Eigen::VectorXd& end = ends.emplace_back(world.position.size());
+      for (int b = 0; b < end.size(); ++b) end[b] = world.position[index(b)].y();
     }
     for (std::size_t i = 2; i < ends.size(); ++i) {
       const double before = (ends[i - 1] - ends[i - 2]).norm(),
@@ -124,6 +125,28 @@ TEST(Creep, IsOfSecondOrder) {
   expect(hoist, "hoist");
   expect([](int steps) { return wound_up_swinging(steps, 0.0); }, "wound up");
   expect([](int steps) { return wound_up_swinging(steps, 0.5); }, "wound up, with mass");
+}
+
+// What lies on a rim that creeps turns with it, also where the rope's end lies in layers on a drum.
+TEST(Creep, RimsKeepWhatTheyCarryBesideADrumThatFills) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2));
+  scene.bodies.push_back(body("pulley", BodyKind::fixed_axle, 1.5, 0.4, 0.2));
+  scene.bodies.push_back(body("load", BodyKind::free, 1.73, -1.0, 0.1, 2.0));
+  Cable rope = cable({0, {-0.23, 0.0}}, {{0, -1, 0}, {1, -1, 0}}, on(2), 0.03);
+  rope.start.layers = true;
+  rope.mass_per_metre = 0.4;
+  rope.axial_stiffness = 500.0;
+  rope.creep = true;
+  scene.cables.push_back(rope);
+  const World world = make_world(scene, Method::pinch);
+  const CableState& state = world.cables[0];
+  ASSERT_TRUE(state.fills);
+  for (std::size_t i = 1; i < state.segments.size(); ++i) {
+    const MassedSpan span = span_of(world, state, i);
+    EXPECT_EQ(span.laying_a.keeps, span.a != 2 && i > 1) << i;
+    EXPECT_EQ(span.laying_b.keeps, span.b == 1) << i;
+  }
 }
 
 // What only comes on loses nothing: 30 J of motion, of which the rope without creep made 3.6 out of
