@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -34,9 +35,10 @@ double shortest_that_bends(const Scene& scene, const Cable& cable) {
 
 /// m, of each piece, where the scene leaves it open; a tenth more than the least that bends stably,
 /// since at omega h = 2 itself round-off grows.
-double shortest_piece(const Scene& scene, const Cable& cable, double length, double tension) {
-  const double wave = 2.0 * step_length(scene) * std::sqrt(tension / cable.mass_per_metre);
-  return std::max({4.0 * cable.half_width, length / (most_nodes_chosen + 1.0), wave,
+double shortest_piece(const Scene& scene, const Cable& cable, const Expected& expected) {
+  const double wave = 2.0 * step_length(scene) *
+                      std::sqrt(expected.tension / cable.mass_per_metre) / expected.phase;
+  return std::max({4.0 * cable.half_width, expected.length / (most_nodes_chosen + 1.0), wave,
                    1.1 * shortest_that_bends(scene, cable)});
 }
 
@@ -295,7 +297,9 @@ std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_
   for (std::size_t i = 0; i < cables.size(); ++i) {
     const Cable& cable = scene.cables[cables[i]];
     if (cable.wraps.empty()) {
-      expected.push_back({length_of(scene, cable), swinging_tension(scene, cable, hung[i])});
+      const bool stands = !end_moves(scene, cable.start) && !end_moves(scene, cable.end);
+      expected.push_back({length_of(scene, cable), swinging_tension(scene, cable, hung[i]),
+                          stands ? std::numbers::sqrt2 : 1.0});
       continue;
     }
     if (!world) world = bodies_of_scene(scene);
@@ -310,7 +314,7 @@ int count_pieces(const Scene& scene, const Cable& cable, const Expected& expecte
   const double length = expected.length;
   int pieces = cable.nodes + 1;
   if (cable.nodes <= 0) {
-    const double most = length / shortest_piece(scene, cable, length, expected.tension);
+    const double most = length / shortest_piece(scene, cable, expected);
     pieces = 2 * std::max(1, static_cast<int>(most / 2.0));
   }
   if (cable.node_tolerance != 0.0 && cable.wraps.empty())

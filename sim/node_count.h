@@ -4,15 +4,16 @@
 //
 // Nodes a distance l apart on a cable of rho kg a metre and tension T swing fastest where each goes
 // against the next: omega = 2 sqrt(T / rho) / l. The step takes tensions at its start, so that
-// omega h must be below 2; and above 1 steps are divided (cable/waves.h). So pieces are no shorter
-// than
+// omega h must be below 2; and steps are divided where it is above 1, or above sqrt(2) of a cable
+// between two points (cable/waves.h). So pieces are no shorter than
 //
-//     l = 2 h sqrt(T / rho),      with T the greatest tension that is to be expected.
+//     l = 2 h sqrt(T / rho) / (omega h),   with T the greatest tension that is to be expected.
 //
-// Between two points that stand that is the tension with which the cable hangs there. What an end
-// that moves bears, M with the cable itself, swings about the other end, a length L away: at the
-// lowest point T = M (g + v^2 / L). v^2 is that of the height it may fall through and the speed
-// that it has; at least 2 g L, as of what is let go level, so that T is 3 M g or more.
+// Between two points that stand that is the tension with which the cable hangs there, and omega h
+// is sqrt(2). What an end that moves bears, M with the cable itself, swings about the other end, a
+// length L away: at the lowest point T = M (g + v^2 / L). v^2 is that of the height it may fall
+// through and the speed that it has; at least 2 g L, as of what is let go level, so that T is 3 M g
+// or more; and omega h is 1, as it may jerk.
 //
 // Their number is even. Of a chain that hangs between two points at one height the node in the
 // middle is the lowest place then, 0.5 / n^2 (taut) to about 1 / n^2 of the sag too low; with an
@@ -48,6 +49,7 @@ constexpr int most_nodes_chosen = 199;
 struct Expected {
   double length = 0.0;   // m
   double tension = 0.0;  // N, the greatest
+  double phase = 1.0;    // omega h, under that tension, at most; as above
 };
 
 /// The same of each of these cables, which spread_nodes is to give nodes; none comes twice. The

@@ -14,9 +14,10 @@ namespace pinchlab {
 
 namespace {
 
-// The header has the reasons: (omega h)^2 where omega h is 1 and a half, and what is lost.
-constexpr double in_steps = 1.0;       // of a whole step at most
-constexpr double in_intervals = 0.25;  // of the intervals of others, as tried
+// The header has the reasons: (omega h)^2 at most
+constexpr double in_steps = 1.0;            // of a whole step, of cables that run over bodies
+constexpr double in_steps_of_pieces = 2.0;  // the same, of pieces between nodes
+constexpr double in_intervals = 0.25;       // of the intervals of others, as tried
 // With the tensions that have come of them: they may double before an interval is tried again, so
 // that one that rises does not ask for a trial each time; omega h is well below 1 still.
 constexpr double at_most = 2.0 * in_intervals;
@@ -35,9 +36,9 @@ double turning_before(const World& world, const CableState& cable, int link) {
   return turning * turning;
 }
 
-}  // namespace
-
-double wave_of(const World& world, const CableState& cable) {
+/// omega^2 (1/s^2): of what is not lost of the nodes and the spans' turning of a cable that runs
+/// over bodies, or of the nodes at either end of a piece, under its tension; else 0.
+double fastest_on(const World& world, const CableState& cable) {
   if (is_massed(cable)) {
     double fastest = 0.0;
     for (int i = 0; index(i) < cable.links.size(); ++i) {
@@ -58,9 +59,12 @@ double wave_of(const World& world, const CableState& cable) {
   return std::max(4.0 * s.tension / (s.length * lightest), 0.0);
 }
 
-bool is_divided_for(const World& world, double wave) {
-  return locates_events(world.configuration) &&
-         wave * world.step_length * world.step_length > in_steps;
+}  // namespace
+
+double wave_of(const World& world, const CableState& cable) {
+  if (!locates_events(world.configuration)) return 0.0;
+  const double wave = fastest_on(world, cable), most = cable.piece ? in_steps_of_pieces : in_steps;
+  return wave * world.step_length * world.step_length > most ? wave : 0.0;
 }
 
 bool is_lost(const World& world, double wave) {

@@ -7,10 +7,13 @@
 // itself: v^2 + (1 - (omega h)^2 / 4) omega^2 x^2 is what it keeps (v the mean of the speeds before
 // and after a kick; Hairer, Lubich & Wanner 2003, *Geometric numerical integration illustrated by
 // the Stormer-Verlet method*, Acta Numerica 12), and from omega h = 2 on it grows without bound.
-//     Nodes are chosen so that omega h is 1 at most under the tension that is to be expected
-// (node_count.h). A body that lands on a cable pulls it taut in a few milliseconds, in which
-// omega^2 becomes a thousand times that, and falls again. So a step in which omega h would be more
-// than 1 is divided into intervals in which it is a half.
+//     Nodes are chosen so that omega h is 1 at most under the tension that is to be expected, or
+// sqrt(2) where a cable just hangs (node_count.h). A body that lands on a cable pulls it taut in a
+// few milliseconds, in which omega^2 becomes a thousand times that, and falls again. So a step in
+// which omega h would be more is divided into intervals in which it is a half. With a cable that
+// runs over bodies it is divided from 1 on: rims take nodes in and let them go, and at sqrt(2) a
+// hoist's weights are 2.5e-5 m off where they are 2e-5 m (test
+// Strung.ConvergesWithStepsAndWithNodes).
 //     Were a node drawn to the line between its neighbours instead, as a body that is too light is
 // (solve/light_bodies.h), it would have the mass m' = m (omega h)^2 while it is stopped, and m when
 // it was set in motion: energy from nothing.
@@ -30,12 +33,9 @@
 
 namespace pinchlab {
 
-/// omega^2 (1/s^2) of the nodes at either end of a piece, under its tension; of one with mass that
-/// runs over bodies that of its nodes and of its spans' turning, but for what is lost; else 0.
+/// omega^2 (1/s^2) of the fastest wave on a cable, or piece of one, if a step is divided for it;
+/// else 0.
 double wave_of(const World& world, const CableState& cable);
-
-/// Whether a step is divided for waves of that omega^2 (1/s^2).
-bool is_divided_for(const World& world, double wave);
 
 /// Whether no interval that is tried follows them.
 bool is_lost(const World& world, double wave);

@@ -26,7 +26,7 @@ constexpr double most_missed = 1e-6;  // of a part's extent, by friction that cy
 constexpr int most_trials = 60;       // of an interval's length, which has 53 bits to be halved for
 constexpr int most_halvings = 5;      // of one that does not converge: on a 32nd ways hardly bend
 
-/// omega^2 (1/s^2) of the fastest wave on a part's cables with mass.
+/// omega^2 (1/s^2) of the fastest wave on a part's cables with mass that steps are divided for.
 double wave_on(const World& world, const Parts& parts, const Part& part) {
   if (!part.has_mass) return 0.0;
   double fastest = 0.0;
@@ -93,7 +93,7 @@ void try_again(const Scene& scene, World& world, Workspace& work, const Movers& 
 
 /// Whether nodes swing faster than a trial of that length (s) has followed.
 bool is_outrun(const World& world, const IntervalTrial& trial, double length) {
-  return is_divided_for(world, trial.wave) && !follows(world, trial.wave, length);
+  return trial.wave > 0.0 && !follows(world, trial.wave, length);
 }
 
 /// The share of an interval that is tried next where `wanted` would do. No less than a tenth at
@@ -303,7 +303,7 @@ double length_to_try(const World& world, const Workspace& work, std::span<const 
   for (const int p : parts) {
     wave = std::max(wave, wave_on(world, work.parts, at(work.parts.list, p)));
   }
-  if (!is_divided_for(world, wave)) return left;
+  if (wave == 0.0) return left;
   return left / std::ceil(left / interval_for(world, wave));
 }
 

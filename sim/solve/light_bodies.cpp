@@ -131,6 +131,7 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
   restore(world, bodies, kick, system);
   if (!part.can_move || kick == 0.0) return false;
   const double least = negligible * part.lightest / (2.0 * kick * kick);
+  const bool follows = locates_events(world.configuration);
   bool any = false;
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
@@ -141,11 +142,11 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
       const Link& head = cable.links[s];
       const Link& tail = at(cable.links, previous_link(cable, static_cast<int>(s)));
       const double wave = cable.nodes > 0 ? 0.0 : wave_of(world, cable);  // each node has its own
-      const bool divided = is_divided_for(world, wave), lost = is_lost(world, wave);
+      const bool lost = is_lost(world, wave);
       const auto note = [&](const Link& end, const Link& other) {
         const bool strung = is_strung(cable, end);
         if (strung && !is_lost(world, wave_at_node(world, cable, number_of(cable, end)))) return;
-        const bool followed = !strung && divided && is_node(world, end);
+        const bool followed = follows && !strung && is_node(world, end);
         if (followed && !lost) return;
         any =
             note_end(world, parts, segment, end, followed ? nullptr : &other, kick, system) || any;
