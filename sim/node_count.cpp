@@ -38,7 +38,7 @@ double shortest_that_bends(const Scene& scene, const Cable& cable) {
 double shortest_piece(const Scene& scene, const Cable& cable, const Expected& expected) {
   const double wave = 2.0 * step_length(scene) *
                       std::sqrt(expected.tension / cable.mass_per_metre) / expected.phase;
-  return std::max({4.0 * cable.half_width, expected.length / (most_nodes_chosen + 1.0), wave,
+  return std::max({2.0 * least_piece(cable), expected.length / (most_nodes_chosen + 1.0), wave,
                    1.1 * shortest_that_bends(scene, cable)});
 }
 
@@ -283,6 +283,15 @@ double tension_over_bodies(const Scene& scene, const World& world, const Cable& 
 
 }  // namespace
 
+double least_piece(const Cable& cable) {
+  return (cable.start.layers || cable.end.layers ? 8.0 : 2.0) * cable.half_width;
+}
+
+std::string words_for_least_piece(const Cable& cable) {
+  if (least_piece(cable) == 2.0 * cable.half_width) return "the cable is wide";
+  return "four times the width of a cable in layers";
+}
+
 std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_t> cables) {
   Held held(scene);
   std::vector<bool> asked(scene.cables.size());
@@ -320,12 +329,12 @@ int count_pieces(const Scene& scene, const Cable& cable, const Expected& expecte
   if (cable.node_tolerance != 0.0 && cable.wraps.empty())
     pieces = count_adaptive_pieces(cable, pieces, place);
   const double piece = length / pieces;
-  if (piece <= 2.0 * cable.half_width) {
+  if (const double least = least_piece(cable); piece <= least) {
     throw SceneError(
         place + "/nodes",
-        fmt::format(
-            "pieces of {} between nodes are no longer than the cable is wide; at most {} nodes fit",
-            in_mm(piece), static_cast<int>(length / (2.0 * cable.half_width)) - 1));
+        fmt::format("pieces of {} between nodes are no longer than {}; at most {} nodes fit",
+                    in_mm(piece), words_for_least_piece(cable),
+                    static_cast<int>(length / least) - 1));
   }
   if (const double least = shortest_that_bends(scene, cable); piece < least) {
     throw SceneError(

@@ -57,6 +57,12 @@ struct Expected {
 /// bodies cannot be laid.
 std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_t> cables);
 
+/// m, that pieces between nodes must be longer than: the cable's width; of one in layers four times
+/// that, as drums take hold of nodes half a width away and give them off at twice that or more. And
+/// in words.
+double least_piece(const Cable& cable);
+std::string words_for_least_piece(const Cable& cable);
+
 /// How many pieces such a cable is made of: as many as the scene says, or as steps can follow, an
 /// even number. Throws SceneError where they do not fit, or bend faster than steps can follow.
 int count_pieces(const Scene& scene, const Cable& cable, const Expected& expected,

@@ -12,6 +12,7 @@
 #include "sim/compound.h"
 #include "sim/detect/broad_phase.h"
 #include "sim/lines.h"
+#include "sim/node_count.h"
 #include "sim/outline.h"
 #include "sim/scene_error.h"
 #include "sim/scene_words.h"
@@ -154,14 +155,14 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
 }
 
 void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size_t number) {
-  const double width = 2.0 * cable.half_width;
+  const double least = least_piece(given);
   const double piece = cable.length / (given.closed ? given.nodes : given.nodes + 1);
-  if (piece > width) return;
-  const int most = static_cast<int>(std::ceil(cable.length / width)) - (given.closed ? 1 : 2);
+  if (piece > least) return;
+  const int most = static_cast<int>(std::ceil(cable.length / least)) - (given.closed ? 1 : 2);
   throw SceneError(pointer("cables", number) + "/nodes",
-                   fmt::format("pieces of {} between nodes are no longer than the cable is wide; "
-                               "at most {} nodes fit",
-                               in_mm(piece), std::max(most, 0)));
+                   fmt::format("pieces of {} between nodes are no longer than {}; at most {} nodes "
+                               "fit",
+                               in_mm(piece), words_for_least_piece(given), std::max(most, 0)));
 }
 
 namespace {

@@ -5,6 +5,7 @@
 // go.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -28,6 +29,11 @@ struct Layers {
 
   double radius(double turned) const { return inner + growth * turned; }
   double length(double turned) const { return (inner + 0.5 * growth * turned) * turned; }
+
+  /// The angle (rad) to a place `length` (m) from where it begins.
+  double turned_at(double length) const {
+    return 2.0 * length / (inner + std::sqrt(inner * inner + 2.0 * growth * length));
+  }
 };
 
 /// A circle fixed to a body, which a cable touches: rolling round it, or (of radius 0) attached to

@@ -126,8 +126,8 @@ namespace {
 /// each time.
 void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
                         const Link& from, const Link& to) {
-  // A span as long as the cable is wide gains a factor pi with each, all bits with 33; what is
-  // shorter still has no room for a turn more or less.
+  // A span as long as half of the cable's width gains a factor pi with each, all bits with 33; what
+  // is shorter still has no room for a turn more or less.
   constexpr int most_rounds = 60;
   const Segment& span = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
@@ -146,7 +146,7 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
 void update_tangent(const World& world, CableState& cable, std::size_t i) {
   Link& from = cable.links[tail_link(cable, i)];
   Link& to = cable.links[i];
-  if (cable.fills && !wound_end(from, to)) {
+  if (cable.fills && !wound_end(from, to) && !is_side(from, to)) {
     if (from.layers.way > 0 && from.orientation != 0) {
       lay_outermost_turn(world, cable, i, from, from, to);
     }
@@ -216,6 +216,7 @@ void update_laid_cable(const World& world, CableState& cable) {
     cable.segments[i].rest_length = tail_material(cable, i, body_angle(world, to)) -
                                     head_material(cable, tail, body_angle(world, from)) +
                                     (i == 0 ? cable.length : 0.0);
+    if (is_held(cable, i)) cable.segments[i].rest_length -= held_at(cable, i).spare;
     inspect(cable, cable.segments[i], rounding, sum);
   }
   cable.finite = sum == 0.0;

@@ -2,6 +2,7 @@
 #include "sim/cable/strung.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -23,7 +24,10 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double given_off = 0.25;  // of the distance of nodes: the header has the reasons
+/// m given off beyond a node's place, where it comes back: the header has the reasons.
+double giving_distance(const CableState& cable) {
+  return std::max(0.25 * node_spacing(cable), 2.0 * mooring_distance(cable));
+}
 
 /// Of the material at that share (0..1) of the way between two ends, where the cable has this
 /// direction (m/s).
@@ -122,6 +126,21 @@ void string_all(World& world, CableState& cable, double margin) {
   }
 }
 
+/// Of what lies on a rim, from where the cable meets it: rad, counter-clockwise positive, and the
+/// signed radius there (m).
+struct PlaceOnRim {
+  double turned = 0.0, radius = 0.0;
+};
+PlaceOnRim place_on_rim(const Link& link, double material) {
+  const Layers& layers = link.layers;
+  if (layers.way == 0) return {material / link.signed_radius(), link.signed_radius()};
+  const bool begins_there = layers.way > 0;  // the first layer is where the cable meets it
+  const double from_begin = begins_there ? material : layers.length(link.wrap) - material;
+  const double angle = layers.turned_at(std::max(from_begin, 0.0));
+  return {link.orientation * (begins_there ? angle : link.wrap - angle),
+          link.orientation * layers.radius(angle)};
+}
+
 /// Those that a segment holds, with it.
 void carry_held_nodes(World& world, const CableState& cable, std::size_t segment) {
   const FinestPiece& span = held_at(cable, segment);
@@ -151,21 +170,42 @@ HangingEnd end_of(const World& world, const CableState& cable, int link, std::si
   return {link_centre(world, held), held.signed_radius(), cable.segments[segment].direction};
 }
 
-/// Hangs pieces of these lengths (m) between two ends. What the nodes beside these weigh follows
-/// from how much of the pieces lies on rims then: found by turns.
+/// m/rad, by which the radius of a drum that fills grows as the span beside it turns.
+double slope_at(const Link& link) {
+  return link.layers.way != 0 ? link.layers.growth : 0.0;
+}
+
+/// Hangs pieces of these lengths (m) between two ends, on links with these slopes. What the nodes
+/// beside these weigh follows from how much of the pieces lies on rims then, and so does what the
+/// pieces' other halves weigh on them, which drums that fill raise as the pieces turn (mass.h):
+/// found by turns.
 Hanging hang(const CableState& cable, const std::vector<double>& lengths, const HangingEnd& tail,
-             const HangingEnd& head, const Vec2& gravity) {
+             const HangingEnd& head, const std::array<double, 2>& slopes, const Vec2& gravity) {
   std::vector<double> now = lengths;
+  Vec2 on_first = Vec2::Zero(), on_last = Vec2::Zero();  // N
   for (double last_change = infinity;;) {
     std::vector<Vec2> weights;
     for (std::size_t k = 0; k + 1 < now.size(); ++k) {
       weights.push_back(0.5 * cable.density * (now[k] + now[k + 1]) * gravity);
     }
+    weights.front() += on_first;
+    weights.back() += on_last;
     Hanging hanging = hang(weights, lengths, tail, head);
-    const double change = std::max(std::abs(hanging.lengths.front() - now.front()),
-                                   std::abs(hanging.lengths.back() - now.back()));
+    const auto raised = [&](double length, const Vec2& direction, double slope) -> Vec2 {
+      if (!(length > slope)) return Vec2::Zero();
+      const Vec2 n = left(direction);
+      return slope / (length - slope) * 0.5 * cable.density * length * gravity.dot(n) * n;
+    };
+    const Vec2 first = -raised(now.front(), hanging.directions.front(), slopes[0]);
+    const Vec2 last = -raised(now.back(), hanging.directions.back(), slopes[1]);
+    const double of_weights = (first - on_first).norm() + (last - on_last).norm();  // N
+    const double change = std::max({std::abs(hanging.lengths.front() - now.front()),
+                                    std::abs(hanging.lengths.back() - now.back()),
+                                    of_weights / (cable.density * gravity.norm())});
     if (!(change < 0.5 * last_change)) return hanging;  // by round-off alone, or no better
     last_change = change;
+    on_first = first;
+    on_last = last;
     now.front() = std::max(hanging.lengths.front(), 0.0);
     now.back() = std::max(hanging.lengths.back(), 0.0);
   }
@@ -193,7 +233,7 @@ bool give_way(World& world, CableState& cable, int link, bool leaves, double len
     remove_link(world, cable, link);
     return true;
   }
-  double room = taken_in * node_spacing(cable);
+  double room = mooring_distance(cable);
   if (rim.corner >= 0) {
     const int corner = next_corner(world, rim, leaves);
     const Vec2 side = place_of_point(world, rim.body, corner) - link_centre(world, rim);
@@ -211,7 +251,8 @@ bool give_way(World& world, CableState& cable, int link, bool leaves, double len
 }
 
 /// Hangs what is free after a link, up to the next that is no node, with the motion that its ends
-/// give it; or does first what it asks of these ends. Whether it has done that.
+/// give it; or does first what it asks of these ends. Whether it is to hang again, since it has
+/// done that, or a drum's layers have grown or shrunk.
 bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
   const std::vector<std::size_t> spans = spans_from(cable, link);
   if (spans.size() < 2) return false;
@@ -223,8 +264,10 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
   const double free = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   constexpr double nothing = 1e-12;  // of the length: so little slack asks for any tension
   if (free - d.norm() <= nothing * cable.length) return false;
+  const std::array<double, 2> slopes = {slope_at(at(cable.links, link)),
+                                        slope_at(cable.links[last])};
   const Hanging hanging = hang(cable, lengths, end_of(world, cable, link, first),
-                               end_of(world, cable, static_cast<int>(last), last), gravity);
+                               end_of(world, cable, static_cast<int>(last), last), slopes, gravity);
   if (give_way(world, cable, link, true, hanging.lengths.front(), hanging.directions.front()))
     return true;
   if (give_way(world, cable, static_cast<int>(last), false, hanging.lengths.back(),
@@ -241,9 +284,13 @@ bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
     at(world.position, node) = place;
     at(world.velocity, node) = velocity_between(tail, head, passed / free, along);
   }
+  const auto radii = [&] { return Vec2(at(cable.links, link).radius, cable.links[last].radius); };
+  const Vec2 before = radii();
   for (const std::size_t s : spans) update_tangent(world, cable, s);
   update_wraps_and_rest_lengths(world, cable);
-  return false;
+  // The span beside a drum that fills says where its outermost turn ends.
+  constexpr double rounding = 1e-13;
+  return cable.fills && (radii() - before).norm() > rounding * before.norm();
 }
 
 }  // namespace
@@ -273,7 +320,7 @@ void lay_down_node(World& world, int node) {
 void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
   // Without gravity it is at rest in any shape.
   const Vec2 g = gravity.norm() > 0.0 ? gravity : Vec2(0.0, -1.0);
-  string_all(world, cable, taken_in * node_spacing(cable));
+  string_all(world, cable, mooring_distance(cable));
   // What hangs lays nodes on rims and takes others off; mostly few.
   bool changed = true;
   for (int turn = 0; changed && turn < 4 * cable.nodes; ++turn) {
@@ -296,7 +343,7 @@ void insert_node(World& world, CableState& cable, std::size_t segment, int node,
 }
 
 bool has_given_off(const World& world, const CableState& cable) {
-  const double margin = given_off * node_spacing(cable);
+  const double margin = giving_distance(cable);
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
     const Numbers on = nodes_on(world, cable, s, margin);
     if (on.first <= on.last) return true;
@@ -305,7 +352,7 @@ bool has_given_off(const World& world, const CableState& cable) {
 }
 
 void give_off_nodes(World& world, CableState& cable) {
-  string_all(world, cable, given_off * node_spacing(cable));
+  string_all(world, cable, giving_distance(cable));
 }
 
 void sort_nodes(World& world, const CableState& cable) {
@@ -319,8 +366,9 @@ bool is_within_end(const World& world, const CableState& cable, const Link& node
   if (cable.closed) return false;
   const BodyProperties& outline = at(world.bodies, body);
   const auto reaches = [&](const Link& end, double left) {
-    return end.body >= 0 && mover_of(world, end.body) == mover_of(world, body) &&
-           left <= end.offset.norm() + outline.radius + outline.seat.norm() + cable.half_width;
+    if (end.body < 0 || mover_of(world, end.body) != mover_of(world, body)) return false;
+    if (end.body == body && !is_fastened_inside(world, cable, end)) return false;
+    return left <= end.offset.norm() + outline.radius + outline.seat.norm() + cable.half_width;
   };
   return reaches(cable.links.front(), node.material) ||
          reaches(cable.links.back(), cable.length - node.material);
@@ -358,10 +406,10 @@ void carry_wound_nodes(World& world, const CableState& cable) {
       const Numbers on = nodes_within(cable, meets, leaves);
       for (long k = on.first; k <= on.last; ++k) {
         const int node = body_of_node(cable, k);
-        const double turned_by = (place_of_node(cable, k) - meets) / link.signed_radius();
-        const Vec2 e = turned(Vec2(0.0, 1.0), alpha + turned_by);
         if (!is_wound(node)) continue;
-        at(world.position, node) = tangent_point(link_centre(world, link), link.signed_radius(), e);
+        const PlaceOnRim place = place_on_rim(link, place_of_node(cable, k) - meets);
+        const Vec2 e = turned(Vec2(0.0, 1.0), alpha + place.turned);
+        at(world.position, node) = tangent_point(link_centre(world, link), place.radius, e);
       }
     }
     const int next = next_link(cable, static_cast<int>(i));

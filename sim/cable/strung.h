@@ -10,9 +10,10 @@
 // material off again, the node comes back.
 //
 // How a rim takes a node in: taking_in.h.
-//     Given off. Where a rim has given off l / 4 beyond a node's place, it comes back there, on a
-// straight span, where halves of spans' masses at either end have the weight that they have with
-// it. It moves as its place of the span did: momentum is kept, energy lost, none is made.
+//     Given off. Where a rim has given off l / 4 beyond a node's place, and twice what it takes
+// hold at, it comes back there, on a straight span, where halves of spans' masses at either end
+// have the weight that they have with it. It moves as its place of the span did: momentum is kept,
+// energy lost, none is made.
 
 #include "sim/world.h"
 
@@ -54,8 +55,8 @@ void sort_nodes(World& world, const CableState& cable);
 /// pictures: nothing else asks where they are.
 void carry_wound_nodes(World& world, const CableState& cable);
 
-/// Whether a node has no more cable to an end that the body holds than the body reaches. Neither it
-/// nor the spans beside it touch that body.
+/// Whether a node has no more cable to an end that the body holds, other than at its rim, than the
+/// body reaches. Neither it nor the spans beside it touch that body.
 bool is_within_end(const World& world, const CableState& cable, const Link& node, int body);
 
 /// Whether it is beside a disc along its cable, which is a tangent of it then, or within such an

@@ -18,7 +18,9 @@ namespace pinchlab {
 
 namespace {
 
-constexpr double most_bent = 0.5;  // rad, more than when it was moored: the header has the reason
+// The header has the reasons.
+constexpr double most_bent = 0.5;  // rad, more than when it was moored
+constexpr double taken_in = 1e-2;  // of the distance of nodes
 
 /// rad, by which the cable turns at a node.
 double turn_at(const CableState& cable, int link) {
@@ -32,20 +34,32 @@ void count_turns_off(CableState& cable, int link, double turns) {
   for (std::size_t i = index(link) + 1; i < cable.links.size(); ++i) {
     cable.segments[i].alpha -= angle;
     cable.segments[i].alpha_before -= angle;
-    cable.links[i].material += cable.links[i].signed_radius() * angle;
+    Link& after = cable.links[i];
+    if (after.layers.way != 0) {
+      after.layers.begins -= after.orientation * angle;
+    } else {
+      after.material += after.signed_radius() * angle;
+    }
   }
   if (cable.closed) cable.turning -= angle;
 }
 
-/// Turns what follows a node so that the cable bends there by less than half a turn.
-void count_bend_anew(CableState& cable, int link) {
-  const double turns = std::round(turn_at(cable, link) / (2.0 * std::numbers::pi));
-  if (turns != 0.0) count_turns_off(cable, link, turns);
+/// rad, by which the cable is bent away from a rim at a node beside it: a quarter of a turn towards
+/// it to three away, so that one that folds back on the rim is half a turn away.
+double bent_away(const CableState& cable, int link, int rim) {
+  constexpr double quarter = 0.5 * std::numbers::pi;
+  const double bent = -at(cable.links, rim).orientation * turn_at(cable, link);
+  return std::remainder(bent - quarter, 4.0 * quarter) + quarter;
 }
 
-/// rad, by which the cable is bent away from a rim at a node beside it.
-double bent_away(const CableState& cable, int link, int rim) {
-  return -at(cable.links, rim).orientation * turn_at(cable, link);
+/// Turns what follows a node so that the cable bends there by so much; by less than half a turn
+/// where there is no rim (-1).
+void count_bend_anew(CableState& cable, int link, int rim) {
+  const double turn = turn_at(cable, link), whole = 2.0 * std::numbers::pi;
+  const double bend = rim < 0 ? std::remainder(turn, whole)
+                              : -at(cable.links, rim).orientation * bent_away(cable, link, rim);
+  const double turns = std::round((turn - bend) / whole);
+  if (turns != 0.0) count_turns_off(cable, link, turns);
 }
 
 /// rad, by which what holds a moored node is turned.
@@ -73,6 +87,10 @@ LeftOfMooring left_of_mooring(const World& world, const CableState& cable, int l
 
 }  // namespace
 
+double mooring_distance(const CableState& cable) {
+  return std::max(taken_in * node_spacing(cable), cable.fills ? cable.half_width : 0.0);
+}
+
 double left_until_taken_in(const World& world, const CableState& cable, int link) {
   if (at(cable.links, link).moored) {
     const LeftOfMooring left = left_of_mooring(world, cable, link);
@@ -87,7 +105,7 @@ double left_until_taken_in(const World& world, const CableState& cable, int link
   look(link, previous_link(cable, link));
   const int after = next_link(cable, link);
   look(after, after);
-  return least - taken_in * node_spacing(cable);
+  return least - mooring_distance(cable);
 }
 
 namespace {
@@ -107,6 +125,19 @@ int nearest_rim(const CableState& cable, int link) {
   return nearest;
 }
 
+/// Puts a node as near to a rim as its cable reaches, where lengths have not been met: once it is
+/// moored nothing puts that right. What can stretch is stretched.
+void draw_near(World& world, CableState& cable, int link, int rim) {
+  if (cable.elastic) return;
+  const bool before = rim == previous_link(cable, link);
+  const Segment& arm = at(cable.segments, before ? link : rim);
+  const double excess = arm.length - arm.rest_length;
+  if (!(excess > 0.0)) return;
+  at(world.position, at(cable.links, link).body) += (before ? -excess : excess) * arm.direction;
+  update_tangent(world, cable, index(link));
+  update_tangent(world, cable, index(next_link(cable, link)));
+}
+
 /// Where a node's link has come to be on another body, at the same place.
 void note_change(World& world, CableState& cable, int link) {
   update_tangent(world, cable, index(link));
@@ -123,7 +154,7 @@ bool is_to_be_moored(const CableState& cable, int link) {
   if (before.body == after.body && opposite(before, after)) return true;  // it folds back there
   const int rim = nearest_rim(cable, link);
   if (rim < 0) return false;  // it has come off at the same time
-  return std::remainder(bent_away(cable, link, rim), 2.0 * std::numbers::pi) > 0.0;
+  return bent_away(cable, link, rim) > 0.0;
 }
 
 bool is_to_be_cast_off(const World& world, const CableState& cable, int link) {
@@ -133,7 +164,8 @@ bool is_to_be_cast_off(const World& world, const CableState& cable, int link) {
 
 void moor_node(World& world, CableState& cable, int link) {
   const int rim = nearest_rim(cable, link), node = at(cable.links, link).body;
-  count_bend_anew(cable, link);
+  draw_near(world, cable, link, rim);
+  count_bend_anew(cable, link, rim);
   join_rim(world, cable, link, rim);
   lay_down_node(world, node);
   Link& moored = at(cable.links, link);
@@ -161,6 +193,7 @@ int cast_off_node(World& world, CableState& cable, int link) {
 
 void take_in_node(World& world, CableState& cable, int link) {
   if (at(cable.links, link).moored) {
+    count_bend_anew(cable, link, rim_of(cable, link));
     leave_body(world, cable, link);
     return;
   }
@@ -168,7 +201,7 @@ void take_in_node(World& world, CableState& cable, int link) {
   for (const int beside : {link, next_link(cable, link)}) {
     if (is_held(cable, index(beside))) let_go(world, cable, index(beside));
   }
-  count_bend_anew(cable, link);
+  count_bend_anew(cable, link, nearest_rim(cable, link));
   leave_node(world, cable, link);
   lay_down_node(world, body);
 }
@@ -177,17 +210,20 @@ bool take_in_enclosed_nodes(World& world, CableState& cable) {
   bool any = false;
   for (int i = 0; index(i) < cable.links.size(); ++i) {
     const Link& from = at(cable.links, i);
-    int next = next_link(cable, i), nodes = 0;
+    int next = next_link(cable, i), nodes = 0, moored = 0;
     const auto is_node = [&cable](const Link& link) {
       return is_strung(cable, link) || link.moored;
     };
     while (next >= 0 && is_node(at(cable.links, next)) && nodes < cable.nodes) {
+      if (at(cable.links, next).moored) ++moored;
       next = next_link(cable, next);
       ++nodes;
     }
     if (nodes == 0 || next < 0 || from.orientation == 0) continue;
     const Link& to = at(cable.links, next);
     if (to.body != from.body || to.orientation != from.orientation) continue;  // back past its side
+    const bool lies = from.corner >= 0 || from.layers.way != 0 || to.layers.way != 0;
+    if (!lies && moored == 0) continue;  // they are drawn on to the disc
     take_in_node(world, cable, next_link(cable, i));
     ++world.diagnostics.node_changes;
     any = true;

@@ -15,8 +15,10 @@
 // of the rim: then the link goes. Nothing moves by that, and halves of spans' masses at their ends
 // have the same weight before and after; momentum goes with the mass (joins.h), and no energy is
 // made. Where a node is not bent away from the rim, the span beyond is next to a tangent already,
-// and it is taken in at once. One that another body has met beyond it is taken in as it lies there
-// (take_in_enclosed_nodes), and the slack that is left is pulled tight.
+// and it is taken in at once. Where the cable comes back to a disc beyond a node it is a link there
+// too, and the node is drawn on to the disc between the two. One that lies on a polygon's side, on
+// layers or on a rim that holds it is taken in as it lies there (take_in_enclosed_nodes), and the
+// slack that is left is pulled tight.
 //     Cast off. Where the rim turns back instead, and has given off l / 100 since it took hold, or
 // the bend has grown by half a radian, the node is a body of its own again, at its place and with
 // its velocity; likewise where the cable comes off the rim. It swings out by what it was held back:
@@ -26,7 +28,10 @@
 
 namespace pinchlab {
 
-constexpr double taken_in = 1e-2;  // of the distance of nodes, at which a rim takes hold of one
+/// m of cable to a rim, at which that takes hold of a node: a hundredth of l, but of a cable in
+/// layers its half width at least. A drum's radius grows by w / pi dphi as the span beside it turns
+/// by dphi (cable.h), which turns that by w / (pi d) dphi again: it must be well below 1.
+double mooring_distance(const CableState& cable);
 
 /// What is left between a node and a rim beside it until the rim takes hold of it (m); infinity:
 /// there is none. Of a moored one, until it is taken in or cast off.

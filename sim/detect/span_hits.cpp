@@ -62,7 +62,8 @@ Circle circle_of(const World& world, const Workspace& work, const CableState& ca
 }
 
 /// The middle link of a pinch near the end of the wrapped arc comes off through that arc's removal,
-/// not by hitting the span that leaves the arc.
+/// not by hitting the span that leaves the arc. A node is no such arc: beyond it the cable may come
+/// back to the rim beside it.
 bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   // rad: more than an arc that comes off turns by in a step, far less than to the next turn.
   constexpr double near_end = 0.5;
@@ -71,7 +72,7 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   const int before = previous_link(cable, tail), after = next_link(cable, head);
   const auto beside = [&](int link, int neighbour) {
     return neighbour >= 0 && at(cable.links, neighbour).body == body &&
-           at(cable.links, link).wrap < near_end;
+           at(cable.links, link).orientation != 0 && at(cable.links, link).wrap < near_end;
   };
   return beside(tail, before) || beside(head, after);
 }

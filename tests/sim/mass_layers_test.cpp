@@ -3,14 +3,11 @@
 
 #include <algorithm>
 #include <numbers>
-#include <string>
 
 #include "demos/scenes/shape_scenes.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
 #include "sim/make_world.h"
-#include "sim/nodes.h"
-#include "sim/scene_error.h"
 #include "sim/tangent.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
@@ -136,19 +133,6 @@ TEST(MassLayers, MomentumIsKeptInFreeFlight) {
     }
     EXPECT_LT(error.x(), 1e-4);
     EXPECT_LT(error.y(), 1e-4);
-  }
-}
-
-TEST(MassLayers, RefuseNodes) {
-  Scene scene = heavy_hoist(true, Load::below, 4);
-  scene.cables[0].nodes = 20;
-  spread_nodes(scene);
-  try {
-    make_world(scene, Method::pinch);
-    ADD_FAILURE() << "not refused";
-  } catch (const SceneError& error) {
-    EXPECT_NE(std::string(error.what()).find("cannot lie in layers"), std::string::npos)
-        << error.what();
   }
 }
 

@@ -124,6 +124,9 @@ INSTANTIATE_TEST_SUITE_P(
         Population{"SlippingElastic", slipping_elastic, 60}, Population{"Linkages", linkage, 60},
         Population{"Ropes", falling_on_rope, 60}, Population{"SlippingRopes", slipping_rope, 60},
         Population{"RopesInLayers", braked_rope, 60}, Population{"StrungRopes", strung_rope, 30},
+        Population{"StrungRopesInLayers",
+                   [](int seed) { return strung_braked_rope(static_cast<unsigned>(seed), true); },
+                   20},
         Population{"Adapting", random_hanging, 20},
         Population{"OnPieces", [](int seed) { return random_on_pieces(seed, false); }, 40}),
     [](const auto& of) { return of.param.name; });

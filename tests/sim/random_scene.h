@@ -188,7 +188,19 @@ inline Scene braked_rope(unsigned seed) {
   return scene;
 }
 
-/// Either of them, inextensible, with nodes by which it hangs.
+/// The same, inextensible, in layers or not, with nodes by which it hangs.
+inline Scene strung_braked_rope(unsigned seed, bool layers) {
+  Scene scene = braked_rope(seed);
+  Cable& rope = scene.cables[0];
+  rope.axial_stiffness = infinity;
+  rope.slack = std::max(rope.slack, 0.0) + (seed % 3 == 1 ? 0.1 : 0.0);
+  for (Attachment* end : {&rope.start, &rope.end}) end->layers = end->layers && layers;
+  rope.nodes = 12 + static_cast<int>(seed) % 20;
+  spread_nodes(scene);
+  return scene;
+}
+
+/// A rope that discs fall on, with slip or without, inextensible, with nodes by which it hangs.
 inline Scene strung_rope(unsigned seed) {
   Scene scene = seed % 2 == 0 ? falling_on_rope(seed) : slipping_rope(seed);
   scene.cables[0].axial_stiffness = infinity;

@@ -192,7 +192,7 @@ Scene belt(double speed, int nodes, int steps) {
 
 // A chain that runs along itself keeps its shape, at any speed: T grows by rho v^2 (Routh 1892, *A
 // treatise on the dynamics of a system of rigid bodies*, II, 597). Here it comes off one drum and
-// goes on to the other.
+// goes on to the other, and drums that take nodes in and give them off shake it: in the mean.
 TEST(Strung, ABeltHangsTheSameHoweverFastItRuns) {
   const auto tension_below = [](const World& world) {
     const std::vector<Segment>& spans = world.cables[0].segments;
@@ -209,11 +209,16 @@ TEST(Strung, ABeltHangsTheSameHoweverFastItRuns) {
   for (const double speed : {1.0, 4.0}) {
     const Scene scene = belt(speed, 60, 4);
     World world = make_world(scene, measured());
-    run(scene, world, 480);
+    Workspace work;
+    double mean = 0.0;  // N, over the second second
+    for (int i = 0; i < 480; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      if (i >= 240) mean += tension_below(world) / 240.0;
+    }
     // More than once round, and every node that has come off is on again.
     EXPECT_GT(world.diagnostics.node_changes, speed * 2.0 / world.cables[0].length * 60.0);
     EXPECT_NEAR(lowest(world, -0.2, 0.2), low, 5e-3) << speed;
-    EXPECT_NEAR(tension_below(world) - tension, speed * speed, 1.5) << speed;
+    EXPECT_NEAR(mean - tension, speed * speed, 1.5) << speed;
     EXPECT_LT(world.diagnostics.cable_length_error, 1e-11);
   }
 }
@@ -398,10 +403,9 @@ TEST(Strung, KeepsMomentum) {
   EXPECT_LT(least, 2e-3);
 }
 
-// What the energy rises by is the swing of leapfrog's. A rope that whips over a pulley on which it
-// hardly lies may be too long for a step.
+// What the energy rises by is the swing of leapfrog's.
 TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
-  int ran = 0, stretched = 0;
+  int ran = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = strung_rope(seed);
@@ -410,13 +414,11 @@ TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
       const double w = scene.cables[0].half_width;
       EXPECT_LE(course.gained, 2e-4 * course.at_play) << seed << ", " << steps;
       EXPECT_LE(course.gap, 1e-6 * w) << seed << ", " << steps;
-      if (course.stretch > 1e-6 * w) ++stretched;
-      EXPECT_LE(course.stretch, w) << seed << ", " << steps;
+      EXPECT_LE(course.stretch, 1e-6 * w) << seed << ", " << steps;
       ++ran;
     }
   }
   EXPECT_EQ(ran, 180);
-  EXPECT_LE(stretched, 1);
 }
 
 TEST(RandomStrung, AClearedWorkspaceChangesNoBit) {
