@@ -178,8 +178,6 @@ void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
   refuse(!positive(cable.mass_per_metre), place,
          "the mass of a metre must be a number of at least 0");
   refuse(becomes_nodes(cable), place, "a cable with mass needs its nodes (spread_nodes)");
-  refuse(cable.creep && cable.nodes != 0, place,
-         "a cable that hangs in nodes cannot creep; leave out its nodes, or creep");
 }
 
 /// Sleeves (cable/sleeve.h), where a cable with mass slips, are of discs, about their centres.

@@ -244,10 +244,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   } else if (from.contains("wraps")) {
     refuse_keys(from, place, {"bending_stiffness_n_m2"},
                 "a cable with mass_per_metre_kg that runs over bodies");
-    if (from.contains("nodes")) {
-      refuse_keys(from, place, {"creep"},
-                  "a cable with mass_per_metre_kg that runs over bodies and hangs in nodes");
-    } else {
+    if (!from.contains("nodes")) {
       refuse_keys(from, place, {"node_tolerance_m", "contact_friction", "linear_drag_per_s"},
                   "a cable with mass_per_metre_kg that runs over bodies and has no nodes");
     }

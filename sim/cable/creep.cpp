@@ -127,6 +127,21 @@ double laid_material(const Rim& rim, double place) {
   return piece.material + (place - piece.place) * piece.slope;
 }
 
+double place_of_laid(const Rim& rim, double material) {
+  const Laid &first = rim.laid.front(), &last = rim.laid.back();
+  if (material <= first.material) {
+    return first.place + (material - first.material) / rim.comes_on_at_tail;
+  }
+  if (material >= last.material) {
+    return last.place + (material - last.material) / rim.comes_on_at_head;
+  }
+  const auto after =
+      std::upper_bound(rim.laid.begin(), rim.laid.end(), material,
+                       [](double value, const Laid& laid) { return value < laid.material; });
+  const Laid& piece = *(after - 1);
+  return piece.place + (material - piece.material) / piece.slope;
+}
+
 void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
   if (cable.rims.empty() || link.orientation == 0 || link.corner >= 0 || link.layers.way != 0 ||

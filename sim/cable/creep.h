@@ -83,6 +83,9 @@ void each_piece(const World& world, const CableState& cable, std::size_t link, c
   go_to(on.head);
 }
 
+/// Where on the rim (m) so much material (m) lies, counted as laid_material does.
+double place_of_laid(const Rim& rim, double material);
+
 /// J, of the strain of what a cable's rims carry; `stiffness` (N) is finite.
 double energy_carried(const World& world, const CableState& cable, double stiffness);
 

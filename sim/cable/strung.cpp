@@ -10,6 +10,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/cable/held_spans.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
@@ -56,12 +57,14 @@ void insert(World& world, CableState& cable, std::size_t segment, int node, doub
   const auto place = static_cast<std::ptrdiff_t>(position);
   cable.links.insert(cable.links.begin() + place, link);
   cable.segments.insert(cable.segments.begin() + place, arriving);
+  if (!cable.rims.empty()) cable.rims.insert(cable.rims.begin() + place, Rim{});
   for (const std::size_t part : {position, seam ? 0 : position + 1}) {
     update_tangent(world, cable, part);
     begin_here(cable.segments[part]);
   }
   count_changes(world, cable, 1);
   update_wraps_and_rest_lengths(world, cable);
+  if (!cable.rims.empty()) lay_down(world, cable);
 }
 
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.
@@ -131,7 +134,15 @@ void string_all(World& world, CableState& cable, double margin) {
 struct PlaceOnRim {
   double turned = 0.0, radius = 0.0;
 };
-PlaceOnRim place_on_rim(const Link& link, double material) {
+PlaceOnRim place_on_rim(const World& world, const CableState& cable, std::size_t i,
+                        double material) {
+  const Link& link = cable.links[i];
+  if (!cable.rims.empty() && !cable.rims[i].laid.empty()) {
+    const double tail = span_on_rim(world, cable, i).tail;
+    const double met = laid_material(cable.rims[i], tail);
+    const double along = place_of_laid(cable.rims[i], met + material) - tail;
+    return {along / link.signed_radius(), link.signed_radius()};
+  }
   const Layers& layers = link.layers;
   if (layers.way == 0) return {material / link.signed_radius(), link.signed_radius()};
   const bool begins_there = layers.way > 0;  // the first layer is where the cable meets it
@@ -407,7 +418,7 @@ void carry_wound_nodes(World& world, const CableState& cable) {
       for (long k = on.first; k <= on.last; ++k) {
         const int node = body_of_node(cable, k);
         if (!is_wound(node)) continue;
-        const PlaceOnRim place = place_on_rim(link, place_of_node(cable, k) - meets);
+        const PlaceOnRim place = place_on_rim(world, cable, i, place_of_node(cable, k) - meets);
         const Vec2 e = turned(Vec2(0.0, 1.0), alpha + place.turned);
         at(world.position, node) = tangent_point(link_centre(world, link), place.radius, e);
       }

@@ -21,6 +21,7 @@ namespace {
 // The header has the reasons.
 constexpr double most_bent = 0.5;  // rad, more than when it was moored
 constexpr double taken_in = 1e-2;  // of the distance of nodes
+constexpr double taken_in_creeping = 0.1;
 
 /// rad, by which the cable turns at a node.
 double turn_at(const CableState& cable, int link) {
@@ -37,6 +38,8 @@ void count_turns_off(CableState& cable, int link, double turns) {
     Link& after = cable.links[i];
     if (after.layers.way != 0) {
       after.layers.begins -= after.orientation * angle;
+    } else if (!cable.rims.empty() && !cable.rims[i].laid.empty()) {
+      for (Laid& laid : cable.rims[i].laid) laid.place -= after.signed_radius() * angle;
     } else {
       after.material += after.signed_radius() * angle;
     }
@@ -44,12 +47,11 @@ void count_turns_off(CableState& cable, int link, double turns) {
   if (cable.closed) cable.turning -= angle;
 }
 
-/// rad, by which the cable is bent away from a rim at a node beside it: a quarter of a turn towards
-/// it to three away, so that one that folds back on the rim is half a turn away.
+/// rad, by which the cable is bent away from a rim at a node beside it: up to somewhat more than half
+/// a turn, so that one that folds back on the rim is bent away, whatever round-off does.
 double bent_away(const CableState& cable, int link, int rim) {
-  constexpr double quarter = 0.5 * std::numbers::pi;
   const double bent = -at(cable.links, rim).orientation * turn_at(cable, link);
-  return std::remainder(bent - quarter, 4.0 * quarter) + quarter;
+  return std::remainder(bent - most_bent, 2.0 * std::numbers::pi) + most_bent;
 }
 
 /// Turns what follows a node so that the cable bends there by so much; by less than half a turn
@@ -88,7 +90,8 @@ LeftOfMooring left_of_mooring(const World& world, const CableState& cable, int l
 }  // namespace
 
 double mooring_distance(const CableState& cable) {
-  return std::max(taken_in * node_spacing(cable), cable.fills ? cable.half_width : 0.0);
+  const double share = cable.rims.empty() ? taken_in : taken_in_creeping;
+  return std::max(share * node_spacing(cable), cable.fills ? cable.half_width : 0.0);
 }
 
 double left_until_taken_in(const World& world, const CableState& cable, int link) {

@@ -28,9 +28,11 @@
 
 namespace pinchlab {
 
-/// m of cable to a rim, at which that takes hold of a node: a hundredth of l, but of a cable in
-/// layers its half width at least. A drum's radius grows by w / pi dphi as the span beside it turns
-/// by dphi (cable.h), which turns that by w / (pi d) dphi again: it must be well below 1.
+/// m of cable to a rim, at which that takes hold of a node: a hundredth of l. Of one in layers its
+/// half width at least: a drum's radius grows by w / pi dphi as the span beside it turns by dphi
+/// (cable.h), which turns that by w / (pi d) dphi again, and must be well below 1. Of one that
+/// creeps a tenth: what a rim takes of a span is extrapolated from its strain (creep.h), which errs
+/// by as much over d.
 double mooring_distance(const CableState& cable);
 
 /// What is left between a node and a rim beside it until the rim takes hold of it (m); infinity:
