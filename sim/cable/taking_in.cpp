@@ -47,8 +47,8 @@ void count_turns_off(CableState& cable, int link, double turns) {
   if (cable.closed) cable.turning -= angle;
 }
 
-/// rad, by which the cable is bent away from a rim at a node beside it: up to somewhat more than half
-/// a turn, so that one that folds back on the rim is bent away, whatever round-off does.
+/// rad, by which the cable is bent away from a rim at a node beside it: up to somewhat more than
+/// half a turn, so that one that folds back on the rim is bent away, whatever round-off does.
 double bent_away(const CableState& cable, int link, int rim) {
   const double bent = -at(cable.links, rim).orientation * turn_at(cable, link);
   return std::remainder(bent - most_bent, 2.0 * std::numbers::pi) + most_bent;
