@@ -264,7 +264,10 @@ std::vector<Problem> finely_solved_problems(int steps_per_frame) {
       solved("creeping-belt", "A belt creeps over its pulleys",
              build::belt_drive(0.35, 150.0, 101.0, 4), 1.0),
       solved("folded-chain", "A folded chain of 20 pieces is let go", build::folded_chain(20, 4),
-             0.3)};
+             0.3),
+      // As few pieces as bend no faster than one step a frame follows.
+      solved("flexible-pendulum", "A flexible pendulum of 6 pieces is let go level",
+             build::flexible_pendulum(6, 1), 1.0)};
 }
 
 Problem own_solution(const std::string& name, const Scene& scene, double seconds,
