@@ -178,6 +178,11 @@ void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
   refuse(!positive(cable.mass_per_metre), place,
          "the mass of a metre must be a number of at least 0");
   refuse(becomes_nodes(cable), place, "a cable with mass needs its nodes (spread_nodes)");
+  const bool elastic = cable.axial_stiffness < infinity;
+  refuse(
+      (cable.start.layers || cable.end.layers) && cable.nodes != 0 && elastic, place,
+      "a cable that hangs in nodes and stretches cannot lie in layers, which take it as if it did "
+      "not; leave out its nodes, its axial stiffness or the layers");
 }
 
 /// Sleeves (cable/sleeve.h), where a cable with mass slips, are of discs, about their centres.

@@ -28,7 +28,7 @@ set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
 set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 4.1591652455379833e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.1580965215810644e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \
@@ -68,7 +68,7 @@ set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the farthest that a centre or rim gets from its start'
 set yrange [1e-08:10]
 set key outside right center invert reverse Left spacing 1.3
-plot 4.1591652455379833e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
+plot 4.1580965215810644e-10 with lines lc rgb '#999999' dt 3 lw 1.5 notitle, \
   'accuracy.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
   'accuracy.csv' using (strcol('scene') eq 'heavy-tackle' && strcol('setting') eq 'cable iterative' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'heavy-tackle' && strcol('setting') eq 'cable iterative' ? column('error') : NaN))) with linespoints ls 6 dt 2 ps 0.7 title 'cable iterative', \

@@ -26,7 +26,7 @@ set mytics 1
 set title 'Four pinched pulleys on a wrapped one, at rest' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the cable''s half width'
-set yrange [1e-14:10000]
+set yrange [1e-14:1000]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \
@@ -65,7 +65,7 @@ set mytics 1
 set title 'Four pinched pulleys on a wrapped one, at rest' tc rgb '#333333'
 set xlabel 'processor time a simulated second (µs)'
 set ylabel 'error / the cable''s half width'
-set yrange [1e-14:10000]
+set yrange [1e-14:1000]
 set key outside right center invert reverse Left spacing 1.3
 plot 'accuracy.csv' using (strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with points ls 4 ps 0.25 notitle, \
   'accuracy-fronts.csv' using (strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('cpu_us_per_s') : NaN):(drawn((strcol('scene') eq 'resting-stack' && strcol('engine') eq 'Box2D' ? column('error') : NaN))) with linespoints ls 4 title 'Box2D, its best (dots: all)', \

@@ -149,6 +149,20 @@ TEST(StrungLayers, RefusesPiecesThatAreTooShort) {
   }
 }
 
+// What comes on to layers is not stretched: of a short span they would take more than it has.
+TEST(StrungLayers, RefusesWhatStretches) {
+  Scene scene = hanging_hoist(true, 40, 4);
+  scene.cables[0].axial_stiffness = 1e5;
+  spread_nodes(scene);
+  try {
+    make_world(scene, Method::pinch);
+    ADD_FAILURE() << "not refused";
+  } catch (const SceneError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("stretches cannot lie in layers"), std::string::npos) << text;
+  }
+}
+
 /// m, how far a disc is in a span at most that neither ends on it nor is held by it.
 double deepest_in_spans(const World& world) {
   double deepest = 0.0;
