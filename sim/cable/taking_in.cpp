@@ -54,8 +54,8 @@ double bent_away(const CableState& cable, int link, int rim) {
   return std::remainder(bent - most_bent, 2.0 * std::numbers::pi) + most_bent;
 }
 
-/// Turns what follows a node so that the cable bends there by so much; by less than half a turn
-/// where there is no rim (-1).
+/// Counts turns anew from a node on, so that the cable bends there as bent_away has it; by less
+/// than half a turn where there is no rim (-1).
 void count_bend_anew(CableState& cable, int link, int rim) {
   const double turn = turn_at(cable, link), whole = 2.0 * std::numbers::pi;
   const double bend = rim < 0 ? std::remainder(turn, whole)

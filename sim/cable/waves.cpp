@@ -14,7 +14,7 @@ namespace pinchlab {
 
 namespace {
 
-// The header has the reasons: (omega h)^2 at most
+// (omega h)^2 at most; the header has the reasons.
 constexpr double in_steps = 1.0;            // of a whole step, of cables that run over bodies
 constexpr double in_steps_of_pieces = 2.0;  // the same, of pieces between nodes
 constexpr double in_intervals = 0.25;       // of the intervals of others, as tried
