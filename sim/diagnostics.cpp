@@ -94,10 +94,11 @@ double potential_energy(const Scene& scene, const World& world) {
     if (stiffness == infinity) continue;
     for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
       const Segment& segment = cable.segments[i];
-      if (segment.rest_length <= 0.0) continue;
+      const double material = elastic_material(cable, segment);
+      if (segment.pinched || material == 0.0) continue;
       double stretch = segment.length - segment.rest_length;
       if (!cable.rod) stretch = std::max(stretch, 0.0);
-      energy += 0.5 * stiffness * stretch * stretch / segment.rest_length;
+      energy += 0.5 * stiffness * stretch * stretch / material;
     }
     if (!cable.rims.empty()) energy += energy_carried(world, cable, stiffness);
   }

@@ -84,6 +84,16 @@ inline double thickness(const CableState& cable) {
   return 2.0 * cable.half_width + layers;
 }
 
+/// Of its material, that a cable is stretched by at most: no rubber bears more. Rims leave what they
+/// take up of it unstretched, so that the last of a span that vanishes bears all of its stretch.
+constexpr double most_strain = 10.0;
+
+/// Material (m) that a segment of an elastic cable stretches as. Springs have no bound.
+inline double elastic_material(const CableState& cable, const Segment& segment) {
+  const double stretch = cable.rod ? 0.0 : segment.length - segment.rest_length;
+  return std::max({segment.rest_length, stretch / most_strain, 0.0});
+}
+
 /// Material (m) that a closed pinch may hold: round-off of the cable's length.
 inline double material_rounding(const CableState& cable) {
   return 1e-15 * cable.length;

@@ -66,7 +66,7 @@ double turned_square(const World& world, std::span<const int> bodies, double len
   const double by_flow = turned_by_flow(world, bodies, length, s);
   double swung = 0.0;  // J
   for (const Row& row : s.rows) {
-    if (row.compliance > 0.0 || std::abs(row.curved) <= round_off) continue;
+    if (std::abs(row.curved) <= round_off) continue;
     swung += std::abs(row.impulse * row.curved);
   }
   if (swung == 0.0) return by_flow;

@@ -18,6 +18,7 @@
 //     Nor does one turn a span with mass far that is not taut: the flow over the rims at its ends
 // is a force F then (cable/mass.h), and what an interval's F h has as energy on what it pushes, at
 // rest, is as small a share of that of the span's two ends.
+//     A span that stretches gives back what it takes, but along another direction, and counts too.
 
 #include <Eigen/Core>
 #include <span>
@@ -30,7 +31,7 @@ struct World;
 
 /// phi^2 above (rad^2) of what was just solved for these bodies and an interval of `length` (s); 0
 /// where nothing curves. The energy is what they and the cables that they carry have, or would have
-/// without their rows: what rests turns nothing. Elastic rows give back what they take.
+/// without their rows: what rests turns nothing.
 double turned_square(const World& world, std::span<const int> bodies, double length,
                      const PartSystem& system);
 

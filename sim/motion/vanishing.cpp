@@ -17,6 +17,7 @@ constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
 // Of a step, which the touch itself would ask to be 0; at tau = 1e-6 T, where the span has a
 // thousandth of its length.
 constexpr double least_share = 1e-4;
+constexpr double elastic_share = 0.5;  // of the time left of one that stretches, or is passed in
 
 /// Whether a pinched span is between bodies that touch, have not sunk into it, and may part.
 bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head,
@@ -32,7 +33,7 @@ bool is_let_go(const World& world, const Segment& span, const Link& tail, const 
 double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,
                  double most) {
   const double touch = tail.radius + head.radius;  // m, Delta where the cable crosses over
-  if (tail.orientation * head.orientation > 0 || span.slack) return most;
+  if (tail.orientation * head.orientation > 0) return most;
   const Vec2 apart = span.head_centre - span.tail_centre;
   const bool opens = span.pinched && is_let_go(world, span, tail, head, apart.norm());
   if (!opens && (span.pinched || span.length == 0.0)) return most;
@@ -44,32 +45,51 @@ double time_left(const World& world, const Segment& span, const Link& tail, cons
   return square < rate * most ? square / rate : most;
 }
 
+/// The time in which a rim at either end of a span takes or gives as much as is in it (s), where
+/// that is less than `most`; else that.
+double time_to_pass(const World& world, const Segment& span, const Link& tail, const Link& head,
+                    double most) {
+  const auto speed = [&world](const Link& link) {
+    const double turning = link.body < 0 ? 0.0 : at(world.angular_velocity, link.body);
+    return std::abs(link.signed_radius() * turning);
+  };
+  const double fastest = std::max(speed(tail), speed(head));
+  return span.length < fastest * most ? span.length / fastest : most;
+}
+
 }  // namespace
 
 double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
-  if (world.step_length >= vanishing_time) return infinity;
-  double left = vanishing_time;
+  const bool too_long = world.step_length >= vanishing_time;  // to follow the touch
+  double left = vanishing_time, left_of_elastic = infinity;
   for (const int p : of) {
     const Part& part = at(parts.list, p);
     if (!part.can_move) continue;
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
-      if (cable.stands || cable.elastic) continue;
+      if (cable.stands || (too_long && !cable.elastic)) continue;
+      double& least = cable.elastic ? left_of_elastic : left;
       const Link* tail = cable.closed ? &cable.links.back() : &cable.links.front();
       const std::span spans(cable.segments);
       const std::span links(cable.links);
       for (std::size_t i = first_segment(cable); i < spans.size(); ++i) {
         const Link& head = links[i];
-        if (spans[i].length < short_share * (tail->radius + head.radius)) {
-          left = time_left(world, spans[i], *tail, head, left);
+        const bool is_short = spans[i].length < short_share * (tail->radius + head.radius);
+        if (is_short && (cable.elastic || !spans[i].slack)) {
+          least = time_left(world, spans[i], *tail, head, least);
+          if (!cable.rims.empty() && !spans[i].pinched) {
+            least = time_to_pass(world, spans[i], *tail, head, least);
+          }
         }
         tail = &head;
       }
     }
   }
-  if (left >= vanishing_time) return infinity;
-  const double share = left / vanishing_time;
-  return world.step_length * std::max(std::cbrt(share * share), least_share);
+  if (left >= vanishing_time && left_of_elastic == infinity) return infinity;
+  const double share = left < vanishing_time ? left / vanishing_time : infinity;
+  const double longest =
+      std::min(world.step_length * std::cbrt(share * share), elastic_share * left_of_elastic);
+  return std::max(longest, least_share * world.step_length);
 }
 
 }  // namespace pinchlab

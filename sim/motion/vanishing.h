@@ -14,8 +14,12 @@
 // one errs, by h: of first order, however well the touch is located. Intervals of
 //     h (tau / T)^(2/3)   where tau < T
 // err by h^3 / T^2 each; there are 3 T / h of them, and they err by 3 h^2 / T together: of second
-// order. (The step is h. T is vanishing_time: what takes longer steps can follow.) A cable that
-// stretches does not need it: its tension has a bound.
+// order. (The step is h. T is vanishing_time: what takes longer steps can follow.)
+//     The span of a cable that stretches has little material left when it is short, slack or not:
+// its stiffness grows as 1 / L, and an interval that begins with three times the material that it
+// ends with takes it for a third as stiff as it is. Intervals of tau / 2 leave it as stiff as it
+// was to a factor of sqrt(2), and (omega h)^2 goes as tau^2 / L, to 0. Where its rims creep, no more
+// than half of what is in it goes through it in one: what comes on is taken as it was before.
 
 #include <span>
 

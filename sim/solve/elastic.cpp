@@ -19,7 +19,7 @@ namespace {
 /// to step, and rows and factors stand.
 double flexibility_of(const CableState& cable, const Cable& given, const Segment& segment) {
   const double coarse = 64.0 * cable.length;
-  const double material = (std::max(segment.rest_length, 0.0) + coarse) - coarse;
+  const double material = (elastic_material(cable, segment) + coarse) - coarse;
   return material / given.axial_stiffness;
 }
 
