@@ -84,8 +84,8 @@ inline double thickness(const CableState& cable) {
   return 2.0 * cable.half_width + layers;
 }
 
-/// Of its material, that a cable is stretched by at most: no rubber bears more. Rims leave what they
-/// take up of it unstretched, so that the last of a span that vanishes bears all of its stretch.
+/// Of its material, that a cable is stretched by at most: no rubber bears more. Rims take up what
+/// is not stretched, so that the last of a span that vanishes has all of its stretch.
 constexpr double most_strain = 10.0;
 
 /// Material (m) that a segment of an elastic cable stretches as. Springs have no bound.

@@ -18,8 +18,8 @@
 //     The span of a cable that stretches has little material left when it is short, slack or not:
 // its stiffness grows as 1 / L, and an interval that begins with three times the material that it
 // ends with takes it for a third as stiff as it is. Intervals of tau / 2 leave it as stiff as it
-// was to a factor of sqrt(2), and (omega h)^2 goes as tau^2 / L, to 0. Where its rims creep, no more
-// than half of what is in it goes through it in one: what comes on is taken as it was before.
+// was to a factor of sqrt(2), and (omega h)^2 goes as tau^2 / L, to 0. Where its rims creep, no
+// more than half of what is in it goes through it in one: what comes on is taken as it was before.
 
 #include <span>
 

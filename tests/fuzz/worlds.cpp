@@ -199,8 +199,8 @@ void add_shapes(json& scene, Choices& choices) {
   }
 }
 
-/// Cables with mass over bodies, of which discs alone let them slip; and those that hang bend. No
-/// bytes: none.
+/// Cables with mass over bodies, of which discs alone let them slip, some of which hang by nodes;
+/// and those that hang between points bend. No bytes: none.
 void add_heavy_cables(json& scene, Choices& choices) {
   bool any = false;
   for (json& cable : scene["cables"]) {
@@ -217,6 +217,11 @@ void add_heavy_cables(json& scene, Choices& choices) {
     if (body.contains("corners_m") || choices.one_in(2)) body.erase("cable_friction");
     if (!body.contains("shapes")) continue;
     for (json& shape : body["shapes"]) shape.erase("cable_friction");
+  }
+  for (json& cable : scene["cables"]) {
+    if (cable["wraps"].empty() || !cable.contains("mass_per_metre_kg")) continue;
+    const unsigned nodes = choices.below(40);
+    if (nodes > 0) cable["nodes"] = nodes;
   }
 }
 

@@ -236,10 +236,10 @@ TEST(Creep, MakesNoEnergy) {
   }
 }
 
-// Spans that discs roll together have hardly any material left, and are as stiff. Taken for as stiff
-// as they were when an interval began, or turned in one by as much as they liked, they made up to
-// seven times the energy at play, in those named below at 4 or 16 steps a frame. Some slip, where
-// rims carry what is not stretched.
+// Spans that discs roll together have hardly any material left, and are as stiff. Taken for as
+// stiff as they were when an interval began, or turned in one by as much as they liked, they made
+// up to seven times the energy at play, in those named below at 4 or 16 steps a frame. Some slip,
+// where rims carry what is not stretched.
 TEST(Creep, SpansThatVanishMakeNoEnergy) {
   const auto run_of = [](Scene (*rope)(unsigned), unsigned seed, bool heavy, double share) {
     for (const int steps : {4, 16}) {
