@@ -57,38 +57,60 @@ double time_to_pass(const World& world, const Segment& span, const Link& tail, c
   return span.length < fastest * most ? span.length / fastest : most;
 }
 
+/// Calls f(span, tail, head) for each span of a cable that is short to the circles at its ends.
+template <class F>
+void each_short_span(const CableState& cable, const F& f) {
+  const Link* tail = cable.closed ? &cable.links.back() : &cable.links.front();
+  const std::span spans(cable.segments);
+  const std::span links(cable.links);
+  for (std::size_t i = first_segment(cable); i < spans.size(); ++i) {
+    const Link& head = links[i];
+    if (spans[i].length < short_share * (tail->radius + head.radius)) f(spans[i], *tail, head);
+    tail = &head;
+  }
+}
+
+/// time_left of a cable's spans that do not stretch.
+double time_left(const World& world, const CableState& cable, double most) {
+  each_short_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
+    if (!span.slack) most = time_left(world, span, tail, head, most);
+  });
+  return most;
+}
+
+/// The same of those that do, where rims creep also the time in which they are passed.
+double time_left_of_elastic(const World& world, const CableState& cable, double most) {
+  each_short_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
+    most = time_left(world, span, tail, head, most);
+    if (cable.rims.empty() || span.pinched) return;
+    most = time_to_pass(world, span, tail, head, most);
+  });
+  return most;
+}
+
 }  // namespace
 
 double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
-  const bool too_long = world.step_length >= vanishing_time;  // to follow the touch
+  const bool follows = world.step_length < vanishing_time;
   double left = vanishing_time, left_of_elastic = infinity;
   for (const int p : of) {
     const Part& part = at(parts.list, p);
     if (!part.can_move) continue;
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
-      if (cable.stands || (too_long && !cable.elastic)) continue;
-      double& least = cable.elastic ? left_of_elastic : left;
-      const Link* tail = cable.closed ? &cable.links.back() : &cable.links.front();
-      const std::span spans(cable.segments);
-      const std::span links(cable.links);
-      for (std::size_t i = first_segment(cable); i < spans.size(); ++i) {
-        const Link& head = links[i];
-        const bool is_short = spans[i].length < short_share * (tail->radius + head.radius);
-        if (is_short && (cable.elastic || !spans[i].slack)) {
-          least = time_left(world, spans[i], *tail, head, least);
-          if (!cable.rims.empty() && !spans[i].pinched) {
-            least = time_to_pass(world, spans[i], *tail, head, least);
-          }
-        }
-        tail = &head;
+      if (cable.stands) continue;
+      if (cable.elastic) {
+        left_of_elastic = time_left_of_elastic(world, cable, left_of_elastic);
+      } else if (follows) {
+        left = time_left(world, cable, left);
       }
     }
   }
-  if (left >= vanishing_time && left_of_elastic == infinity) return infinity;
-  const double share = left < vanishing_time ? left / vanishing_time : infinity;
-  const double longest =
-      std::min(world.step_length * std::cbrt(share * share), elastic_share * left_of_elastic);
+  double longest = elastic_share * left_of_elastic;
+  if (left < vanishing_time) {
+    const double share = left / vanishing_time;
+    longest = std::min(longest, world.step_length * std::cbrt(share * share));
+  }
   return std::max(longest, least_share * world.step_length);
 }
 
