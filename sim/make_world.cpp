@@ -64,10 +64,12 @@ void lay_cables(const Scene& scene, World& world) {
   const double allowed = overlap_allowed(scene);
   world.cables.clear();
   world.cables.reserve(scene.cables.size());
+  CableState laid;
+  LayScratch scratch;
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     // A copy is of its size, and what laying takes beside it serves the next. With that between
     // them the steps of a scene of many cables would go through a third more pages of memory.
-    const CableState laid = lay_cable(scene, world, allowed, c);
+    lay_cable(scene, world, allowed, c, laid, scratch);
     world.cables.push_back(laid);
   }
 }

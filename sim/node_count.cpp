@@ -302,6 +302,8 @@ std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_
   std::vector<double> hung(cables.size());
   find_hung_masses(scene, cables, held, hung);
   std::optional<World> world;  // to lay what runs over bodies
+  CableState laid;
+  LayScratch scratch;
   std::vector<Expected> expected;
   for (std::size_t i = 0; i < cables.size(); ++i) {
     const Cable& cable = scene.cables[cables[i]];
@@ -312,7 +314,7 @@ std::vector<Expected> expected_of(const Scene& scene, std::span<const std::size_
       continue;
     }
     if (!world) world = bodies_of_scene(scene);
-    const CableState laid = lay_cable(scene, *world, overlap_allowed(scene), cables[i]);
+    lay_cable(scene, *world, overlap_allowed(scene), cables[i], laid, scratch);
     expected.push_back({laid.length, tension_over_bodies(scene, *world, cable, laid, hung[i])});
   }
   return expected;

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -26,10 +28,10 @@ constexpr double turn = 2.0 * std::numbers::pi;
 /// A cable being laid, and where each of its links comes from.
 struct Course {
   const Cable& given;
-  std::size_t number;      // of the cable
-  double allowed;          // m, overlap_allowed
-  std::vector<int> stops;  // of each link: of Cable::wraps; -1: the start; their number: the end
-  CableState cable;
+  std::size_t number;  // of the cable
+  double allowed;      // m, overlap_allowed
+  CableState& cable;
+  LayScratch& scratch;
 };
 
 std::string place_of_stop(const Course& course, int stop) {
@@ -40,7 +42,7 @@ std::string place_of_stop(const Course& course, int stop) {
 }
 
 std::string place_of(const Course& course, std::size_t link) {
-  return place_of_stop(course, course.stops[link]);
+  return place_of_stop(course, course.scratch.stops[link]);
 }
 
 /// An end whose layers have a way marks that its body's other link is to have them.
@@ -53,15 +55,14 @@ Link attached_link(const World& world, const Attachment& attachment, int way) {
   return link;
 }
 
-/// The links with which a wrap could begin or end: of a polygon one at each corner.
-std::vector<Link> choices(const World& world, const Cable& cable, const Wrap& wrap) {
+/// Appends the links with which a wrap could begin or end: of a polygon one at each corner.
+void append_choices(const World& world, const Cable& cable, const Wrap& wrap,
+                    std::vector<Link>& links) {
   const BodyProperties& body = at(world.bodies, wrap.body);
   const int corners = static_cast<int>(body.corners.size());
-  std::vector<Link> links;
   for (int k = corners == 0 ? -1 : 0; k < corners; ++k) {
     links.push_back(rolling_link(body, wrap.body, k, wrap.orientation, cable.half_width));
   }
-  return links;
 }
 
 /// Whether all corners of a link's polygon are on the inner side of a span along `direction`
@@ -79,8 +80,8 @@ bool is_beside(const World& world, const Link& link, const Vec2& point, const Ve
 
 /// Of all tangents from one of the first links to one of the others, the one that leaves no corner
 /// on its outer side; whether there is one.
-bool join(const World& world, const std::vector<Link>& from, const std::vector<Link>& to,
-          double allowed, Link& leaves, Link& arrives) {
+bool join(const World& world, std::span<const Link> from, std::span<const Link> to, double allowed,
+          Link& leaves, Link& arrives) {
   for (const Link& tail : from) {
     for (const Link& head : to) {
       const Vec2 a = link_centre(world, tail), b = link_centre(world, head);
@@ -112,7 +113,7 @@ void append_wrap(const World& world, int number, const Link& first, const Link& 
   for (int i = 0; i < count; ++i) {
     course.cable.links.push_back(
         rolling_link(body, wrap.body, corner, wrap.orientation, course.given.half_width));
-    course.stops.push_back(number);
+    course.scratch.stops.push_back(number);
     if (corners > 0) corner = (corner + wrap.orientation + corners) % corners;
   }
 }
@@ -120,15 +121,36 @@ void append_wrap(const World& world, int number, const Link& first, const Link& 
 void lay_links(const Scene& scene, const World& world, Course& course) {
   const Cable& given = course.given;
   const int first_stop = given.closed ? 0 : -1;
-  std::vector<std::vector<Link>> stops;
-  if (!given.closed) stops.push_back({attached_link(world, given.start, 1)});
-  for (const Wrap& wrap : given.wraps) stops.push_back(choices(world, given, wrap));
-  if (!given.closed) stops.push_back({attached_link(world, given.end, -1)});
-  const std::size_t count = stops.size();
-  std::vector<Link> arrives(count), leaves(count);
+  auto& [choices, begin, arrives, leaves, stops] = course.scratch;
+  choices.clear();
+  begin.clear();
+  stops.clear();
+  const auto begin_stop = [&] { begin.push_back(choices.size()); };
+  begin_stop();
+  if (!given.closed) {
+    choices.push_back(attached_link(world, given.start, 1));
+    begin_stop();
+  }
+  for (const Wrap& wrap : given.wraps) {
+    append_choices(world, given, wrap, choices);
+    begin_stop();
+  }
+  if (!given.closed) {
+    choices.push_back(attached_link(world, given.end, -1));
+    begin_stop();
+  }
+  const std::size_t count = begin.size() - 1;
+  const auto choices_of = [&](std::size_t stop) {
+    return std::span<const Link>(choices).subspan(begin[stop], begin[stop + 1] - begin[stop]);
+  };
+  arrives.resize(count);
+  leaves.resize(count);
   for (std::size_t i = given.closed ? 0 : 1; i < count; ++i) {
     const std::size_t before = (i + count - 1) % count;
-    if (join(world, stops[before], stops[i], course.allowed, leaves[before], arrives[i])) continue;
+    if (join(world, choices_of(before), choices_of(i), course.allowed, leaves[before],
+             arrives[i])) {
+      continue;
+    }
     throw SceneError(
         place_of_stop(course, static_cast<int>(i) + first_stop),
         fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
@@ -141,8 +163,8 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
     if (stop >= 0 && index(stop) < given.wraps.size()) {
       append_wrap(world, stop, arrives[i], leaves[i], course);
     } else {
-      course.cable.links.push_back(stops[i].front());
-      course.stops.push_back(stop);
+      course.cable.links.push_back(choices_of(i).front());
+      stops.push_back(stop);
     }
   }
   course.cable.segments.resize(course.cable.links.size());
@@ -204,14 +226,14 @@ void lay_wraps(const Scene& scene, Course& course) {
   for (std::size_t i = 0; i < count; ++i) {
     Link& link = cable.links[i];
     if (link.orientation == 0) continue;
-    if (i == 0 || course.stops[i] != course.stops[i - 1]) of_stop = 0.0;
+    if (i == 0 || course.scratch.stops[i] != course.scratch.stops[i - 1]) of_stop = 0.0;
     const std::size_t leaving = (i + 1) % count;
     double wrap = link.orientation * (cable.segments[leaving].alpha - cable.segments[i].alpha);
     constexpr double rounding = 1e-9;  // rad: a wrap of nothing is no whole turn
     wrap -= turn * std::floor((wrap + rounding) / turn);
     wrap = std::max(wrap, 0.0);
     of_stop += wrap;
-    const int asked = at(course.given.wraps, course.stops[i]).extra_turns;
+    const int asked = at(course.given.wraps, course.scratch.stops[i]).extra_turns;
     const int turns = link.corner < 0 ? asked : 0;  // round a polygon they are links of their own
     if (of_stop > suspicious && asked == 0) {
       throw SceneError(
@@ -279,12 +301,24 @@ void lay_material(const World& world, Course& course) {
   if (!cable.closed) cable.links.back().material = cable.length;
 }
 
+/// Its storage serves again: of what is aligned so wide an allocation costs as much as the laying.
+void make_empty(CableState& cable) {
+  std::vector<Link> links = std::move(cable.links);
+  std::vector<Segment> segments = std::move(cable.segments);
+  cable = {};
+  links.clear();
+  segments.clear();
+  cable.links = std::move(links);
+  cable.segments = std::move(segments);
+}
+
 }  // namespace
 
-CableState lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c) {
+void lay_cable(const Scene& scene, const World& world, double allowed, std::size_t c,
+               CableState& cable, LayScratch& scratch) {
   const Cable& given = scene.cables[c];
-  Course course{given, c, allowed, {}, {}};
-  CableState& cable = course.cable;
+  make_empty(cable);
+  Course course{given, c, allowed, cable, scratch};
   cable.half_width = given.half_width;
   cable.density = given.mass_per_metre;
   if (world.configuration.method == Method::pinch) {
@@ -310,7 +344,6 @@ CableState lay_cable(const Scene& scene, const World& world, double allowed, std
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);
   for (Segment& segment : cable.segments) begin_here(segment);
-  return cable;
 }
 
 }  // namespace pinchlab

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -92,7 +94,6 @@ void sort_bodies(BroadPhase& broad) {
   const std::size_t count = broad.boxes.size();
   if (broad.order.size() != count) {
     broad.order.resize(count);
-    for (std::size_t b = 0; b < count; ++b) broad.order[b] = static_cast<int>(b);
     Box all = broad.boxes[0];
     for (const Box& box : broad.boxes) {
       all.low = all.low.cwiseMin(box.low);
@@ -100,11 +101,12 @@ void sort_bodies(BroadPhase& broad) {
     }
     const Vec2 size = all.high - all.low;
     broad.axis = size.x() >= size.y() ? 0 : 1;
-    std::sort(broad.order.begin(), broad.order.end(), [&broad](int a, int b) {
-      const double ka = broad.boxes[index(a)].low[broad.axis];
-      const double kb = broad.boxes[index(b)].low[broad.axis];
-      return ka != kb ? ka < kb : a < b;
-    });
+    std::vector<std::pair<double, int>> keyed(count);
+    for (std::size_t b = 0; b < count; ++b) {
+      keyed[b] = {broad.boxes[b].low[broad.axis], static_cast<int>(b)};
+    }
+    std::sort(keyed.begin(), keyed.end());
+    for (std::size_t i = 0; i < count; ++i) broad.order[i] = keyed[i].second;
   }
   for (std::size_t i = 1; i < count; ++i) {
     const int body = broad.order[i];
