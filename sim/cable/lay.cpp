@@ -121,7 +121,10 @@ void append_wrap(const World& world, int number, const Link& first, const Link& 
 void lay_links(const Scene& scene, const World& world, Course& course) {
   const Cable& given = course.given;
   const int first_stop = given.closed ? 0 : -1;
-  auto& [choices, begin, arrives, leaves, stops] = course.scratch;
+  std::vector<Link>& choices = course.scratch.choices;
+  std::vector<std::size_t>& begin = course.scratch.begin;
+  std::vector<Link>&arrives = course.scratch.arrives, &leaves = course.scratch.leaves;
+  std::vector<int>& stops = course.scratch.stops;
   choices.clear();
   begin.clear();
   stops.clear();
