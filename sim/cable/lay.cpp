@@ -128,19 +128,19 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
   choices.clear();
   begin.clear();
   stops.clear();
-  const auto begin_stop = [&] { begin.push_back(choices.size()); };
-  begin_stop();
+  begin.push_back(0);
+  const auto end_stop = [&] { begin.push_back(choices.size()); };
   if (!given.closed) {
     choices.push_back(attached_link(world, given.start, 1));
-    begin_stop();
+    end_stop();
   }
   for (const Wrap& wrap : given.wraps) {
     append_choices(world, given, wrap, choices);
-    begin_stop();
+    end_stop();
   }
   if (!given.closed) {
     choices.push_back(attached_link(world, given.end, -1));
-    begin_stop();
+    end_stop();
   }
   const std::size_t count = begin.size() - 1;
   const auto choices_of = [&](std::size_t stop) {
