@@ -198,7 +198,7 @@ void update_wrap(CableState& cable, Link& link, double arrives, double leaves) {
 /// Notes what the whole step asks of a segment whose rest length is up to date, while it is at
 /// hand. Zero times what is finite is zero, and sums of that are.
 void inspect(CableState& cable, const Segment& segment, double rounding, double& sum) {
-  if (segment.pinched && !(segment.rest_length <= rounding)) cable.overfull = true;
+  if (is_misfilled(cable, segment, rounding)) cable.misfilled = true;
   sum += 0.0 * (segment.length + segment.rest_length + segment.tension);
 }
 
@@ -206,7 +206,7 @@ void inspect(CableState& cable, const Segment& segment, double rounding, double&
 void update_laid_cable(const World& world, CableState& cable) {
   const double rounding = material_rounding(cable);
   double sum = 0.0;
-  cable.unwound = cable.overfull = false;
+  cable.unwound = cable.misfilled = false;
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     update_wrap(cable, cable.links[i], cable.segments[i].alpha, alpha_head(cable, i));
   }
@@ -227,7 +227,7 @@ template <bool stands>
 void update_rolled_cable(const World& world, CableState& cable) {
   const double rounding = material_rounding(cable);
   double sum = 0.0;
-  cable.overfull = false;
+  cable.misfilled = false;
   if (!stands) cable.unwound = false;
   const std::size_t count = cable.links.size();
   double left_before = 0.0;  // m, material coordinate where the cable leaves the link before

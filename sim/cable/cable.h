@@ -99,6 +99,13 @@ inline double material_rounding(const CableState& cable) {
   return 1e-15 * cable.length;
 }
 
+/// Whether the segments beside a pinch are to take material from it, or of a cable that stretches to
+/// give it what it lacks, but for `rounding` (m).
+inline bool is_misfilled(const CableState& cable, const Segment& segment, double rounding) {
+  const double material = segment.rest_length;
+  return segment.pinched && (!(material <= rounding) || (cable.elastic && material < -rounding));
+}
+
 /// What a body that presses the cable in a pinch holds it by, as a share of the force that presses;
 /// infinity: without slip. The law that it is part of: solve/friction.h.
 inline double friction_in_pinch(const World& world, const CableState& cable, int body) {

@@ -438,7 +438,7 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
   }
   detect_present(scene, world, work, pairs_stand, times);
   Stopwatch watch(times);
-  empty_pinches(world, work.parts);
+  refill_pinches(world, work.parts);
   // What has been moved, or thrown, may meet cables, and these need room.
   constexpr int most_times = 3;
   for (int k = 0; k < most_times && settle_ends(scene, world, work, changes); ++k) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/cable.h"
 #include "sim/motion/clearance.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/part_system.h"
@@ -33,6 +34,13 @@ double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
   if (s.rows[r].compliance > 0.0) return 0.0;
   if (!set.direct) return std::abs(row_speed(s, r));
   return set.unknown_of_row[r] >= 0 ? set.missing : std::abs(s.rows[r].speed);
+}
+
+/// m/s, at which a segment of an elastic cable gets material by sliding.
+double slid_in(const World& world, const Row& row) {
+  const CableState& cable = at(world.cables, row.index);
+  return at(cable.links, previous_link(cable, row.item)).slip_speed -
+         at(cable.links, row.item).slip_speed;
 }
 
 }  // namespace
@@ -66,22 +74,25 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
     const bool made_up = row.clearance <= s.reach;
     const double left = violated ? row.clearance : made_up ? still_left * row.clearance : 0.0;
     double missed = clearance_of(world, row) - left;
-    if (row.compliance > 0.0) {
-      if (!row.on || group >= 0) continue;
-      // The stretch over the interval's end is the real one.
-      const double straight = row_speed(s, r) - row.bias;
-      const double curvature = (missed + left - row.clearance) / t.length - straight;
-      missed = (curvature - s.bodies[r].curvature) * t.length;
-      s.bodies[r].curvature = curvature;
-    }
     // Without tension no segment of a group is held to its length.
     const bool bears = row.on && !(shares && row.impulse == 0.0);
+    const bool balances = group >= 0 && !s.elastic_ends.empty();
+    if (row.compliance > 0.0) {
+      if (balances ? !row.on && !shares : !row.on || group >= 0) continue;
+      // The stretch over the interval's end is the real one.
+      double straight = row_speed(s, r) - row.bias;
+      if (balances) straight += slid_in(world, row);
+      const double curvature = (missed + left - row.clearance) / t.length - straight;
+      missed = (curvature - s.bodies[r].curvature) * t.length;
+    }
     if (!bears) missed = std::min(missed, 0.0);
     double curvature = missed / t.length;
     // Of a row that bears no force the way itself has gained J v + bias, which has bent back.
     if (!bears && missed < 0.0 && group < 0) curvature -= std::max(row_speed(s, r), 0.0);
     row.bias += curvature;
     row.curved += curvature;
+    if (row.compliance > 0.0) s.bodies[r].curvature += curvature;
+    if (balances) s.elastic_ends[r].bias += curvature;
     most = std::max(most, std::abs(missed));
   }
   return most;

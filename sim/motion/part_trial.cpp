@@ -69,7 +69,7 @@ void put_back(World& world, Workspace& work, const Part& part) {
     if (const int first = at(work.first_link, c); first >= 0) {
       for (std::size_t i = 0; i < cable.links.size(); ++i) {
         cable.links[i].material = start.material[index(first) + i];
-        if (is_massed(cable)) cable.links[i].slip_speed = start.slip[index(first) + i];
+        cable.links[i].slip_speed = start.slip[index(first) + i];
       }
     }
     update_cable(world, cable, false, is_known(work));

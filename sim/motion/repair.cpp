@@ -114,38 +114,37 @@ bool opens(const World& world, const CableState& cable, int segment) {
   return !is_closed(world, cable, segment);
 }
 
-/// Lets go on what has gathered in a closed pinch.
-void empty_pinch(const World& world, CableState& cable, int pinch) {
+/// Lets go on what has gathered in a closed pinch, or come what it lacks.
+void refill_pinch(const World& world, CableState& cable, int pinch) {
   if (!is_closed(world, cable, pinch)) return;
   const int before = previous_link(cable, pinch), after = next_link(cable, pinch);
   if (after < 0) return;
   const bool opens_before = opens(world, cable, before);
   const bool opens_after = opens(world, cable, after);
   if (!opens_before && !opens_after) return;
-  const double slack = at(cable.segments, pinch).rest_length;
+  const double material = at(cable.segments, pinch).rest_length;
   const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
-  at(cable.links, before).material += share * slack;
-  at(cable.links, pinch).material -= (1.0 - share) * slack;
+  at(cable.links, before).material += share * material;
+  at(cable.links, pinch).material -= (1.0 - share) * material;
   update_wraps_and_rest_lengths(world, cable);
 }
 
-void empty_pinches_of(const World& world, CableState& cable) {
-  if (!cable.overfull) return;
+void refill_pinches_of(const World& world, CableState& cable) {
+  if (!cable.misfilled) return;
   const double rounding = material_rounding(cable);
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-    const Segment& pinch = cable.segments[i];
-    if (pinch.pinched && !(pinch.rest_length <= rounding)) {
-      empty_pinch(world, cable, static_cast<int>(i));
+    if (is_misfilled(cable, cable.segments[i], rounding)) {
+      refill_pinch(world, cable, static_cast<int>(i));
     }
   }
 }
 
 }  // namespace
 
-void empty_pinches(World& world, const Parts& parts) {
+void refill_pinches(World& world, const Parts& parts) {
   for (const Part& part : parts.list) {
     if (is_idle(part) || !has_contacts(part)) continue;
-    for (const int c : cables_of(parts, part)) empty_pinches_of(world, at(world.cables, c));
+    for (const int c : cables_of(parts, part)) refill_pinches_of(world, at(world.cables, c));
   }
 }
 
@@ -165,8 +164,11 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     met = before.most() <= s.reach;
     if (met) break;
     for (Row& row : s.rows) {
-      if (is_elastic(world, row)) row.bias = 0.0;  // it resists being stretched
+      if (!is_elastic(world, row)) continue;
+      row.bias = 0.0;  // it resists being stretched, as much as in a step
+      row.compliance /= world.step_length * world.step_length;
     }
+    s.elastic_ends.clear();  // what slides goes no further than lengths ask for
     for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
     for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
     work.solve.smooth = true;

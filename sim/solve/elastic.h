@@ -17,7 +17,8 @@
 // capstan law) and together they take up the sum of their stretches, which sliding does not change:
 // with one a and b for all of them the sliding speeds cancel. Those have no mass. Means over three
 // positions would let them alternate from kick to kick, more each time; they are what makes the law
-// hold at the interval's end, for C_n + h dC/dt(v+) (slip_speeds).
+// hold at the interval's end, for C_n + h dC/dt(v+) (slip_speeds) and what curved ways make of it
+// (motion/missed.h).
 //
 // A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the
 // lag.
