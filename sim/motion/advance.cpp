@@ -228,7 +228,9 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
              note_ways(world, work, part, at(work.trials, p), length, even));
   }
   course.time = work.start.time + length;
-  course.left = length < course.left ? course.left - length : 0.0;
+  constexpr double round_off = 1e-12;  // of a step: in less, round-off of positions would be speeds
+  const double left = course.left - length;
+  course.left = left > round_off * world.step_length ? left : 0.0;
   course.moved = true;
   course.happened = !work.events.empty();
   course.violated = !met || work.trial.violated;

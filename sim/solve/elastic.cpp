@@ -2,12 +2,14 @@
 #include "sim/solve/elastic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
 #include "sim/parts.h"
 #include "sim/solve/rows.h"
+#include "sim/tangent.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -30,9 +32,39 @@ double length_of(const World& world, const TimeSpan& t) {
 /// a - b, for what is as flexible (m/N) and as mobile (1/kg) as that.
 double damped_share(const World& world, const TimeSpan& t, double flexibility, double mobility) {
   if (world.configuration.solver == Solver::iterative) return 1.0;  // the thesis' implicit Euler
-  const double h = length_of(world, t), square = h * h * mobility;  // (omega h)^2 * flexibility
+  // Vibrations are to be followed over the kick's two halves, of which one may be of a longer
+  // interval than this one.
+  const double h = t.length > 0.0 ? std::max(t.length, 2.0 * t.lag) : world.step_length;
+  const double square = h * h * mobility;  // (omega h)^2 * flexibility
   if (flexibility == 0.0) return 1.0;
   return 4.0 * flexibility < square ? 1.0 - 4.0 * flexibility / square : 0.0;
+}
+
+/// m, that the centre of a link's circle has come at the velocities v- in the time `back` (s), along
+/// an arc if it is off its body's.
+Vec2 way_of(const World& world, const Link& link, double back) {
+  if (link.body < 0) return Vec2::Zero();
+  const Vec2 way = back * at(world.velocity, link.body);
+  if (is_central(link)) return way;
+  const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
+  return way + from_centre - turned(from_centre, -back * at(world.angular_velocity, link.body));
+}
+
+/// m/s, by which the way along a segment and on to its rims grows faster now than in the mean over
+/// the time `back` (s) at v-: it has turned. With d from the one centre to the other, L the
+/// segment's length in the direction e and d = L e + rho left(e), that way is L - rho alpha.
+double bent_by(const World& world, const Segment& segment, const Link& from, const Link& to,
+               double back) {
+  if (!(back > 0.0) || !(segment.length > 0.0)) return 0.0;
+  const Vec2& e = segment.direction;
+  const Vec2 now = link_centre(world, to) - link_centre(world, from);
+  const Vec2 before = now - way_of(world, to, back) + way_of(world, from, back);
+  const double rho = cross(e, now), square = before.squaredNorm();
+  const double length = std::sqrt(std::max(square - rho * rho, 0.0));
+  const Vec2 was = length * before - rho * left(before);  // of the direction before
+  const double turned_by = std::atan2(cross(was, e), was.dot(e));
+  const double mean = (segment.length - length - rho * turned_by) / back;
+  return e.dot(velocity_of(world, to) - velocity_of(world, from)) - mean;
 }
 
 /// The row of a segment of such a flexibility (m/N), `damped` being its a - b.
@@ -48,7 +80,8 @@ void make_row(const World& world, const Cable& given, const Segment& segment, co
              &from = at(cable.links, previous_link(cable, row.item));
   const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
   const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                        speed_of(world, to.body, bodies.jb) + creep;         // dC/dt(v-), m/s
+                        speed_of(world, to.body, bodies.jb) + creep -
+                        bent_by(world, segment, from, to, 2.0 * t.lag);      // dC/dt(v-), m/s
   double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
     if (damped > 0.0 || flexibility == 0.0) return;

@@ -9,7 +9,10 @@
 // undamped (at equal steps the mean of C over three of them, weighted 1, 2, 1). a = 1, b = 0 is
 // implicit Euler, which damps at the rate (a - b) omega^2 h / 2. A vibration of less than about
 // three steps a period, s = (omega h)^2 > 4, cannot be followed and is damped the more the stiffer
-// it is: a - b = 1 - 4/s. At an instant (h = 0) such a cable is inextensible.
+// it is: a - b = 1 - 4/s, h being the longer of this interval and the one before, whose half the
+// kick makes up. dC/dt(v-) is the mean on the way that took 2 lag, as C_n + h dC/dt(v+) is the end
+// of a way that turns (motion/missed.h): then the rule is the same in both directions of time. At
+// an instant (h = 0) such a cable is inextensible.
 //
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //

@@ -241,10 +241,14 @@ TEST(Creep, MakesNoEnergy) {
 // up to seven times the energy at play, in those named below at 4 or 16 steps a frame. Some slip,
 // where rims carry what is not stretched. Of these without mass what closed pinches lacked had been
 // made up for by bodies, which parted and met again without end, and what rims take of material in
-// a second by what slides: up to sixty times the energy at play.
+// a second by what slides: up to sixty times the energy at play. At one step a frame what had been
+// damped, as too fast to follow, was let loose undamped in the short interval to an event: up to
+// twelve times the energy at play.
 TEST(Creep, SpansThatVanishMakeNoEnergy) {
-  const auto run_of = [](Scene (*rope)(unsigned), unsigned seed, bool heavy, double share) {
-    for (const int steps : {4, 16}) {
+  const auto run_of = [](Scene (*rope)(unsigned), unsigned seed, bool heavy, double allowed) {
+    for (const int steps : {1, 4, 16}) {
+      if (steps == 1 && rope == slipping_rope) continue;
+      const double share = steps == 1 ? 0.01 : allowed;
       Scene scene = rope(seed);
       scene.steps_per_frame = steps;
       Cable& cable = scene.cables[0];

@@ -185,7 +185,9 @@ TEST(Nodes, LieOnFloorsAndBodies) {
   EXPECT_LT(world.position[1].y(), -0.3);
 }
 
-/// Its tip after each of the times (s), and what its energy has changed by at most.
+/// Its tip after each of the times (s), and what its energy has changed by at most: on ways that
+/// turn leapfrog's falls by the square of the step, of rods that do not stretch as of these, and
+/// comes back.
 std::vector<Vec2> swing_flexibly(int pieces, int steps, std::vector<double> times,
                                  double& energy_change) {
   const Scene scene = build::flexible_pendulum(pieces, steps);
@@ -198,6 +200,7 @@ std::vector<Vec2> swing_flexibly(int pieces, int steps, std::vector<double> time
     while (world.time() < time - 0.5 * world.step_length) {
       EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
       if (world.step == 1) first = world.diagnostics.energy;
+      EXPECT_LT(world.diagnostics.energy, first + 1e-9);
       energy_change = std::max(energy_change, std::abs(world.diagnostics.energy - first));
     }
     tips.push_back(world.position[0]);
@@ -213,7 +216,7 @@ TEST(Nodes, AFlexiblePendulumSwingsAsOthersDo) {
   EXPECT_LT((twenty - Vec2(-0.99252, 0.04257)).norm(), 1e-5);
   const Vec2 forty = swing_flexibly(40, 64, {1.0}, change)[0];
   EXPECT_LT((forty - Vec2(-0.99371, 0.03954)).norm(), 1e-5);
-  EXPECT_LT(change, 1e-7);
+  EXPECT_LT(change, 1e-6);
   const std::vector<double> times{0.25, 0.5, 0.75, 1.0, 1.5};
   const std::vector<Vec2> elements{{0.911077, -0.364540},
                                    {-0.100075, -0.997990},
