@@ -99,8 +99,8 @@ inline double material_rounding(const CableState& cable) {
   return 1e-15 * cable.length;
 }
 
-/// Whether the segments beside a pinch are to take material from it, or of a cable that stretches to
-/// give it what it lacks, but for `rounding` (m).
+/// Whether segments beside a pinch are to take material from it, or of a cable that stretches give
+/// it what it lacks, but for `rounding` (m).
 inline bool is_misfilled(const CableState& cable, const Segment& segment, double rounding) {
   const double material = segment.rest_length;
   return segment.pinched && (!(material <= rounding) || (cable.elastic && material < -rounding));

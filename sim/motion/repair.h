@@ -11,8 +11,8 @@ struct Parts;
 struct Workspace;
 
 /// Slack that a closing pinch would enclose goes to the spans beside it, half to either; all to the
-/// one where the other is a closed pinch itself. What a closed pinch lacks of a cable that stretches
-/// comes from them likewise: bodies that made up for it would part. Cables that sleep keep theirs.
+/// one where the other is a closed pinch itself. What one lacks of a cable that stretches comes
+/// from them likewise: bodies that made up for it would part. Cables that sleep keep theirs.
 void refill_pinches(World& world, const Parts& parts);
 
 /// Puts right what is too long or too near in a part by moving its bodies, the heavier the less;

@@ -40,7 +40,7 @@ double damped_share(const World& world, const TimeSpan& t, double flexibility, d
   return 4.0 * flexibility < square ? 1.0 - 4.0 * flexibility / square : 0.0;
 }
 
-/// m, that the centre of a link's circle has come at the velocities v- in the time `back` (s), along
+/// m, that the centre of a link's circle has come at the velocities v- in the time `back` (s), on
 /// an arc if it is off its body's.
 Vec2 way_of(const World& world, const Link& link, double back) {
   if (link.body < 0) return Vec2::Zero();
