@@ -57,6 +57,7 @@ double bent_by(const World& world, const Segment& segment, const Link& from, con
                double back) {
   if (!(back > 0.0) || !(segment.length > 0.0)) return 0.0;
   const Vec2& e = segment.direction;
+  const Vec2 speed = velocity_of(world, to) - velocity_of(world, from);
   const Vec2 now = link_centre(world, to) - link_centre(world, from);
   const Vec2 before = now - way_of(world, to, back) + way_of(world, from, back);
   const double rho = cross(e, now), square = before.squaredNorm();
@@ -64,7 +65,20 @@ double bent_by(const World& world, const Segment& segment, const Link& from, con
   const Vec2 was = length * before - rho * left(before);  // of the direction before
   const double turned_by = std::atan2(cross(was, e), was.dot(e));
   const double mean = (segment.length - length - rho * turned_by) / back;
-  return e.dot(velocity_of(world, to) - velocity_of(world, from)) - mean;
+  return e.dot(speed) - mean;
+}
+
+/// Whether nothing of a segment's ends turns it by more than round-off of its length in such a time
+/// (s).
+bool goes_straight(const World& world, const Segment& segment, const Link& from, const Link& to,
+                   double back) {
+  constexpr double short_way = 1e-8;  // of its length, on which that is by half the square of this
+  if (!is_central(from) || !is_central(to)) return false;
+  Vec2 way = Vec2::Zero();
+  if (to.body >= 0) way = at(world.velocity, to.body);
+  if (from.body >= 0) way -= at(world.velocity, from.body);
+  const double least = short_way * segment.length;
+  return back * back * way.squaredNorm() <= least * least;
 }
 
 /// The row of a segment of such a flexibility (m/N), `damped` being its a - b.
@@ -79,9 +93,12 @@ void make_row(const World& world, const Cable& given, const Segment& segment, co
   const Link &to = at(cable.links, row.item),
              &from = at(cable.links, previous_link(cable, row.item));
   const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
-  const double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                        speed_of(world, to.body, bodies.jb) + creep -
-                        bent_by(world, segment, from, to, 2.0 * t.lag);      // dC/dt(v-), m/s
+  double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
+                  speed_of(world, to.body, bodies.jb) + creep;  // dC/dt(v-), m/s
+  const double back = 2.0 * t.lag;
+  if (!goes_straight(world, segment, from, to, back)) {
+    before -= bent_by(world, segment, from, to, back);
+  }
   double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
   if (t.length == 0.0) {
     if (damped > 0.0 || flexibility == 0.0) return;
