@@ -260,17 +260,13 @@ bool can_swing(const World& world, const Link& link) {
 double tension_over_bodies(const Scene& scene, const World& world, const Cable& cable,
                            const CableState& laid, double hung) {
   const double g = scene.gravity.norm(), mass = hung + cable.mass_per_metre * laid.length;
-  double free = 0.0;  // m, of spans, which share the slack
-  for (std::size_t i = first_segment(laid); i < laid.segments.size(); ++i) {
-    if (!is_laid_along(laid, i)) free += laid.segments[i].length;
-  }
   double sagging = 0.0, swinging = 0.0;
   bool swings = false;
   for (std::size_t i = first_segment(laid); i < laid.segments.size(); ++i) {
     const Segment& span = laid.segments[i];
     if (!(span.length > 0.0) || is_laid_along(laid, i)) continue;
-    sagging = std::max(
-        sagging, sagging_tension(scene, cable, span.length * span.direction, cable.slack / free));
+    const double slack = span.rest_length / span.length - 1.0;
+    sagging = std::max(sagging, sagging_tension(scene, cable, span.length * span.direction, slack));
     const Link &from = at(laid.links, previous_link(laid, static_cast<int>(i))),
                &to = laid.links[i];
     if (!can_swing(world, from) && !can_swing(world, to)) continue;

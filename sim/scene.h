@@ -114,7 +114,7 @@ struct Cable {
   std::string name;          ///< unique in the scene
   double half_width = 0.05;  ///< m, > 0
   bool closed = false;
-  bool creep = false;  ///< elastic: rims carry it over as stretched as it came on (creep.h)
+  bool creep = true;   ///< elastic: rims carry it over as stretched as it came on (creep.h)
   bool rod = false;    ///< bears force both ways: between nodes, and joints, which nothing hits
   bool piece = false;  ///< between nodes, by spread_nodes
   Joint joint = Joint::none;

@@ -207,8 +207,6 @@ void refuse_impossible_figures_of(const Cable& cable, const Place& place) {
          "the axial stiffness must be above 0");
   refuse(!std::isfinite(cable.slack) || (cable.slack < 0.0 && cable.axial_stiffness == infinity),
          place, "the slack must be at least 0, or below that of an elastic cable");
-  refuse(cable.creep && (cable.axial_stiffness == infinity || cable.rod), place,
-         "only an elastic cable creeps");
   refuse(!at_least_0(cable.damping), place, "the damping must be at least 0");
   refuse(!(cable.squeeze >= 0.0 && cable.squeeze <= 1.0), place, "squeeze must be 0 to 1");
   refuse(!(cable.grip >= 0.0 && cable.grip <= 1.0), place, "grip must be 0 to 1");

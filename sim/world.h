@@ -134,6 +134,7 @@ struct alignas(64) CableState {
                    // finest that it is made of; 0: dormant, part of another
   bool closed = false;
   bool elastic = false;  // of finite stiffness
+  bool creeps = false;   // elastic, and rims carry it over stretched where it does not slip
   bool rod = false;      // bears force both ways: a piece between nodes, or a joint
   bool piece = false;    // between nodes
   bool fills = false;    // lies in layers on a body that holds an end of it
@@ -149,7 +150,7 @@ struct alignas(64) CableState {
   double turning = 0.0;     // rad, total turning of a closed loop, a multiple of 2 pi
   double half_width = 0.0;  // m
   double density = 0.0;     // kg/m, of a cable that has mass without nodes (cable/mass.h)
-  std::vector<Rim> rims;    // as many, of an elastic cable that creeps; else none. By lay_down
+  std::vector<Rim> rims;    // as many, once a rim carries what creeps; else none. By lay_down
   // What few steps read.
   double least_gap = 0.0;  // m, between bodies that pinch it: (1 - squeeze) of its width; 0 under
                            // Method::pinch_no_contact

@@ -27,13 +27,14 @@ int add_body(Scene& scene, const char* what, BodyKind kind, double x, double y, 
 }
 
 /// Makes the scene's cable elastic and puts it under tension. What lies on pulleys is not stretched
-/// (no slip): only free spans, as long as make_world lays them, pull.
+/// (creep = false, as in the thesis): only free spans, as long as make_world lays them, pull.
 void string_cable(Scene& scene) {
   double free_length = 0.0;  // m
   const World world = make_world(scene, Method::pinch);
   const CableState& cable = world.cables.front();
   for (std::size_t s = 1; s < cable.segments.size(); ++s) free_length += cable.segments[s].length;
   scene.cables.front().axial_stiffness = stress_stiffness;
+  scene.cables.front().creep = false;
   scene.cables.front().slack = -stress_strain / (1.0 + stress_strain) * free_length;
 }
 

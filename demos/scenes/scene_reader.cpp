@@ -48,7 +48,7 @@ class Reader {
   void check_grip(const json& cables, const Scene& scene);
   void check_rims(const json& cable, const std::string& place, const Scene& scene);
   void check_rim(const json& cable, const char* end, const std::string& place, const Scene& scene);
-  void check_creep(const Scene& scene);
+  void check_creep(const json& cables, const Scene& scene);
   Attachment read_attachment(const json& from, const std::string& place, const Scene& scene,
                              double half_width);
   std::vector<Wrap> read_wraps(const json& from, const std::string& place, bool closed);
@@ -223,7 +223,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   take(from, "half_width_m", cable.half_width);
   take(from, "slack_m", cable.slack);
   take(from, "axial_stiffness_n", cable.axial_stiffness);
-  cable.creep = from.value("creep", false);
+  cable.creep = from.value("creep", true);
   take(from, "squeeze", cable.squeeze);
   take(from, "grip", cable.grip);
   take(from, "mass_per_metre_kg", cable.mass_per_metre);
@@ -251,7 +251,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   } else {
     refuse_keys(from, place, {"squeeze", "grip", "creep"}, "a cable with mass_per_metre_kg");
   }
-  if (cable.creep && !from.contains("axial_stiffness_n")) {
+  if (from.contains("creep") && !from.contains("axial_stiffness_n")) {
     problem(place + "/creep", "belongs to an elastic cable; give axial_stiffness_n too");
   }
   cable.closed = from.value("closed", false);
@@ -285,10 +285,10 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
 }
 
 // Only a disc that the cable cannot slip on carries it over as stretched as it came on.
-void Reader::check_creep(const Scene& scene) {
+void Reader::check_creep(const json& cables, const Scene& scene) {
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const Cable& cable = scene.cables[i];
-    if (!cable.creep || cable.wraps.empty()) continue;
+    if (!cables[i].contains("creep") || cable.wraps.empty()) continue;
     const bool creeps = std::ranges::any_of(cable.wraps, [&](const Wrap& wrap) {
       const Body& body = at(scene.bodies, wrap.body);
       const bool fills = (cable.start.layers && wrap.body == cable.start.body) ||
@@ -464,7 +464,7 @@ SceneContent Reader::read(const json& file) {
     claim_name(cable_names_, scene.cables[i].name, static_cast<int>(i), "cables");
   }
   check_grip(cables, scene);
-  check_creep(scene);
+  check_creep(cables, scene);
   const json walls = file.value("walls", json::array());
   for (std::size_t i = 0; i < walls.size(); ++i) {
     scene.walls.push_back(read_wall(walls[i], fmt::format("/walls/{}", i)));

@@ -203,7 +203,6 @@ Scene belt_drive(double radius, double tension, double difference, int steps_per
   belt.half_width = belt_half_width;
   belt.wraps = {{0, 1, 0}, {1, 1, 0}};
   belt.axial_stiffness = belt_stiffness;
-  belt.creep = true;
   const double length = 2.0 * std::sqrt(apart * apart - more * more) +
                         std::numbers::pi * (r1 + r2) + 2.0 * more * std::asin(more / apart);
   const double strain = tension / belt_stiffness;

@@ -142,16 +142,21 @@ double place_of_laid(const Rim& rim, double material) {
   return piece.place + (material - piece.material) / piece.slope;
 }
 
-void begin_to_carry(const World& world, CableState& cable, std::size_t i) {
+bool may_carry(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  if (cable.rims.empty() || link.orientation == 0 || link.corner >= 0 || link.layers.way != 0 ||
-      at(world.bodies, link.body).cable_friction < infinity) {
-    return;
-  }
+  return cable.creeps && link.orientation != 0 && link.corner < 0 && link.layers.way == 0 &&
+         at(world.bodies, link.body).cable_friction == infinity;
+}
+
+void begin_to_carry(const World& world, CableState& cable, std::size_t i, double slope) {
+  if (!may_carry(world, cable, i)) return;
+  if (cable.rims.empty()) cable.rims.resize(cable.links.size());
   const RimSpan span = span_on_rim(world, cable, i);
   std::vector<Laid>& laid = cable.rims[i].laid;
-  laid.assign(1, {span.tail, span.tail, 1.0});
-  if (span.head > span.tail) laid.push_back({span.head, span.head, 1.0});
+  laid.assign(1, {span.tail, span.tail, slope});
+  if (span.head > span.tail) {
+    laid.push_back({span.head, span.tail + (span.head - span.tail) * slope, slope});
+  }
 }
 
 // The strain at the middle of the interval to come is extrapolated from those at its start and at

@@ -43,9 +43,12 @@ struct Laying {
 /// the segment there has `taken` m of material a metre.
 Laying laying_at(const Rim& rim, bool at_head, double taken);
 
-/// Gives a link of a cable that creeps, newly on its body, a rim that has carried what it turned by
-/// so far, if it is one that may do otherwise from now on.
-void begin_to_carry(const World& world, CableState& cable, std::size_t link);
+/// Whether a link's rim carries its cable over as stretched as that comes on.
+bool may_carry(const World& world, const CableState& cable, std::size_t link);
+
+/// Gives a link that is newly on its body a rim with so much material in each metre of it, if it is
+/// one that may carry it.
+void begin_to_carry(const World& world, CableState& cable, std::size_t link, double slope = 1.0);
 
 /// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has
 /// gone off them is forgotten; and sets what will come on in the next.

@@ -268,16 +268,19 @@ void lay_layers(const World& world, Course& course) {
 void lay_material(const World& world, Course& course) {
   CableState& cable = course.cable;
   const double slack = course.given.slack;
-  const auto is_free = [&cable](std::size_t i) {
-    const int before = previous_link(cable, static_cast<int>(i));
-    return !is_side(at(cable.links, before), cable.links[i]);
-  };
   double taut = 0.0, free_length = 0.0;
+  // What is stretched from the start is so evenly, on rims that carry it over, too (creep.h).
+  const bool evenly = cable.creeps && slack < 0.0;
+  const auto is_free = [&](std::size_t i) {
+    const Link& link = cable.links[i];
+    const bool side = is_side(at(cable.links, previous_link(cable, static_cast<int>(i))), link);
+    return !side || (evenly && at(world.bodies, link.body).cable_friction == infinity);
+  };
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Link& link = cable.links[i];
     if (link.orientation != 0) {
       link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
-      taut += stored_length(link);
+      (evenly && may_carry(world, cable, i) ? free_length : taut) += stored_length(link);
     }
     if (i < first_segment(cable)) continue;
     (is_free(i) ? free_length : taut) += cable.segments[i].length;
@@ -299,7 +302,8 @@ void lay_material(const World& world, Course& course) {
     }
     link.material = 0.0;
     link.material = reached - tail_material(cable, i, body_angle(world, link));
-    reached += stored_length(link);
+    begin_to_carry(world, cable, i, evenly ? stretch : 1.0);
+    reached += wrapped_material(world, cable, i);
   }
   if (!cable.closed) cable.links.back().material = cable.length;
 }
@@ -335,15 +339,12 @@ void lay_cable(const Scene& scene, const World& world, double allowed, std::size
   cable.bend = given.bend;
   cable.joint = given.joint;
   cable.elastic = given.axial_stiffness < infinity;
+  cable.creeps = given.creep && cable.elastic && world.configuration.solver == Solver::direct;
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);
   lay_wraps(scene, course);
   lay_layers(world, course);
   lay_material(world, course);
-  if (given.creep && world.configuration.solver == Solver::direct) {
-    cable.rims.resize(cable.links.size());
-    for (std::size_t i = 0; i < cable.links.size(); ++i) begin_to_carry(world, cable, i);
-  }
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);
   for (Segment& segment : cable.segments) begin_here(segment);

@@ -73,6 +73,7 @@ double bent_by(const World& world, const Segment& segment, const Link& from, con
 bool goes_straight(const World& world, const Segment& segment, const Link& from, const Link& to,
                    double back) {
   constexpr double short_way = 1e-8;  // of its length, on which that is by half the square of this
+  if (from.still && to.still) return true;
   if (!is_central(from) || !is_central(to)) return false;
   Vec2 way = Vec2::Zero();
   if (to.body >= 0) way = at(world.velocity, to.body);

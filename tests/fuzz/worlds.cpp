@@ -350,7 +350,7 @@ std::string scene_of(std::string_view bytes) {
     for (json& cable : made["cables"]) {
       const bool elastic =
           cable.contains("axial_stiffness_n") && !cable.contains("mass_per_metre_kg");
-      if (choices.one_in(2) && elastic) cable["creep"] = true;
+      if (choices.one_in(2) && elastic) cable["creep"] = false;
     }
     add_heavy_cables(made, choices);
   }

@@ -264,8 +264,6 @@ TEST(Figures, OfCourses) {
       {"piece, wrapped", "/cables/0", "straight", [](Scene& s) { s.cables[over].piece = true; }},
       {"closed", "/cables/0", "two bodies", [](Scene& s) { s.cables[over].closed = true; }},
       {"closed, a rod", "/cables/4", "straight", [](Scene& s) { s.cables[loop].rod = true; }},
-      {"creep", "/cables/0", "creeps", [](Scene& s) { s.cables[over].creep = true; }},
-      {"creep", "/cables/3", "creeps", [](Scene& s) { s.cables[spring].creep = true; }},
       {"start.body", "/cables/0", "not in", [](Scene& s) { s.cables[over].start.body = -2; }},
       {"end.body", "/cables/0", "not in", [](Scene& s) { s.cables[over].end.body = huge; }},
       {"start.layers", "/cables/0", "rim", [](Scene& s) { s.cables[over].start.layers = true; }},

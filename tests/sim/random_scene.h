@@ -61,7 +61,6 @@ inline Scene random_elastic(unsigned seed) {
   }
   scene.cables.push_back(cable(on(pulleys), wraps, on(pulleys + 1), 0.03));
   scene.cables[0].axial_stiffness = std::pow(10.0, random.uniform(2.5, 4.0));
-  scene.cables[0].creep = true;
   if (random.below(2) == 0) {
     scene.bodies.push_back(body("falling", BodyKind::free, 0.6, 1.5, 0.15, 0.5));
     scene.bodies.back().angular_velocity = random.uniform(-3.0, 3.0);

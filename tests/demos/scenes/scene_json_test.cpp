@@ -54,6 +54,7 @@ TEST(SceneJson, WhatIsLeftOutKeepsItsDefault) {
   EXPECT_TRUE(cable.wraps.empty());
   EXPECT_EQ(cable.slack, 0.0);
   EXPECT_EQ(cable.axial_stiffness, infinity);
+  EXPECT_TRUE(cable.creep);
   EXPECT_EQ(cable.end.point, Vec2(0, 0));
   EXPECT_EQ(scene.walls.at(0).contact_friction, Wall().contact_friction);
   EXPECT_EQ(scene.walls.at(0).restitution, 0.0);
@@ -77,7 +78,7 @@ TEST(SceneJson, EveryKeyReachesItsPlace) {
     "cables": [
       {"name": "open", "half_width_m": 0.02, "start": {"world_m": [1, 1]}, "end": {"body": "post", "point_m": [0.1, 0.1]},
        "wraps": [{"body": "axle", "turn": "clockwise"}, {"body": "railed", "turn": "counter_clockwise", "extra_turns": 2}],
-       "slack_m": -0.5, "axial_stiffness_n": 1000, "creep": true, "squeeze": 0.25, "grip": 0.75},
+       "slack_m": -0.5, "axial_stiffness_n": 1000, "creep": false, "squeeze": 0.25, "grip": 0.75},
       {"name": "loop", "half_width_m": 0.03, "closed": true, "slack_m": 0.25,
        "wraps": [{"body": "axle", "turn": "clockwise"}, {"body": "post", "turn": "clockwise"}]}],
     "walls": [{"from_m": [1, 2], "to_m": [3, 4], "contact_friction": 0.6, "restitution": 0.7}],
@@ -143,7 +144,7 @@ TEST(SceneJson, EveryKeyReachesItsPlace) {
   EXPECT_EQ(open.wraps[1].extra_turns, 2);
   EXPECT_EQ(open.slack, -0.5);
   EXPECT_EQ(open.axial_stiffness, 1000.0);
-  EXPECT_TRUE(open.creep);
+  EXPECT_FALSE(open.creep);
   EXPECT_TRUE(scene.cables.at(1).closed);
   EXPECT_EQ(scene.cables.at(1).slack, 0.25);
 
