@@ -78,7 +78,8 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
     const bool bears = row.on && !(shares && row.impulse == 0.0);
     const bool balances = group >= 0 && !s.elastic_ends.empty();
     if (row.compliance > 0.0) {
-      if (balances ? !row.on && !shares : !row.on || group >= 0) continue;
+      const bool loose = !row.on && missed + left >= -s.tolerance();  // at the interval's end too
+      if (balances ? !row.on && !shares : loose || group >= 0) continue;
       // The stretch over the interval's end is the real one.
       double straight = row_speed(s, r) - row.bias;
       if (balances) straight += slid_in(world, row);
