@@ -78,6 +78,7 @@ void foresee(const World& world, double length, PartSystem& s) {
     row.curved = foreseen;
     row.bias += foreseen;
     if (row.compliance > 0.0) s.bodies[r].curvature += foreseen;
+    if (r < s.elastic_ends.size()) s.elastic_ends[r].bias += foreseen;  // what slides follows it
   }
 }
 

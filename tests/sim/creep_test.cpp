@@ -298,7 +298,6 @@ TEST(Creep, MakesNoEnergy) {
 TEST(Creep, SpansThatVanishMakeNoEnergy) {
   const auto run_of = [](Scene (*rope)(unsigned), unsigned seed, bool heavy, double allowed) {
     for (const int steps : {1, 4, 16}) {
-      if (steps == 1 && rope == slipping_rope) continue;
       const double share = steps == 1 ? 0.01 : allowed;
       Scene scene = rope(seed);
       scene.steps_per_frame = steps;
@@ -332,10 +331,13 @@ TEST(Creep, SpansThatVanishMakeNoEnergy) {
 
 // Ropes shorter than their way. A span that rims, turning, are about to loosen may yet be stretched
 // by how it turns: it bore nothing for all that, and of seed 51 one that a weight wound up within a
-// step of one a frame was stretched by 6 %, 1.9 times the energy at play out of nothing.
+// step of one a frame was stretched by 6 %, 1.9 times the energy at play out of nothing. What
+// slides is balanced for what curved ways are foreseen to make of lengths, too: of seed 19,
+// slipping, a span that wound itself up was left to stretch to twice its material.
 TEST(Creep, TightRopesMakeNoEnergy) {
   for (unsigned seed = 0; seed < 60; ++seed) {
-    for (Scene (*rope)(unsigned) : {random_elastic, braked_rope, falling_on_rope}) {
+    for (Scene (*rope)(unsigned) : {random_elastic, braked_rope, falling_on_rope, slipping_rope}) {
+      const double allowed = rope == slipping_rope ? 5e-3 : 1e-3;
       for (const int steps : {1, 4, 16}) {
         Scene scene = rope(seed);
         scene.steps_per_frame = steps;
@@ -343,9 +345,10 @@ TEST(Creep, TightRopesMakeNoEnergy) {
         cable.start.layers = cable.end.layers = false;
         cable.axial_stiffness = Random(seed + 77).uniform(2e3, 5e4);
         cable.mass_per_metre = 0.0;
-        cable.slack = seed % 2 == 0 ? -0.2 : -0.02;
+        const bool tight = seed % 2 == (rope == slipping_rope ? 1 : 0);
+        cable.slack = tight ? -0.2 : -0.02;
         const Course course = run_measured(scene, 1.5);
-        EXPECT_LE(course.gained, 1e-3 * course.at_play) << seed << ", " << steps;
+        EXPECT_LE(course.gained, allowed * course.at_play) << seed << ", " << steps;
       }
     }
   }
