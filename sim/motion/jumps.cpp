@@ -251,6 +251,8 @@ void find_turns(const World& world, Workspace& work, int number, double length) 
 }  // namespace
 
 void note_sliding(const World& world, Part& part, Workspace& work) {
+  part.slid = part.may_turn = false;
+  if (!part.can_move) return;
   const std::span<Slip> slips = work.start.contact_slip;
   const std::span<char> touching = work.start.touching;
   bool slid = false, may_turn = false;

@@ -23,9 +23,11 @@ bool is_exact_row(const Row& row) {
 /// Whether a row's condition changes by J v and nothing else: that of a segment between circles
 /// which have not moved, as its length stands and its material turns evenly.
 bool is_linear(const World& world, const Row& row) {
-  if (row.kind != RowKind::segment) return false;
+  if (row.kind != RowKind::segment && row.kind != RowKind::pinch_middle) return false;
   const CableState& cable = at(world.cables, row.index);
-  return !at(cable.segments, row.item).moved && !cable.fills && cable.rims.empty();
+  if (cable.stands) return true;
+  return row.kind == RowKind::segment && !at(cable.segments, row.item).moved && !cable.fills &&
+         cable.rims.empty();
 }
 
 /// J v + bias (m/s), at most; where the solver knows, as it knows. Nothing of it is left of a row
