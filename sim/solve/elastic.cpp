@@ -16,12 +16,11 @@ namespace pinchlab {
 
 namespace {
 
-/// Compliance of a segment without pinches (m/N). Its material is rounded to 2^-40 of the cable's,
-/// some thousand units in the last place of what it is a difference of: where round-off alone shakes
-/// the cable, for hours even, hardly one of many segments comes to another, and rows and factors
-/// stand.
+/// Compliance of a segment without pinches (m/N). Its material is rounded to 2^-45 of the cable's,
+/// 128 units in the last place of what it is a difference of: where round-off alone shakes a cable,
+/// for hours even, hardly one of many segments comes to another, and rows and factors stand.
 double flexibility_of(const CableState& cable, const Cable& given, const Segment& segment) {
-  const double coarse = 4096.0 * cable.length;
+  const double coarse = 128.0 * cable.length;
   const double material = (elastic_material(cable, segment) + coarse) - coarse;
   return material / given.axial_stiffness;
 }
