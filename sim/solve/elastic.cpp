@@ -44,7 +44,7 @@ double damped_share(const World& world, const TimeSpan& t, double flexibility, d
 /// an arc if it is off its body's.
 Vec2 way_of(const World& world, const Link& link, double back) {
   if (link.body < 0) return Vec2::Zero();
-  const Vec2 way = back * at(world.velocity, link.body);
+  Vec2 way = back * at(world.velocity, link.body);
   if (is_central(link)) return way;
   const Vec2 from_centre = offset_centre(world, link) - at(world.position, link.body);
   return way + from_centre - turned(from_centre, -back * at(world.angular_velocity, link.body));
