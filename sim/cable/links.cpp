@@ -224,7 +224,7 @@ void hold_where_pressed(const World& world, CableState& cable, std::size_t middl
   const double place = link.signed_radius() * (alpha - body_angle(world, link));
   link.material = pressed - place;
   const bool carries = !cable.rims.empty() && !cable.rims[middle - 1].laid.empty() &&
-                       at(world.bodies, link.body).cable_friction == infinity;
+                       may_carry(world, cable, middle);
   if (carries) cable.rims[middle].laid = {{place, place, 1.0}};
 }
 

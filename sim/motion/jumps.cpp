@@ -255,16 +255,13 @@ void note_sliding(const World& world, Part& part, Workspace& work) {
   if (!part.can_move) return;
   const std::span<Slip> slips = work.start.contact_slip;
   const std::span<char> touching = work.start.touching;
-  bool slid = false, may_turn = false;
   for (const int c : contacts_of(work.parts, part)) {
     const Contact& contact = at(world.contacts, c);
     at(slips, c) = contact.slip;
     at(touching, c) = contact.touching ? 1 : 0;
-    slid = slid || contact.slip != Slip::stick;
-    may_turn = may_turn || !is_of_discs(contact);
+    part.slid = part.slid || contact.slip != Slip::stick;
+    part.may_turn = part.may_turn || !is_of_discs(contact);
   }
-  part.slid = slid;
-  part.may_turn = may_turn;
 }
 
 void find_jumps(const Scene& scene, const World& world, Workspace& work, int number,

@@ -23,7 +23,7 @@ struct Happening;
 struct Workspace;
 
 /// Notes which contacts of a part slide as an interval begins (Start::contact_slip), and whether
-/// any does, or may come to a corner.
+/// any does, or may come to a corner. Of a part that cannot move none bears force.
 void note_sliding(const World& world, Part& part, Workspace& work);
 
 /// Whether anything of a part can jump at all.

@@ -21,7 +21,8 @@ bool is_exact_row(const Row& row) {
 }
 
 /// Whether a row's condition changes by J v and nothing else: that of a segment between circles
-/// which have not moved, as its length stands and its material turns evenly.
+/// which have not moved, as its length stands and its material turns evenly, or of a middle body
+/// where nothing of its cable's course has.
 bool is_linear(const World& world, const Row& row) {
   if (row.kind != RowKind::segment && row.kind != RowKind::pinch_middle) return false;
   const CableState& cable = at(world.cables, row.index);
