@@ -172,7 +172,9 @@ World make_world(const Scene& scene, Configuration configuration) {
   if (configuration.error == 0.0 && locates_events(configuration)) {
     world.configuration.error = scene.error;
   }
-  if (configuration.method != Method::pinch) {
+  const bool creeps = std::ranges::any_of(world.cables, &CableState::creeps);
+  if (configuration.method != Method::pinch ||
+      (configuration.solver == Solver::iterative && creeps)) {
     lay_cables(scene, world);
     world.contacts.clear();
     work = {};  // nothing is known of the new contacts

@@ -102,7 +102,20 @@ TEST(Creep, ATightBeltKeepsItsTension) {
   }
 }
 
-// Nor does what lies on a polygon's sides, or is wound up, begin otherwise.
+// Sweeps carry as much as rims turn by: all of a tight belt's stretch is in its spans then.
+TEST(Creep, NothingCreepsBySweeps) {
+  const Scene scene = build::belt_drive(0.2, 150.0, 0.0, 4);
+  for (const char* name : {"pinch", "thesis"}) {
+    const World world = make_world(scene, *configuration_from_string(name));
+    const bool creeps = world.configuration.solver == Solver::direct;
+    EXPECT_EQ(world.cables[0].rims.empty(), !creeps) << name;
+    const Segment& span = world.cables[0].segments[1];
+    const double tension = stiffness * (span.length / span.rest_length - 1.0);
+    EXPECT_EQ(tension > 200.0, !creeps) << name << ", " << tension << " N";
+  }
+}
+
+// What lies on a polygon's sides, or is wound up, begins no otherwise.
 TEST(Creep, WhatIsTightIsSoEvenly) {
   Scene scene;
   scene.bodies.push_back(body("box", BodyKind::fixed_axle, 0.0, 0.0, 1.0));
