@@ -242,7 +242,7 @@ Scene random_rope(unsigned seed) {
 
 TEST(AdaptSpans, RandomRopesMakeNoEnergy) {
   int adapt = 0;
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(60U); ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = random_rope(seed);
       scene.steps_per_frame = steps;
@@ -255,7 +255,7 @@ TEST(AdaptSpans, RandomRopesMakeNoEnergy) {
       ++adapt;
     }
   }
-  EXPECT_GT(adapt, 90);
+  EXPECT_GT(adapt, seeds_of(90));
 }
 
 TEST(AdaptSpans, StateIsAllInTheWorld) {

@@ -197,7 +197,7 @@ Scene thrown_at_rope(unsigned seed, int nodes) {
 TEST(CableEnd, WhatComesUponThatOfARopeMakesNoEnergy) {
   int come_upon = 0;
   for (const int nodes : {0, 8}) {
-    for (unsigned seed = 1; seed <= 60; ++seed) {
+    for (unsigned seed = 1; seed <= seeds_of(60U); ++seed) {
       Scene scene = thrown_at_rope(seed, nodes);
       for (const int steps_per_frame : {1, 4, 16}) {
         scene.steps_per_frame = steps_per_frame;
@@ -216,7 +216,7 @@ TEST(CableEnd, WhatComesUponThatOfARopeMakesNoEnergy) {
       come_upon += nearest < 1.5 * 0.02 ? 1 : 0;
     }
   }
-  EXPECT_GT(come_upon, 30);
+  EXPECT_GT(come_upon, seeds_of(30));
 }
 
 // A pendulum whose bob hangs over its pivot.

@@ -346,7 +346,7 @@ Scene falling_compounds(unsigned seed) {
 // where a body rolls on to the cable without loss before anything else has taken energy.
 TEST(RandomCompounds, StayFiniteAndMakeNoEnergy) {
   int ran = 0, squeezed = 0, stretched = 0, rises = 0;
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(300U); ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = falling_compounds(seed);
       scene.steps_per_frame = steps;
@@ -373,14 +373,14 @@ TEST(RandomCompounds, StayFiniteAndMakeNoEnergy) {
       stretched += stretch > 1e-3 * w ? 1 : 0;
     }
   }
-  EXPECT_EQ(ran, 900);
+  EXPECT_EQ(ran, 3 * seeds_of(300));
   EXPECT_LE(rises, 2);
   EXPECT_EQ(squeezed, 0) << "of " << ran;
   EXPECT_EQ(stretched, 0) << "of " << ran;
 }
 
 TEST(RandomCompounds, AClearedWorkspaceChangesNoBit) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(40U); ++seed) {
     const Scene scene = falling_compounds(seed);
     EXPECT_TRUE(is_all_state(scene, Method::pinch, 200)) << seed;
   }

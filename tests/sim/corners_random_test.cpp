@@ -74,7 +74,7 @@ Course run_measured(const Scene& scene, World& world) {
 // must hold in every one.
 TEST(RandomCorners, StayFiniteAndMakeNoEnergy) {
   int ran = 0, squeezed = 0, stretched = 0;
-  for (int seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < seeds_of(400); ++seed) {
     for (const int steps_per_frame : {1, 4, 16}) {
       Scene scene = falling_polygons(seed);
       scene.steps_per_frame = steps_per_frame;
@@ -94,14 +94,14 @@ TEST(RandomCorners, StayFiniteAndMakeNoEnergy) {
       stretched += course.stretch > 1e-3 * w ? 1 : 0;
     }
   }
-  EXPECT_GT(ran, 400);
+  EXPECT_GT(ran, seeds_of(400));
   EXPECT_EQ(squeezed, 0) << "of " << ran;
   EXPECT_LE(stretched, 2) << "of " << ran;
 }
 
 TEST(RandomCorners, AClearedWorkspaceChangesNoBit) {
   int ran = 0;
-  for (int seed = 0; seed < 40; ++seed) {
+  for (int seed = 0; seed < seeds_of(40); ++seed) {
     const Scene scene = falling_polygons(seed);
     try {
       EXPECT_TRUE(is_all_state(scene, Method::pinch, 240)) << seed;
@@ -110,7 +110,7 @@ TEST(RandomCorners, AClearedWorkspaceChangesNoBit) {
     }
     ++ran;
   }
-  EXPECT_GT(ran, 10);
+  EXPECT_GT(ran, seeds_of(10));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/diagnostics.h"
+#include "tests/sim/random.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -51,7 +52,7 @@ inline Course run_measured(const Scene& scene, double seconds) {
 /// many those runs are.
 inline int run_heavy_ropes(Scene (*rope)(unsigned), unsigned count) {
   int ran = 0;
-  for (unsigned seed = 0; seed < count; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(count); ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = rope(seed);
       scene.steps_per_frame = steps;

@@ -295,7 +295,7 @@ TEST(Creep, MakesNoEnergy) {
           << seed << ", " << steps << " steps a frame, rope " << static_cast<int>(rope);
     }
   };
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(60U); ++seed) {
     for (const Rope rope : {Rope::light, Rope::heavy, Rope::hanging}) run_of(seed, rope);
   }
 }
@@ -324,7 +324,7 @@ TEST(Creep, SpansThatVanishMakeNoEnergy) {
     }
   };
   constexpr double of_heavy = 1e-6, of_light = 5e-4, of_slipping = 5e-3;
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(30U); ++seed) {
     for (Scene (*rope)(unsigned) : {braked_rope, falling_on_rope}) {
       run_of(rope, seed, true, of_heavy);
       run_of(rope, seed, false, of_light);
@@ -348,7 +348,7 @@ TEST(Creep, SpansThatVanishMakeNoEnergy) {
 // slides is balanced for what curved ways are foreseen to make of lengths, too: of seed 19,
 // slipping, a span that wound itself up was left to stretch to twice its material.
 TEST(Creep, TightRopesMakeNoEnergy) {
-  for (unsigned seed = 0; seed < 60; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(60U); ++seed) {
     for (Scene (*rope)(unsigned) : {random_elastic, braked_rope, falling_on_rope, slipping_rope}) {
       const double allowed = rope == slipping_rope ? 5e-3 : 1e-3;
       for (const int steps : {1, 4, 16}) {
@@ -369,7 +369,7 @@ TEST(Creep, TightRopesMakeNoEnergy) {
 
 // A disc that falls on an elastic cable, is wound, pinches it and leaves it again.
 TEST(Creep, AClearedWorkspaceChangesNoBit) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(20U); ++seed) {
     EXPECT_TRUE(is_all_state(random_elastic(seed), Method::pinch, 200)) << seed;
     EXPECT_TRUE(is_all_state(heavy_elastic(seed), Method::pinch, 200)) << seed;
     Scene hanging = heavy_elastic(seed);

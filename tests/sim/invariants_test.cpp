@@ -173,7 +173,7 @@ TEST_P(RandomScene, StaysSound) {
 
 TEST(RandomScenes, FallBackRarely) {
   std::int64_t steps = 0, fallbacks = 0;
-  for (int seed = 1; seed <= 300; ++seed) {
+  for (int seed = 1; seed <= seeds_of(300); ++seed) {
     const Scene scene = random_scene(seed);
     World world = make_world(scene, measured());
     run(scene, world, 240 * 4);
@@ -186,7 +186,7 @@ TEST(RandomScenes, FallBackRarely) {
 
 // Friction has no such guarantee, of cables or of bodies: its states may cycle.
 TEST(RandomScenes, SettleWithoutFriction) {
-  for (int seed = 3; seed <= 300; seed += 3) {
+  for (int seed = 3; seed <= seeds_of(300); seed += 3) {
     Scene scene = random_scene(seed);
     for (Body& one : scene.bodies) one.contact_friction = 0.0;
     scene.walls[0].contact_friction = 0.0;

@@ -54,7 +54,7 @@ TEST(Loads, LandingMakesNoEnergy) {
 
 // So it is with what lands anywhere, by any friction and restitution.
 TEST(Loads, RandomLandingsMakeNoEnergy) {
-  for (int seed = 0; seed < 120; ++seed) {
+  for (int seed = 0; seed < seeds_of(120); ++seed) {
     for (const int steps : {1, 4, 16}) {
       const Rise rise = rise_in(random_load(seed), steps, 1.0);
       EXPECT_LT(rise.most, 0.02 * rise.at_play) << seed << " at " << steps << " steps a frame";
@@ -64,7 +64,7 @@ TEST(Loads, RandomLandingsMakeNoEnergy) {
 
 // The tensions that steps are divided for are part of the state.
 TEST(Loads, AClearedWorkspaceChangesNoBit) {
-  for (int seed = 0; seed < 20; ++seed) {
+  for (int seed = 0; seed < seeds_of(20); ++seed) {
     EXPECT_TRUE(is_all_state(random_load(seed), Method::pinch, 240)) << seed;
   }
 }

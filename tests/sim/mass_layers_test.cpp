@@ -137,11 +137,11 @@ TEST(MassLayers, MomentumIsKeptInFreeFlight) {
 }
 
 TEST(RandomMassLayers, StayFiniteAndMakeNoEnergy) {
-  EXPECT_GT(run_heavy_ropes(braked_rope, 200), 350);
+  EXPECT_GT(run_heavy_ropes(braked_rope, 200), seeds_of(350));
 }
 
 TEST(RandomMassLayers, AClearedWorkspaceChangesNoBit) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(40U); ++seed) {
     EXPECT_TRUE(is_all_state(braked_rope(seed), Method::pinch, 150)) << seed;
   }
 }

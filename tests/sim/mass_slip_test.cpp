@@ -289,7 +289,7 @@ TEST(MassSlip, ASmoothDiscDoesNotStopTheRopeThatItMeets) {
 // What the energy rises by is what it swings by, as of ropes that do not slip (RandomMass).
 TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
   int ran = 0, more = 0;
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(300U); ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = slipping_rope(seed);
       scene.steps_per_frame = steps;
@@ -304,14 +304,14 @@ TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
       ++ran;
     }
   }
-  EXPECT_GT(ran, 600);
+  EXPECT_GT(ran, seeds_of(600));
   EXPECT_LE(more, 3);
 }
 
 // Rollers fall on pulleys and pinch the rope, over which it slips.
 TEST(RandomMassSlip, PinchesHold) {
   int fallbacks = 0;
-  for (unsigned seed = 0; seed < 25; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(25U); ++seed) {
     Scene scene = random_scene(static_cast<int>(seed));
     scene.steps_per_frame = 4;
     Random random(seed + 5000);
@@ -342,7 +342,7 @@ TEST(RandomMassSlip, PinchesHold) {
 }
 
 TEST(RandomMassSlip, AClearedWorkspaceChangesNoBit) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(40U); ++seed) {
     EXPECT_TRUE(is_all_state(slipping_rope(seed), Method::pinch, 200)) << seed;
   }
 }

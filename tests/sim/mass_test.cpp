@@ -265,11 +265,11 @@ TEST(Mass, MomentumIsKeptWhoeverJoinsTheCable) {
 // than k where, by Numerov's method, the motion itself errs by its fourth power only. Elastic
 // cables over rims have an error of their own (sim/README.md, "Limits").
 TEST(RandomMass, StayFiniteAndMakeNoEnergy) {
-  EXPECT_GT(run_heavy_ropes(falling_on_rope, 300), 600);
+  EXPECT_GT(run_heavy_ropes(falling_on_rope, 300), seeds_of(600));
 }
 
 TEST(RandomMass, AClearedWorkspaceChangesNoBit) {
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(40U); ++seed) {
     const Scene scene = falling_on_rope(seed);
     EXPECT_TRUE(is_all_state(scene, Method::pinch, 200)) << seed;
   }

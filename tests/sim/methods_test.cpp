@@ -57,7 +57,7 @@ TEST(Methods, StressScenesHaveTheElementsOfTheThesis) {
 }
 
 TEST(Methods, AllPairsFindWhatTheSweepFinds) {
-  for (int seed = 1; seed <= 30; ++seed) {
+  for (int seed = 1; seed <= seeds_of(30); ++seed) {
     const Scene scene = random_scene(seed);
     for (const Method method : {Method::pinch, Method::cable}) {
       Configuration all = method;
@@ -162,7 +162,7 @@ TEST(Methods, IterativeSlidingObeysTheCapstanLaw) {
 
 /// Ten sweeps where no cable slides; where one does, enough to converge (sim/README.md).
 TEST(Methods, SweepsMakeNoEnergy) {
-  for (int seed = 1; seed <= 60; ++seed) {
+  for (int seed = 1; seed <= seeds_of(60); ++seed) {
     Configuration thesis = thesis_configuration();
     thesis.diagnostics = true;
     if (seed % 3 != 0) thesis.iterations = 100;

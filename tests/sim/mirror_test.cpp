@@ -107,7 +107,7 @@ struct Population {
 class Mirror : public ::testing::TestWithParam<Population> {};
 
 TEST_P(Mirror, ImageMovesAsTheImageToTheLastBit) {
-  for (int seed = 0; seed < GetParam().count; ++seed) {
+  for (int seed = 0; seed < seeds_of(GetParam().count); ++seed) {
     Scene scene = GetParam().scene(seed);
     for (const int steps : {1, 4, 16}) {
       scene.steps_per_frame = steps;
@@ -137,7 +137,7 @@ TEST(MirrorMethods, ImageMovesAsTheImageByEveryMethod) {
   for (const Configuration& configuration :
        {Configuration(Method::pinch_no_contact), Configuration(Method::cable), at_steps,
         thesis_configuration()}) {
-    for (int seed = 0; seed < 30; ++seed) {
+    for (int seed = 0; seed < seeds_of(30); ++seed) {
       EXPECT_EQ(first_parted(random_scene(seed), configuration, 240), -1)
           << to_string(configuration) << ' ' << seed;
     }

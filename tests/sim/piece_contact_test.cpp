@@ -220,7 +220,7 @@ TEST(PieceContact, ABeadSlidesAlongATautCable) {
 // of all that is at play, but where a landing throws most of that into one wave: two of 1,000.
 TEST(PieceContact, RandomLandingsMakeNoEnergyAndKeepOut) {
   int swings = 0;
-  for (int seed = 0; seed < 200; ++seed) {
+  for (int seed = 0; seed < seeds_of(200); ++seed) {
     for (const int steps : {1, 4, 16}) {
       Scene scene = random_on_pieces(seed, true);
       scene.steps_per_frame = steps;

@@ -34,4 +34,15 @@ class Random {
   std::mt19937 engine_;
 };
 
+/// How many of `count` random scenes a test runs: all; but a quarter, rounded up, under the
+/// sanitizers, where they take ten times as long. Those look for what no scene may do at all.
+template <class Count>
+constexpr Count seeds_of(Count count) {
+#ifdef __SANITIZE_ADDRESS__
+  return (count + 3) / 4;
+#else
+  return count;
+#endif
+}
+
 }  // namespace pinchlab::testing

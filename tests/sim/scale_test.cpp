@@ -79,7 +79,7 @@ TEST(Scale, DemonstrationsMoveAlikeInAllUnitsToTheLastBit) {
 }
 
 TEST(Scale, RandomScenesMoveAlikeInAllUnitsToTheLastBit) {
-  for (int seed = 0; seed < 40; ++seed) {
+  for (int seed = 0; seed < seeds_of(40); ++seed) {
     for (const Scene& scene :
          {random_scene(seed), slipping_elastic(seed), heavy_elastic(seed), linkage(seed)}) {
       for (const auto& [l, m] : units) {
@@ -152,7 +152,7 @@ TEST(Order, DemonstrationsMoveAlikeInAnyOrder) {
 // held together.
 TEST(Order, RandomScenesMoveAlikeInAnyOrderUnlessChaotic) {
   int chaotic = 0, undecided = 0;
-  for (int seed = 0; seed < 60; ++seed) {
+  for (int seed = 0; seed < seeds_of(60); ++seed) {
     const Scene thrown = random_scene(seed);
     if (!moves_alike_in_any_order(thrown, Method::pinch, 1.0)) {
       ++(is_chaotic(thrown, Method::pinch, 1.0) ? chaotic : undecided);

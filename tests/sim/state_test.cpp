@@ -14,7 +14,7 @@
 namespace pinchlab::testing {
 namespace {
 
-constexpr int scenes = 40, steps = 480;
+constexpr int scenes = seeds_of(40), steps = 480;
 
 Configuration configuration_of(int seed) {
   constexpr const char* names[] = {"pinch", "pinch", "pinch_no_contact", "cable", "thesis"};

@@ -215,7 +215,7 @@ void check_random_rope(const Scene& scene, double seconds, const std::string& wh
 // drums, and comes off them again. Where a node lay between, a disc was met by a span that came
 // back to it only once it was up to 0.1 m inside.
 TEST(RandomStrungLayers, KeepLengthsAndGapsAndMakeNoEnergy) {
-  for (unsigned seed = 0; seed < 100; ++seed) {
+  for (unsigned seed = 0; seed < seeds_of(100U); ++seed) {
     for (const bool layers : {true, false}) {
       for (const int steps : {1, 4, 16}) {
         if (steps == 16 && seed % 4 != 0) continue;
