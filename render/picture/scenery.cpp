@@ -19,6 +19,7 @@ namespace {
 
 constexpr int most_snapshots = 40;       // a configuration
 constexpr std::size_t most_labels = 40;  // that are kept out of the way; more stand below
+constexpr double unreadable = 3.0;       // off the view or on another; 1: on a body or line
 
 bool is_driven(const Body& body) {
   return strongest_drive(body) != 0.0;
@@ -197,7 +198,7 @@ void Rehearsal::fit_labels() {
 }
 
 /// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail
-/// or another body; out of the view counts three times.
+/// or another body; out of the view counts as `unreadable`.
 double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
                           double own_radius) const {
   const Box frame{scenery_.view.low, scenery_.view.high};
@@ -205,7 +206,7 @@ double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
   for (const Snapshot& snapshot : snapshots_) {
     const Vec2 centre = snapshot.position[body] + offset;
     const Box there{centre + box.low, centre + box.high};
-    if (!there.within(frame)) sum += 3.0;
+    if (!there.within(frame)) sum += unreadable;
     sum += static_cast<double>(
         std::any_of(snapshot.lines.begin(), snapshot.lines.end(),
                     [&](const Snapshot::Line& line) { return there.touches_line(line); }));
@@ -303,7 +304,7 @@ void Rehearsal::place_labels() {
         for (const Snapshot& snapshot : snapshots_) {
           const Vec2 apart = snapshot.position[other] - snapshot.position[label.body];
           const bool both = here.touches({apart + other_box.low, apart + other_box.high});
-          sum += static_cast<double>(both) / static_cast<double>(snapshots_.size());
+          sum += unreadable * static_cast<double>(both) / static_cast<double>(snapshots_.size());
         }
       }
       if (sum >= least - 1e-9) continue;
