@@ -57,8 +57,9 @@ class Choices {
 json place(Choices& choices, unsigned index) {
   if (choices.one_in(16)) return {choices.between(-3.0, 3.0), choices.between(-3.0, 3.0)};
   constexpr double cell = 1.5;
-  return {cell * (index % 3) - cell + choices.between(-0.3, 0.3),
-          cell * (index / 3) - cell + choices.between(-0.3, 0.3)};
+  const unsigned column = index % 3, row = index / 3;
+  return {cell * column - cell + choices.between(-0.3, 0.3),
+          cell * row - cell + choices.between(-0.3, 0.3)};
 }
 
 json body(Choices& choices, unsigned index) {
