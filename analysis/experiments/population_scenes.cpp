@@ -189,7 +189,7 @@ std::vector<Shape> draw_shapes(Random& random, double size) {
   return shapes;
 }
 
-/// Two or three discs and polygons, with axles or fixed. A rope with mass slips on discs only.
+/// Two or three discs and polygons, with axles or fixed. A rope with mass slips on discs.
 void add_pulleys(Random& random, const Surfaces& surfaces, int count, ShapelyScene& drawn) {
   for (int i = 0; i < count; ++i) {
     Body pulley;

@@ -82,6 +82,17 @@ void push(World& world, int body, const Eigen::Matrix3d& carried,
   }
 }
 
+/// A link that has been put in at a polygon's corner slips with what lies on the side beside it.
+void slip_along(const World& world, CableState& cable, int link) {
+  Link& added = at(cable.links, link);
+  for (const int beside : {previous_link(cable, link), next_link(cable, link)}) {
+    if (beside < 0 || !is_slipping_side(world, at(cable.links, beside), added)) continue;
+    added.slip = at(cable.links, beside).slip;
+    added.slip_speed = at(cable.links, beside).slip_speed;
+    return;
+  }
+}
+
 /// Changes velocities as if a mass with velocity u had joined the body, or its sleeve, at z, where
 /// `carried` and the sleeves have that mass already.
 void take_up(World& world, int body, const Eigen::Matrix3d& carried,
@@ -107,6 +118,7 @@ void meet_body(World& world, CableState& cable, std::size_t segment, int body, i
   const Vec2 u_b = velocity_at(world, cable, head, before.z_b);
   const std::size_t position = segment == 0 ? cable.links.size() : segment;
   insert_link(world, cable, segment, body, corner, orientation);
+  slip_along(world, cable, static_cast<int>(position));
   const int mover = mover_of(world, body);
   std::vector<Eigen::Matrix3d> carried;
   std::vector<Sleeve> sleeves;

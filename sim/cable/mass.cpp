@@ -28,6 +28,14 @@ Vec2 centre_of(const World& world, const Link& link) {
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
 
+/// The same as the motion needs it. What is fixed does not move: what does there is a sleeve, which
+/// turns about the circle's own centre.
+Vec2 turning_centre(const World& world, const Link& link) {
+  const bool fixed =
+      link.body >= 0 && at(world.bodies, mover_of(world, link.body)).kind == BodyKind::fixed;
+  return fixed ? Vec2(Vec2::Zero()) : centre_of(world, link);
+}
+
 /// Of a span that leaves a drum which fills; or lies between that and the cable's end on it, where
 /// nothing moves.
 void let_fill(const Link& from, const Link& to, MassedSpan& span) {
@@ -56,8 +64,8 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.b = mover_or_world(world, to);
   span.p_a = from.signed_radius();
   span.p_b = to.signed_radius();
-  span.centre_a = centre_of(world, from);
-  span.centre_b = centre_of(world, to);
+  span.centre_a = turning_centre(world, from);
+  span.centre_b = turning_centre(world, to);
   span.direction = segment.direction;
   span.z_a = left(span.centre_a) + span.p_a * span.direction;
   span.z_b = left(span.centre_b) + span.p_b * span.direction;
@@ -72,11 +80,28 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   if (cable.fills) let_fill(from, to, span);
   span.length = segment.length;
   span.material = std::max(material_of_span(cable, i), 0.0);
-  span.density = cable.density;
+  // All of what a side bears is a sleeve's: side_of.
+  span.density = is_slipping_side(world, from, to) ? 0.0 : cable.density;
   return span;
 }
 
 namespace {
+
+/// Whether the segment before link i lies along a side as part of a sleeve.
+bool slips_along_side(const World& world, const CableState& cable, std::size_t i) {
+  const int before = previous_link(cable, static_cast<int>(i));
+  return before >= 0 && is_slipping_side(world, at(cable.links, before), cable.links[i]);
+}
+
+MassedArc side_of(const World& world, const CableState& cable, std::size_t i) {
+  const double p = cable.links[i].signed_radius();
+  MassedArc side;
+  side.body = mover_or_world(world, cable.links[i]);
+  side.mass = cable.density * std::max(material_of_span(cable, i), 0.0);
+  side.first = side.mass * p * cable.segments[i].direction;
+  side.second = side.mass * p * p;
+  return side;
+}
 
 /// An arc about the link's own centre: on the circle z = p e, e turning from where the cable comes
 /// to where it goes.
@@ -123,11 +148,12 @@ void lie_in_layers(const CableState& cable, const Link& link, const Vec2& comes,
   arc.second = 0.25 * cable.density * wrap * squares * (outer + layers.inner);
 }
 
-MassedArc arc_of(const World& world, const CableState& cable, std::size_t i) {
+/// `centre`: of the link's circle, as of centre_of.
+MassedArc arc_of(const World& world, const CableState& cable, std::size_t i, const Vec2& centre) {
   const Link& link = cable.links[i];
   MassedArc arc;
   arc.body = mover_or_world(world, link);
-  arc.centre = centre_of(world, link);
+  arc.centre = centre;
   if (!cable.rims.empty() && !cable.rims[i].laid.empty()) {
     lie_as_laid(world, cable, i, arc);
   } else {
@@ -312,14 +338,18 @@ void add_masses(const World& world, int number, const std::vector<Sleeve>& sleev
   };
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     const int link = static_cast<int>(i);
+    const auto add_arc = [&](MassedArc arc) {
+      put(arc.body, link);
+      to.arcs.push_back(arc);
+    };
     if (i >= first_segment(cable)) {
       to.spans.push_back(span_of(world, cable, i));
       put(to.spans.back().a, previous_link(cable, link));
       put(to.spans.back().b, link);
     }
     if (cable.links[i].orientation == 0) continue;
-    to.arcs.push_back(arc_of(world, cable, i));
-    put(to.arcs.back().body, link);
+    add_arc(arc_of(world, cable, i, turning_centre(world, cable.links[i])));
+    if (slips_along_side(world, cable, i)) add_arc(side_of(world, cable, i));
   }
 }
 
@@ -352,8 +382,11 @@ void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
         add_moments(mass_at(span.b, link), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
       }
       if (cable.links[i].orientation == 0) continue;
-      const MassedArc arc = arc_of(world, cable, i);
+      const MassedArc arc = arc_of(world, cable, i, turning_centre(world, cable.links[i]));
       add_moments(mass_at(arc.body, link), arc.mass, arc.first, arc.second);
+      if (!slips_along_side(world, cable, i)) continue;
+      const MassedArc side = side_of(world, cable, i);
+      add_moments(mass_at(side.body, link), side.mass, side.first, side.second);
     }
     for (std::size_t k = first; k < sleeves.size(); ++k) {
       sleeves[k].mass += least_mass(world, sleeves[k], sleeves[k].mass);
@@ -456,7 +489,7 @@ double potential_energy(const World& world, const CableState& cable, const Vec2&
       if (is_held(cable, i)) energy -= gravity.dot(first_moment(cable, i));
     }
     if (cable.links[i].orientation == 0) continue;
-    const MassedArc arc = arc_of(world, cable, i);  // z = left(x)
+    const MassedArc arc = arc_of(world, cable, i, centre_of(world, cable.links[i]));  // z = left(x)
     energy -= gravity.dot(arc.mass * at(world.position, arc.body) - left(arc.first));
   }
   return energy;

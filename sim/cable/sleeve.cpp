@@ -17,21 +17,31 @@ bool lies_loose(const World& world, const Link& link) {
          at(world.bodies, link.body).cable_friction < infinity;
 }
 
-/// The last link of what begins with `first`: beyond each pinch it goes on.
-int last_part(const CableState& cable, int first) {
+/// The last link of what begins with `first`: beyond each pinch, and along each side, it goes on.
+int last_part(const World& world, const CableState& cable, int first) {
   int last = first;
   for (std::size_t seen = 0; seen < cable.links.size(); ++seen) {
     const int after = next_link(cable, last);
-    if (after < 0 || !at(cable.links, after).pinch_middle) break;
+    if (after < 0) break;
+    if (is_slipping_side(world, at(cable.links, last), at(cable.links, after))) {
+      last = after;
+      continue;
+    }
+    if (!at(cable.links, after).pinch_middle) break;
     last = next_link(cable, after);
   }
   return last;
 }
 
+/// Whether the segment between the two goes to an end of the cable that the same body holds.
+bool is_fast(const Link& end, const Link& link) {
+  return end.orientation == 0 && !end.moored && end.body == link.body;
+}
+
 bool is_fast(const CableState& cable, int first, int last) {
   const int before = previous_link(cable, first), after = next_link(cable, last);
-  return (before >= 0 && wound_end(at(cable.links, before), at(cable.links, first))) ||
-         (after >= 0 && wound_end(at(cable.links, last), at(cable.links, after)));
+  return (before >= 0 && is_fast(at(cable.links, before), at(cable.links, first))) ||
+         (after >= 0 && is_fast(at(cable.links, after), at(cable.links, last)));
 }
 
 /// Calls `visit(first, last)` for each sleeve of a cable.
@@ -39,9 +49,12 @@ template <class Visit>
 void each_sleeve(const World& world, const CableState& cable, Visit visit) {
   for (int i = 0; index(i) < cable.links.size(); ++i) {
     const int before = previous_link(cable, i);
-    if (!lies_loose(world, at(cable.links, i))) continue;
-    if (before >= 0 && at(cable.links, before).pinch_middle) continue;  // it goes on from there
-    const int last = last_part(cable, i);
+    const Link& link = at(cable.links, i);
+    if (!lies_loose(world, link)) continue;
+    const bool goes_on = before >= 0 && (at(cable.links, before).pinch_middle ||
+                                         is_slipping_side(world, at(cable.links, before), link));
+    if (goes_on) continue;  // from there
+    const int last = last_part(world, cable, i);
     if (!is_fast(cable, i, last)) visit(i, last);
   }
 }
@@ -59,6 +72,10 @@ double stretching(const World& world, const CableState& cable, int segment) {
 }
 
 }  // namespace
+
+bool is_slipping_side(const World& world, const Link& from, const Link& to) {
+  return from.corner >= 0 && to.corner >= 0 && from.body == to.body && lies_loose(world, to);
+}
 
 bool has_sleeves(const World& world, const CableState& cable) {
   bool any = false;

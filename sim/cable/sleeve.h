@@ -6,6 +6,10 @@
 //     omega_s = omega + s / p,       s: slip speed, p: signed radius of the cable's centre line,
 // so that its mass is inertia to the cable's own motion, and none to the disc's turning. What
 // passes between the two is friction alone: solve/rubbing.h.
+//
+// On a polygon that is fixed all that lies on it, round corners of one radius and along sides,
+// moves at one speed, as what lies on a disc of that radius does: so much of a sleeve's mass, which
+// is at the places z = p e of a circle, e being the cable's direction there.
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,6 +19,7 @@
 namespace pinchlab {
 
 /// All links of a cable on one disc in succession: one, or the parts into which pinches divide it.
+/// Or those at the corners of a polygon.
 struct Sleeve {
   int cable = 0, first = 0, last = 0;  // links; of a closed cable `last` may be before `first`
   int body = 0;
@@ -22,6 +27,9 @@ struct Sleeve {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s
   Eigen::Matrix3d mass = Eigen::Matrix3d::Zero();      // kg, kg m, kg m^2, for (x, y, angle)
 };
+
+/// Whether a sleeve goes on from one link to the other, along a side of a polygon.
+bool is_slipping_side(const World& world, const Link& from, const Link& to);
 
 /// Whether any part of the cable is a sleeve.
 bool has_sleeves(const World& world, const CableState& cable);

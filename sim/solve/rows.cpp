@@ -42,7 +42,8 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
 }
 
 bool has_fixed_lever(const World& world, const Link& link) {
-  return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
+  if (link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body)) return true;
+  return at(world.bodies, link.body).kind == BodyKind::fixed;  // of a sleeve, if of anything
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
@@ -226,16 +227,22 @@ int place_that_is_pressed(const World& world, const PartSystem& s, const Contact
   return body;
 }
 
+/// What a polygon's sleeve at that place sees of friction: it moves along the side with its centre
+/// line.
+void roll_on_sleeve(const PartSystem& s, int pressed, RowBodies& row) {
+  for (const SleevePlace& one : s.sleeves) {
+    if (one.place == pressed) (row.a == pressed ? row.ja : row.jb).z() = -std::abs(one.radius);
+  }
+}
+
 /// The friction of a contact of coefficient mu, whose normal row that is.
 void append_tangent_row(const World& world, const Parts& parts, int normal, double mu,
                         const TimeSpan& interval, PartSystem& s) {
   const Contact& contact = at(world.contacts, at(s.rows, normal).index);
   const bool in_pinch = contact.slipping_cable >= 0;
   int a = at(s.bodies, normal).a, b = at(s.bodies, normal).b;
-  if (in_pinch) {
-    int& pressed = contact.slips_on == contact.a ? a : b;
-    pressed = place_that_is_pressed(world, s, contact, pressed);
-  }
+  int& pressed = contact.slips_on == contact.a ? a : b;
+  if (in_pinch) pressed = place_that_is_pressed(world, s, contact, pressed);
   const int tangent = append_row(s, a, b);
   Row& row = s.rows.back();
   row.kind = RowKind::tangent;
@@ -244,6 +251,7 @@ void append_tangent_row(const World& world, const Parts& parts, int normal, doub
     set_bodies_at_piece(world, parts, contact, true, s, tangent);
   } else {
     set_tangent_bodies(world, contact, interval, s.bodies.back());
+    if (in_pinch && contact.slips_corner >= 0) roll_on_sleeve(s, pressed, s.bodies.back());
   }
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);

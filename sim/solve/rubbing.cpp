@@ -174,6 +174,19 @@ void pass_link(const World& world, SolveScratch& scratch, const SleevePlace& one
   pass_arc(cable, link, wrap - passed, e, leaves, mu, law, way, s.rub_terms);
 }
 
+/// Goes on along the side of a polygon that is fixed, before link i. There the rope presses by its
+/// weight alone, if at all: N ds = -rho b.n ds.
+void pass_side(const CableState& cable, int i, double mu, const Vec2& gravity, Way& way) {
+  const Vec2& e = at(cable.segments, i).direction;
+  const Vec2 n = at(cable.links, i).orientation * left(e);
+  const double mass = cable.density * std::max(at(cable.segments, i).rest_length, 0.0);
+  way.moved += mass * e;
+  if (gravity.dot(n) > 0.0) way.moved -= mass * mu * n;
+  way.faster += mass;
+  way.mass += mass;
+  way.first += mass * e;
+}
+
 /// The law for slipping forward (sign = 1) or backward (-1).
 void find_law(const World& world, SolveScratch& scratch, const SleevePlace& one, int sign,
               PartSystem& s, RubLaw& law) {
@@ -192,6 +205,8 @@ void find_law(const World& world, SolveScratch& scratch, const SleevePlace& one,
       pass_pinch(world, scratch, link.contact, pinched, terms);
       terms.push_back({row_of_segment(s, one, i), -1.0});
     } else {
+      const bool along = i != one.sleeve.first && at(cable.links, i).corner >= 0;
+      if (along) pass_side(cable, i, mu, s.rub_fall, way);
       pass_link(world, scratch, one, i, mu, pinched, s, law, way);
     }
     if (i != one.sleeve.last) continue;

@@ -26,6 +26,9 @@
 // where v is the centre's velocity (from the momentum of the rope beyond; test
 // MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
 //
+// Along a side of a polygon, which does not bend the rope, N = max(0, -rho b.n) a metre. Polygons
+// are fixed, so that b is -g: what presses there is known.
+//
 // Where f comes out below zero, the rope does not press on the rim: then there is no friction. It
 // does not lift off.
 
