@@ -28,11 +28,10 @@ Vec2 centre_of(const World& world, const Link& link) {
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
 
-/// The same as the motion needs it. What is fixed does not move: what does there is a sleeve, which
-/// turns about the circle's own centre.
+/// The same as the motion needs it. Of a polygon that is fixed a sleeve moves, if anything: about
+/// the circle's own centre.
 Vec2 turning_centre(const World& world, const Link& link) {
-  const bool fixed =
-      link.body >= 0 && at(world.bodies, mover_of(world, link.body)).kind == BodyKind::fixed;
+  const bool fixed = link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
   return fixed ? Vec2(Vec2::Zero()) : centre_of(world, link);
 }
 

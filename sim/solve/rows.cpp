@@ -43,7 +43,8 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
 
 bool has_fixed_lever(const World& world, const Link& link) {
   if (link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body)) return true;
-  return at(world.bodies, link.body).kind == BodyKind::fixed;  // of a sleeve, if of anything
+  // Of a polygon that is fixed a sleeve moves, if anything: about a circle of its own.
+  return link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
