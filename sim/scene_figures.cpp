@@ -186,26 +186,21 @@ void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
 }
 
 /// Sleeves (cable/sleeve.h), where a cable with mass slips, are of discs, about their centres; and
-/// of polygons that stand, without nodes, which would be held at rims.
+/// of polygons that stand.
 void refuse_slip_on_polygons(const Scene& scene) {
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    const Cable& cable = scene.cables[c];
-    if (cable.mass_per_metre == 0.0) continue;
-    for (const Body& body : scene.bodies) {
-      if (body.cable_friction == infinity) continue;
-      const bool is_shape = body.carrier >= 0, is_polygon = !body.corners.empty();
-      if (!is_polygon && !is_shape) continue;
-      if (!is_shape && body.kind == BodyKind::fixed && cable.nodes == 0) continue;
-      const char* what = is_shape                       ? "a shape of another"
-                         : body.kind == BodyKind::fixed ? "a polygon, hanging in nodes"
-                                                        : "a polygon that can move";
-      throw SceneError(Place{"cables", static_cast<int>(c)},
-                       fmt::format("a cable with mass slips on discs and on polygons that are "
-                                   "fixed, there without nodes, and could on body '{}', which is "
-                                   "{}; leave out the body's cable_friction, the cable's nodes or "
-                                   "its mass",
-                                   body.name, what));
-    }
+  const auto massed = std::ranges::find_if(
+      scene.cables, [](const Cable& cable) { return cable.mass_per_metre != 0.0; });
+  if (massed == scene.cables.end()) return;
+  for (const Body& body : scene.bodies) {
+    const bool is_shape = body.carrier >= 0;
+    const bool moves = !body.corners.empty() && body.kind != BodyKind::fixed;
+    if (body.cable_friction == infinity || (!is_shape && !moves)) continue;
+    throw SceneError(
+        Place{"cables", static_cast<int>(massed - scene.cables.begin())},
+        fmt::format("a cable with mass slips on discs and on polygons that are fixed, "
+                    "and could on body '{}', which is {}; leave out the body's "
+                    "cable_friction, or the cable's mass",
+                    body.name, is_shape ? "a shape of another" : "a polygon that can move"));
   }
 }
 

@@ -48,10 +48,11 @@ struct Layers {
 /// angle).
 struct alignas(64) Link {
   // What every step reads, in one line of the cache.
-  int body = -1;              // index, or -1: attached to the world
-  int orientation = 0;        // +1 counter-clockwise, -1 clockwise, 0 attachment
-  int corner = -1;            // of a polygon, that the circle is about; or -1
-  bool still = false;         // the circle never moves: about a centre that cannot, or in the world
+  int body = -1;        // index, or -1: attached to the world
+  int orientation = 0;  // +1 counter-clockwise, -1 clockwise, 0 attachment
+  int corner = -1;      // of a polygon, that the circle is about; or -1. Of a moored node, that
+                        // it turns about as it slips
+  bool still = false;   // the circle never moves: about a centre that cannot, or in the world
   bool pinch_middle = false;  // middle link of a non-transitional pinch: no wrap, the links
                               // before and after lie on the pinched body
   Slip slip = Slip::stick;    // by the active set

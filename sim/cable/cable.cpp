@@ -85,8 +85,11 @@ int way_of_layers(const CableState& cable, std::size_t i) {
 }
 
 Vec2 offset_centre(const World& world, const Link& link) {
-  return at(world.position, link.body) +
-         turned(link.offset, at(world.angle, link.body) + link.slid);
+  const Vec2& x = at(world.position, link.body);
+  const double angle = at(world.angle, link.body);
+  if (link.slid == 0.0 || link.corner < 0) return x + turned(link.offset, angle + link.slid);
+  const Vec2& corner = at(at(world.bodies, link.body).corners, link.corner);
+  return x + turned(corner, angle) + turned(Vec2(link.offset - corner), angle + link.slid);
 }
 
 int rim_of(const CableState& cable, int link) {

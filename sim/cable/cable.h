@@ -154,7 +154,7 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 /// always so but for an end that is held at the body's rim, and for polygons, whose other corners
 /// it may meet.
 inline bool holds_span(const World& world, const CableState& cable, const Link& end, int body) {
-  if (end.body != body || end.corner >= 0) return false;
+  if (end.body != body || (end.corner >= 0 && !end.moored)) return false;
   return end.orientation != 0 || end.moored || is_fastened_inside(world, cable, end);
 }
 

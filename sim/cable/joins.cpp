@@ -102,6 +102,39 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried,
   push(world, body, carried, sleeves, at_sleeve, on_body(mass * (u - own), z));
 }
 
+/// What two parts of a cable that slip on a polygon, on either side of a link that is about to go,
+/// have as one along the side between them: their momentum, and that of `mass` (kg) at u (m/s).
+void join_along_side(World& world, CableState& cable, int link, const std::vector<Sleeve>& sleeves,
+                     double mass, const Vec2& u) {
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  const Vec2 side =
+      link_centre(world, at(cable.links, after)) - link_centre(world, at(cable.links, before));
+  double momentum = mass * u.dot(side.normalized()), all = mass;
+  bool fast = false;
+  for (const int beside : {before, after}) {
+    const int k = sleeve_at(world, sleeves, number, beside);
+    fast = fast || k < 0;
+    if (k < 0) continue;
+    const double p = at(cable.links, beside).signed_radius();
+    const double slips = at(sleeves, k).mass(2, 2) / (p * p);
+    all += slips;
+    momentum += slips * at(cable.links, beside).slip_speed;
+  }
+  for (const int beside : {before, after}) {
+    const int k = sleeve_at(world, sleeves, number, beside);
+    if (k < 0) continue;
+    set_slip(cable, at(sleeves, k), at(cable.links, beside).slip, fast ? 0.0 : momentum / all);
+  }
+}
+
+/// Whether the neighbours of a node's link come to be the ends of a side that slips.
+bool closes_side(const World& world, const CableState& cable, int link) {
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  return at(cable.links, link).orientation == 0 && before >= 0 && after >= 0 &&
+         is_slipping_side(world, at(cable.links, before), at(cable.links, after));
+}
+
 }  // namespace
 
 void meet_body(World& world, CableState& cable, std::size_t segment, int body, int corner,
@@ -141,6 +174,14 @@ void leave_body(World& world, CableState& cable, int link) {
     return;
   }
   const int number = static_cast<int>(&cable - world.cables.data());
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  if (closes_side(world, cable, link)) {  // it is moored, and part of one of them
+    find_carried(world, carried, sleeves);
+    join_along_side(world, cable, link, sleeves, 0.0, Vec2::Zero());
+    remove_link(world, cable, link);
+    return;
+  }
   const MassedSpan first = span_of(world, cable, index(link));
   const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
   const Vec2 u = velocity_at(world, cable, link, first.z_b);
@@ -151,8 +192,6 @@ void leave_body(World& world, CableState& cable, int link) {
   const bool first_gone = merged && link == links - 1;
   const int after = link % left_over;
   const int before = first_gone ? left_over - 1 : previous_link(cable, after);
-  std::vector<Eigen::Matrix3d> carried;
-  std::vector<Sleeve> sleeves;
   find_carried(world, carried, sleeves);
   const auto give = [&](int to, int at_link, const Vec2& z, double material) {
     if (index(to) == world.bodies.size()) return;
@@ -170,7 +209,15 @@ void join_rim(World& world, CableState& cable, int number, int rim) {
   link.body = at(cable.links, rim).body;
   link.moored = true;
   link.slid = slid_by(world, cable, number);
-  link.offset = turned(x - at(world.position, link.body), -at(world.angle, link.body) - link.slid);
+  const Link& held_by = at(cable.links, rim);
+  const double angle = at(world.angle, link.body);
+  Vec2 pivot = Vec2::Zero();  // in the body's frame
+  if (held_by.corner >= 0 && at(world.bodies, link.body).cable_friction < infinity) {
+    link.corner = held_by.corner;
+    pivot = held_by.offset;
+  }
+  const Vec2 arm = x - at(world.position, link.body) - turned(pivot, angle);
+  link.offset = pivot + turned(arm, -angle - link.slid);
   const int mover = mover_of(world, link.body);
   std::vector<Eigen::Matrix3d> carried;
   std::vector<Sleeve> sleeves;
@@ -180,7 +227,7 @@ void join_rim(World& world, CableState& cable, int number, int rim) {
   if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
   const double mass = end_mass(span_of(world, cable, index(number))) +
                       end_mass(span_of(world, cable, index(next_link(cable, number))));
-  const Vec2 z = left(Vec2(x - at(world.position, mover)));
+  const Vec2 z = left(Vec2(x - pivot_of_link(world, link)));
   take_up(world, mover, at(carried, mover), sleeves, sleeve, mass, z, u);
 }
 
@@ -191,6 +238,7 @@ void leave_node(World& world, CableState& cable, int link) {
     bool is_head = false;   // of the span that closes up
     double joins = 0.0;     // kg, half of the other span
     Vec2 z = Vec2::Zero();  // where that joins it
+    Vec2 pivot = z;         // m, that z is from
     Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), after = before;
     Vector3d velocity = Vector3d::Zero(), impulse = velocity;
     double gained() const { return after(0, 0) - before(0, 0); }
@@ -205,6 +253,11 @@ void leave_node(World& world, CableState& cable, int link) {
     return share.sleeve < 0 ? at(carried, share.body) : at(sleeves, share.sleeve).mass;
   };
   const double node_mass = at(carried, node)(0, 0);
+  if (closes_side(world, cable, link)) {
+    join_along_side(world, cable, link, sleeves, node_mass, u);
+    remove_link(world, cable, link);
+    return;
+  }
   const int before = previous_link(cable, link), after = next_link(cable, link);
   std::vector<Share> shares;
   for (const int beside : {before, after}) {
@@ -215,6 +268,7 @@ void leave_node(World& world, CableState& cable, int link) {
     share.sleeve = sleeve_at(world, sleeves, number, beside);
     share.is_head = beside == after;
     if (index(share.body) == world.bodies.size()) continue;
+    share.pivot = pivot_of_link(world, at(cable.links, beside));
     if (!shares.empty() && shares[0].body == share.body && shares[0].sleeve == share.sleeve) {
       shares[0].joins += share.joins;
       continue;
@@ -239,9 +293,7 @@ void leave_node(World& world, CableState& cable, int link) {
     alike = alike && (sleeve < 0) == (share.sleeve < 0);
     share.sleeve = sleeve;
     share.after = mass_of(share);
-    share.z = merged          ? left(Vec2(x - at(world.position, share.body)))
-              : share.is_head ? closed.z_b
-                              : closed.z_a;
+    share.z = merged ? left(Vec2(x - share.pivot)) : share.is_head ? closed.z_b : closed.z_a;
   }
   // What a rim gives off as the cable straightens goes to the other neighbour, as it moves.
   double passed = node_mass;

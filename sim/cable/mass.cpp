@@ -28,11 +28,9 @@ Vec2 centre_of(const World& world, const Link& link) {
   return link_centre(world, link) - at(world.position, mover_of(world, link.body));
 }
 
-/// The same as the motion needs it. Of a polygon that is fixed a sleeve moves, if anything: about
-/// the circle's own centre.
+/// The same from what it turns about.
 Vec2 turning_centre(const World& world, const Link& link) {
-  const bool fixed = link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
-  return fixed ? Vec2(Vec2::Zero()) : centre_of(world, link);
+  return link.body < 0 ? link.offset : link_centre(world, link) - pivot_of_link(world, link);
 }
 
 /// Of a span that leaves a drum which fills; or lies between that and the cable's end on it, where

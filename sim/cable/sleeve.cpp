@@ -6,7 +6,9 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/mass.h"
+#include "sim/compound.h"
 #include "sim/tangent.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 
@@ -74,7 +76,8 @@ double stretching(const World& world, const CableState& cable, int segment) {
 }  // namespace
 
 bool is_slipping_side(const World& world, const Link& from, const Link& to) {
-  return from.corner >= 0 && to.corner >= 0 && from.body == to.body && lies_loose(world, to);
+  return from.corner >= 0 && from.orientation != 0 && to.corner >= 0 && from.body == to.body &&
+         lies_loose(world, to);
 }
 
 bool has_sleeves(const World& world, const CableState& cable) {
@@ -127,6 +130,11 @@ double turning_at(const World& world, int cable, int number) {
   if (link.body < 0) return 0.0;
   const double turning = at(world.angular_velocity, link.body);
   return lies_loose(world, link) ? turning + link.slip_speed / link.signed_radius() : turning;
+}
+
+Vec2 pivot_of_link(const World& world, const Link& link) {
+  const bool at_corner = link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
+  return at_corner ? place_of_point(world, link.body, link.corner) : pivot_of(world, link.body);
 }
 
 Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve) {

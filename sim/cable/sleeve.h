@@ -48,6 +48,10 @@ int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable,
 /// rad/s, of what lies at the link: of the sleeve, or of the body.
 double turning_at(const World& world, int cable, int link);
 
+/// m, what a link turns about, or what lies there: the centre of what moves its body; of a fixed
+/// polygon, on which only a sleeve moves, that of the corner which it is at, or is moored to.
+Vec2 pivot_of_link(const World& world, const Link& link);
+
 /// Velocity of a sleeve, with that of its centre.
 Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve);
 

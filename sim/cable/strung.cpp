@@ -398,7 +398,7 @@ bool lies_beside(const World& world, int node, int body) {
     for (const int beside : {previous_link(cable, i), next_link(cable, i)}) {
       if (beside < 0) continue;
       const Link& rim = at(cable.links, beside);
-      if (rim.body == body && rim.corner < 0) return true;
+      if (rim.body == body && (rim.corner < 0 || rim.moored)) return true;
     }
     return is_within_end(world, cable, at(cable.links, i), body);
   }

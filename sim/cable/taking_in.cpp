@@ -11,7 +11,6 @@
 #include "sim/cable/joins.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/strung.h"
-#include "sim/compound.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -184,9 +183,10 @@ int cast_off_node(World& world, CableState& cable, int link) {
   Link& moored = at(cable.links, link);
   const int node = node_of(cable, moored);
   const Vec2 x = link_centre(world, moored);
-  const Vec2 z = left(Vec2(x - at(world.position, mover_of(world, moored.body))));
+  const Vec2 z = left(Vec2(x - pivot_of_link(world, moored)));
   free_node(world, node, x, velocity_at(world, cable, link, z));
   moored.body = node;
+  moored.corner = -1;
   moored.offset = Vec2::Zero();
   moored.moored = false;
   moored.slid = 0.0;

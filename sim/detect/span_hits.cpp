@@ -222,10 +222,10 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   if (segment.pinched || !(segment.length > 0.0)) return {};
   const Link &to = cable.links[s],
              &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
-  if (from.body == body && from.corner >= 0) {
+  if (from.body == body && from.corner >= 0 && !from.moored) {
     return test_next_corner(world, work, cable, s, from, true);
   }
-  if (to.body == body && to.corner >= 0) {
+  if (to.body == body && to.corner >= 0 && !to.moored) {
     return test_next_corner(world, work, cable, s, to, false);
   }
   const int corners = static_cast<int>(at(world.bodies, body).corners.size());

@@ -42,16 +42,14 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
 }
 
 bool has_fixed_lever(const World& world, const Link& link) {
-  if (link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body)) return true;
-  // Of a polygon that is fixed a sleeve moves, if anything: about a circle of its own.
-  return link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
+  return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
 /// cross(c - p left(e), e) = cross(c, e) + p with the circle's centre at c from the body's.
 double lever(const World& world, const Link& link, const Vec2& e) {
   if (has_fixed_lever(world, link)) return link.signed_radius();
-  return link.signed_radius() + cross(link_centre(world, link) - pivot_of(world, link.body), e);
+  return link.signed_radius() + cross(link_centre(world, link) - pivot_of_link(world, link), e);
 }
 
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that

@@ -110,7 +110,7 @@ TEST(RandomCorners, AClearedWorkspaceChangesNoBit) {
     }
     ++ran;
   }
-  EXPECT_GT(ran, seeds_of(10));
+  EXPECT_GE(ran, seeds_of(10));
 }
 
 }  // namespace
