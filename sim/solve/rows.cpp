@@ -42,7 +42,9 @@ int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link
 }
 
 bool has_fixed_lever(const World& world, const Link& link) {
-  return link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body);
+  if (link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body)) return true;
+  // What moves on a polygon that is fixed, if anything, turns about the corner.
+  return link.corner >= 0 && !link.moored && at(world.bodies, link.body).kind == BodyKind::fixed;
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
