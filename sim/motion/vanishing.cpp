@@ -18,6 +18,7 @@ constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
 // thousandth of its length.
 constexpr double least_share = 1e-4;
 constexpr double elastic_share = 0.5;  // of the time left of one that stretches, or is passed in
+constexpr double most_swung = 0.5;     // rad, far less than what is not told from less than a turn
 
 /// Whether a pinched span is between bodies that touch, have not sunk into it, and may part.
 bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head,
@@ -88,17 +89,31 @@ double time_left_of_elastic(const World& world, const CableState& cable, double 
   return most;
 }
 
+/// The time in which a cable that slips round a polygon's corner turns a node that is moored there
+/// as far as an interval may (s), where that is less than `most`; else that.
+double time_to_swing(const CableState& cable, double most) {
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    const Link& node = at(cable.links, i);
+    if (!node.moored || node.corner < 0) continue;
+    const Link& rim = at(cable.links, rim_of(cable, i));
+    const double speed = std::abs(rim.slip_speed), way = most_swung * rim.radius;
+    if (way < speed * most) most = way / speed;
+  }
+  return most;
+}
+
 }  // namespace
 
 double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
   const bool follows = world.step_length < vanishing_time;
-  double left = vanishing_time, left_of_elastic = infinity;
+  double left = vanishing_time, left_of_elastic = infinity, swing = infinity;
   for (const int p : of) {
     const Part& part = at(parts.list, p);
     if (!part.can_move) continue;
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
       if (cable.stands) continue;
+      if (part.has_sleeves && cable.nodes > 0) swing = time_to_swing(cable, swing);
       if (cable.elastic) {
         left_of_elastic = time_left_of_elastic(world, cable, left_of_elastic);
       } else if (follows) {
@@ -106,7 +121,7 @@ double longest_interval(const World& world, const Parts& parts, std::span<const 
       }
     }
   }
-  double longest = elastic_share * left_of_elastic;
+  double longest = std::min(elastic_share * left_of_elastic, swing);
   if (left < vanishing_time) {
     const double share = left / vanishing_time;
     longest = std::min(longest, world.step_length * std::cbrt(share * share));

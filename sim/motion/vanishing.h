@@ -20,6 +20,8 @@
 // ends with takes it for a third as stiff as it is. Intervals of tau / 2 leave it as stiff as it
 // was to a factor of sqrt(2), and (omega h)^2 goes as tau^2 / L, to 0. Where its rims creep, no
 // more than half of what is in it goes through it in one: what comes on is taken as it was before.
+//     A node that is moored at a polygon's corner goes round it as fast as the cable slips there:
+// round a sharp one several times in a step. Intervals follow it.
 
 #include <span>
 
