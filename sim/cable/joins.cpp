@@ -102,15 +102,26 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried,
   push(world, body, carried, sleeves, at_sleeve, on_body(mass * (u - own), z));
 }
 
-/// What two parts of a cable that slip on a polygon, on either side of a link that is about to go,
-/// have as one along the side between them: their momentum, and that of `mass` (kg) at u (m/s).
-void join_along_side(World& world, CableState& cable, int link, const std::vector<Sleeve>& sleeves,
-                     double mass, const Vec2& u) {
-  const auto number = static_cast<int>(&cable - world.cables.data());
+/// Whether the neighbours of a node's link come to be the ends of a side that slips.
+bool closes_side(const World& world, const CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
+  return at(cable.links, link).orientation == 0 && before >= 0 && after >= 0 &&
+         is_slipping_side(world, at(cable.links, before), at(cable.links, after));
+}
+
+/// Removes such a link. What slips on either side of it goes on as one along the side, with the
+/// momentum of both, and that of a node which is not moored.
+void close_side(World& world, CableState& cable, int link) {
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const int before = previous_link(cable, link), after = next_link(cable, link);
+  const Link& node = at(cable.links, link);
   const Vec2 side =
       link_centre(world, at(cable.links, after)) - link_centre(world, at(cable.links, before));
-  double momentum = mass * u.dot(side.normalized()), all = mass;
+  double all = node.moored ? 0.0 : at(carried, node.body)(0, 0);  // kg
+  double momentum = all * at(world.velocity, node.body).dot(side.normalized());
   bool fast = false;
   for (const int beside : {before, after}) {
     const int k = sleeve_at(world, sleeves, number, beside);
@@ -126,13 +137,7 @@ void join_along_side(World& world, CableState& cable, int link, const std::vecto
     if (k < 0) continue;
     set_slip(cable, at(sleeves, k), at(cable.links, beside).slip, fast ? 0.0 : momentum / all);
   }
-}
-
-/// Whether the neighbours of a node's link come to be the ends of a side that slips.
-bool closes_side(const World& world, const CableState& cable, int link) {
-  const int before = previous_link(cable, link), after = next_link(cable, link);
-  return at(cable.links, link).orientation == 0 && before >= 0 && after >= 0 &&
-         is_slipping_side(world, at(cable.links, before), at(cable.links, after));
+  remove_link(world, cable, link);
 }
 
 }  // namespace
@@ -174,14 +179,7 @@ void leave_body(World& world, CableState& cable, int link) {
     return;
   }
   const int number = static_cast<int>(&cable - world.cables.data());
-  std::vector<Eigen::Matrix3d> carried;
-  std::vector<Sleeve> sleeves;
-  if (closes_side(world, cable, link)) {  // it is moored, and part of one of them
-    find_carried(world, carried, sleeves);
-    join_along_side(world, cable, link, sleeves, 0.0, Vec2::Zero());
-    remove_link(world, cable, link);
-    return;
-  }
+  if (closes_side(world, cable, link)) return close_side(world, cable, link);
   const MassedSpan first = span_of(world, cable, index(link));
   const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
   const Vec2 u = velocity_at(world, cable, link, first.z_b);
@@ -192,6 +190,8 @@ void leave_body(World& world, CableState& cable, int link) {
   const bool first_gone = merged && link == links - 1;
   const int after = link % left_over;
   const int before = first_gone ? left_over - 1 : previous_link(cable, after);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
   find_carried(world, carried, sleeves);
   const auto give = [&](int to, int at_link, const Vec2& z, double material) {
     if (index(to) == world.bodies.size()) return;
@@ -231,18 +231,24 @@ void join_rim(World& world, CableState& cable, int number, int rim) {
   take_up(world, mover, at(carried, mover), sleeves, sleeve, mass, z, u);
 }
 
+namespace {
+
+/// What one of the two neighbours has of the cable, before and after it has gone.
+struct Share {
+  int body = 0, sleeve = -1;
+  bool is_head = false;   // of the span that closes up
+  double joins = 0.0;     // kg, half of the other span
+  Vec2 z = Vec2::Zero();  // where that joins it
+  Vec2 pivot = z;         // m, that z is from
+  Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), after = before;
+  Vector3d velocity = Vector3d::Zero(), impulse = velocity;
+  double gained() const { return after(0, 0) - before(0, 0); }
+};
+
+}  // namespace
+
 void leave_node(World& world, CableState& cable, int link) {
-  // What one of the two neighbours has of the cable, before and after.
-  struct Share {
-    int body = 0, sleeve = -1;
-    bool is_head = false;   // of the span that closes up
-    double joins = 0.0;     // kg, half of the other span
-    Vec2 z = Vec2::Zero();  // where that joins it
-    Vec2 pivot = z;         // m, that z is from
-    Eigen::Matrix3d before = Eigen::Matrix3d::Zero(), after = before;
-    Vector3d velocity = Vector3d::Zero(), impulse = velocity;
-    double gained() const { return after(0, 0) - before(0, 0); }
-  };
+  if (closes_side(world, cable, link)) return close_side(world, cable, link);
   const auto number = static_cast<int>(&cable - world.cables.data());
   const int node = at(cable.links, link).body;
   const Vec2 x = at(world.position, node), u = at(world.velocity, node);
@@ -253,11 +259,6 @@ void leave_node(World& world, CableState& cable, int link) {
     return share.sleeve < 0 ? at(carried, share.body) : at(sleeves, share.sleeve).mass;
   };
   const double node_mass = at(carried, node)(0, 0);
-  if (closes_side(world, cable, link)) {
-    join_along_side(world, cable, link, sleeves, node_mass, u);
-    remove_link(world, cable, link);
-    return;
-  }
   const int before = previous_link(cable, link), after = next_link(cable, link);
   std::vector<Share> shares;
   for (const int beside : {before, after}) {

@@ -77,28 +77,12 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   if (cable.fills) let_fill(from, to, span);
   span.length = segment.length;
   span.material = std::max(material_of_span(cable, i), 0.0);
-  // All of what a side bears is a sleeve's: side_of.
+  // All of what a side bears is a sleeve's: arc_that_turns.
   span.density = is_slipping_side(world, from, to) ? 0.0 : cable.density;
   return span;
 }
 
 namespace {
-
-/// Whether the segment before link i lies along a side as part of a sleeve.
-bool slips_along_side(const World& world, const CableState& cable, std::size_t i) {
-  const int before = previous_link(cable, static_cast<int>(i));
-  return before >= 0 && is_slipping_side(world, at(cable.links, before), cable.links[i]);
-}
-
-MassedArc side_of(const World& world, const CableState& cable, std::size_t i) {
-  const double p = cable.links[i].signed_radius();
-  MassedArc side;
-  side.body = mover_or_world(world, cable.links[i]);
-  side.mass = cable.density * std::max(material_of_span(cable, i), 0.0);
-  side.first = side.mass * p * cable.segments[i].direction;
-  side.second = side.mass * p * p;
-  return side;
-}
 
 /// An arc about the link's own centre: on the circle z = p e, e turning from where the cable comes
 /// to where it goes.
@@ -161,6 +145,20 @@ MassedArc arc_of(const World& world, const CableState& cable, std::size_t i, con
   const Vec2 c = left(arc.centre);
   arc.second += arc.mass * c.squaredNorm() + 2.0 * c.dot(arc.first);
   arc.first += arc.mass * c;
+  return arc;
+}
+
+/// What lies on link i as the motion needs it: with the side before it, where that slips.
+MassedArc arc_that_turns(const World& world, const CableState& cable, std::size_t i) {
+  const Link& link = cable.links[i];
+  MassedArc arc = arc_of(world, cable, i, turning_centre(world, link));
+  const int before = previous_link(cable, static_cast<int>(i));
+  if (before < 0 || !is_slipping_side(world, at(cable.links, before), link)) return arc;
+  const double p = link.signed_radius();
+  const double mass = cable.density * std::max(material_of_span(cable, i), 0.0);
+  arc.mass += mass;
+  arc.first += mass * p * cable.segments[i].direction;
+  arc.second += mass * p * p;
   return arc;
 }
 
@@ -335,18 +333,14 @@ void add_masses(const World& world, int number, const std::vector<Sleeve>& sleev
   };
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     const int link = static_cast<int>(i);
-    const auto add_arc = [&](MassedArc arc) {
-      put(arc.body, link);
-      to.arcs.push_back(arc);
-    };
     if (i >= first_segment(cable)) {
       to.spans.push_back(span_of(world, cable, i));
       put(to.spans.back().a, previous_link(cable, link));
       put(to.spans.back().b, link);
     }
     if (cable.links[i].orientation == 0) continue;
-    add_arc(arc_of(world, cable, i, turning_centre(world, cable.links[i])));
-    if (slips_along_side(world, cable, i)) add_arc(side_of(world, cable, i));
+    to.arcs.push_back(arc_that_turns(world, cable, i));
+    put(to.arcs.back().body, link);
   }
 }
 
@@ -379,11 +373,8 @@ void find_carried(const World& world, std::vector<Eigen::Matrix3d>& carried,
         add_moments(mass_at(span.b, link), mass, mass * span.z_b, mass * span.z_b.squaredNorm());
       }
       if (cable.links[i].orientation == 0) continue;
-      const MassedArc arc = arc_of(world, cable, i, turning_centre(world, cable.links[i]));
+      const MassedArc arc = arc_that_turns(world, cable, i);
       add_moments(mass_at(arc.body, link), arc.mass, arc.first, arc.second);
-      if (!slips_along_side(world, cable, i)) continue;
-      const MassedArc side = side_of(world, cable, i);
-      add_moments(mass_at(side.body, link), side.mass, side.first, side.second);
     }
     for (std::size_t k = first; k < sleeves.size(); ++k) {
       sleeves[k].mass += least_mass(world, sleeves[k], sleeves[k].mass);

@@ -17,6 +17,7 @@
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
+#include "tests/sim/sliding.h"
 
 namespace pinchlab::testing {
 namespace {
@@ -83,42 +84,14 @@ struct PegRope {
     const double right = m_right + rho * b, left = m_left + rho * a;
     return (right * g - k * left * g - c0) / (right + k * left + c1);
   }
-
-  /// How far it has slid after t, from rest: by the method of Runge and Kutta.
-  double slid(double a, double b, double t) const {
-    constexpr int count = 400;
-    const double h = t / count;
-    double x = 0.0, w = 0.0;
-    for (int i = 0; i < count; ++i) {
-      const auto f = [&](double y, double v) { return acceleration(a - y, b + y, v); };
-      const double k1 = f(x, w), k2 = f(x + 0.5 * h * w, w + 0.5 * h * k1);
-      const double v3 = w + 0.5 * h * k2, k3 = f(x + 0.5 * h * (w + 0.5 * h * k1), v3);
-      const double k4 = f(x + h * v3, w + h * k3);
-      x += h * w + h * h / 6.0 * (k1 + k2 + k3);
-      w += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-    }
-    return x;
-  }
 };
 
 TEST(MassSlip, ARopeRubsOnAPegAsItsElementsDo) {
   for (const double mu : {0.0, 0.05, 0.2}) {
     const double m_left = 0.3, m_right = 4.0;
-    const PegRope reference{mu, m_left, m_right};
-    double error = 0.0;
-    for (const int steps : {1, 2, 4, 8, 16}) {
-      const Scene scene = rope_over_peg(steps, mu, 0.9, 0.4, m_left, m_right);
-      World world = make_world(scene, measured());
-      run(scene, world, 20 * steps);
-      const double slid = -0.4 - world.position[1].y(),
-                   exact = reference.slid(0.9, 0.4, world.time());
-      const double now = std::abs(slid - exact);
-      if (error > 0.0) {
-        EXPECT_GT(error / now, 3.9) << mu;
-      }
-      error = now;
-    }
-    EXPECT_LT(error, 1e-7);
+    expect_slides_as(PegRope{mu, m_left, m_right}, [&](int steps) {
+      return rope_over_peg(steps, mu, 0.9, 0.4, m_left, m_right);
+    });
   }
 }
 
@@ -296,11 +269,8 @@ TEST(RandomMassSlip, StaysFiniteAndMakesNoEnergy) {
       if (scene.cables[0].axial_stiffness < infinity) scene.frames_per_second = 120;
       const Course course = run_measured(scene, 1.5);
       if (scene.cables[0].axial_stiffness < infinity) continue;
-      const double w = scene.cables[0].half_width, share = course.gained / course.at_play;
-      EXPECT_LE(share, 1e-2 / (steps * steps)) << "seed " << seed << ", " << steps;
-      if (share > swing_of_heavy_ropes / (steps * steps)) ++more;
-      EXPECT_LE(course.gap, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
-      EXPECT_LE(course.stretch, 1e-6 * w) << "seed " << seed << ", " << steps << " steps a frame";
+      expect_sound(scene, course, 1e-2 / (steps * steps), seed);
+      if (course.gained > swing_of_heavy_ropes / (steps * steps) * course.at_play) ++more;
       ++ran;
     }
   }

@@ -403,20 +403,18 @@ TEST(Strung, KeepsMomentum) {
   EXPECT_LT(least, 2e-3);
 }
 
-/// What the energy rises by is the swing of leapfrog's.
-void expect_sound(unsigned seed, Scene scene) {
+/// At 1, 4 and 16 steps a frame. What the energy rises by is the swing of leapfrog's.
+void expect_sound_at_any_step(unsigned seed, Scene scene) {
   for (const int steps : {1, 4, 16}) {
     scene.steps_per_frame = steps;
-    const Course course = run_measured(scene, 1.2);
-    const double w = scene.cables[0].half_width;
-    EXPECT_LE(course.gained, 2e-4 * course.at_play) << seed << ", " << steps;
-    EXPECT_LE(course.gap, 1e-6 * w) << seed << ", " << steps;
-    EXPECT_LE(course.stretch, 1e-6 * w) << seed << ", " << steps;
+    expect_sound(scene, run_measured(scene, 1.2), 2e-4, seed);
   }
 }
 
 TEST(RandomStrung, StaysFiniteAndMakesNoEnergy) {
-  for (unsigned seed = 0; seed < seeds_of(60U); ++seed) expect_sound(seed, strung_rope(seed));
+  for (unsigned seed = 0; seed < seeds_of(60U); ++seed) {
+    expect_sound_at_any_step(seed, strung_rope(seed));
+  }
 }
 
 // Nodes that rims hold slip with the rope there.
@@ -428,7 +426,7 @@ TEST(RandomStrung, SlipsOverPegsThatAreFixed) {
       b.kind = BodyKind::fixed;
       b.cable_friction = Random(seed + 5).uniform(0.0, 0.4);
     }
-    expect_sound(seed, scene);
+    expect_sound_at_any_step(seed, scene);
   }
 }
 
