@@ -7,8 +7,8 @@
 
 namespace pinchlab::testing {
 
-/// How far (m) what rests moves in t (s), by its acceleration for a way and a speed (m, m/s): by the
-/// method of Runge and Kutta.
+/// How far (m) what rests moves in t (s), by its acceleration for a way and a speed (m, m/s): by
+/// the method of Runge and Kutta.
 template <class Acceleration>
 double way_from_rest(const Acceleration& acceleration, double t) {
   constexpr int count = 400;
@@ -26,8 +26,8 @@ double way_from_rest(const Acceleration& acceleration, double t) {
 }
 
 /// Runs scene_of(steps) at 1 to 16 steps a frame for 20 frames: the error falls with the square of
-/// the step. Its rope hangs by 0.9 m on the left, and by 0.4 m on the right from the height 0, where
-/// body 1 is; reference.acceleration(left, right, speed) is that to the right.
+/// the step. Its rope hangs by 0.9 m on the left, and on the right, from the height 0 to body 1, by
+/// 0.4 m; reference.acceleration(left, right, speed) is that to the right.
 template <class Reference, class SceneOf>
 void expect_slides_as(const Reference& reference, const SceneOf& scene_of) {
   constexpr double left = 0.9, right = 0.4;  // m
