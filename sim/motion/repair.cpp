@@ -9,6 +9,8 @@
 #include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/solve/active_set.h"
+#include "sim/solve/complementary.h"
+#include "sim/solve/light_bodies.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/rubbing.h"
 #include "sim/touch.h"
@@ -94,6 +96,43 @@ bool go(World& world, Workspace& work, const Part& part, double share, const Vio
   return false;
 }
 
+/// Solves for displacements that make up for what the rows, which are made, miss.
+void find_way(const World& world, Workspace& work, const Part& part) {
+  PartSystem& s = at(work.systems, part.system);
+  SolveScratch& set = work.solve;
+  for (Row& row : s.rows) {
+    if (!is_elastic(world, row)) continue;
+    row.bias = 0.0;  // it resists being stretched, as much as in a step
+    row.compliance /= world.step_length * world.step_length;
+  }
+  s.elastic_ends.clear();  // what slides goes no further than lengths ask for
+  for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
+  for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
+  set.smooth = true;
+  solve_direct(world, work.parts, part, s, set);
+  // On a cable that hardly bends what is missed and round-off are much alike to doubles.
+  if (set.contradicts || set.left_out) solve_complementary(s, set);
+  set.smooth = false;
+}
+
+/// How much of that way is gone at once. On so much of a body's radius directions turn by about as
+/// many radians, and rows err by half the square of that, a thousandth.
+double share_to_go(const World& world, std::span<const int> bodies, const PartSystem& s) {
+  constexpr double longest = 0.05;
+  double share = 1.0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const double radius = at(world.bodies, bodies[i]).radius, way = s.velocity[i].head<2>().norm();
+    if (way * share > longest * radius) share = longest * radius / way;
+  }
+  return share;
+}
+
+/// Adds up what rows have borne for `share` of the way.
+void add_impulses(const PartSystem& s, double share, std::vector<double>& sums) {
+  if (sums.size() != s.rows.size()) sums.assign(s.rows.size(), 0.0);
+  for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += share * s.rows[r].impulse;
+}
+
 /// Whether a segment is a pinch that is pressed, or nearly so: no material gets through.
 bool is_closed(const World& world, const CableState& cable, int segment) {
   constexpr double nearly = 1e-3;  // of the half width: a body that rattles is closed
@@ -149,43 +188,34 @@ void refill_pinches(World& world, const Parts& parts) {
 }
 
 bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
-  // Of a body's radius: on it directions turn by about as many radians, and rows err by half the
-  // square of that, a thousandth.
-  constexpr double longest = 0.05;
   PartSystem& s = at(work.systems, part.system);
   TimeSpan t;
   t.length = t.repair = t.kick = 1.0;
   Stopwatch untimed(nullptr);
   bool any = false, met = false;
+  work.solve.repaired_by.clear();
   for (int k = 0; k < most_repairs; ++k) {
     std::fill(s.free_velocity.begin(), s.free_velocity.end(), Eigen::Vector3d::Zero());
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     const Violation before = violation(world, s);
     met = before.most() <= s.reach;
     if (met) break;
-    for (Row& row : s.rows) {
-      if (!is_elastic(world, row)) continue;
-      row.bias = 0.0;  // it resists being stretched, as much as in a step
-      row.compliance /= world.step_length * world.step_length;
+    find_way(world, work, part);
+    const double share = share_to_go(world, bodies_of(work.parts, part), s);
+    if (!go(world, work, part, share, before)) {
+      // Bodies with corners turn otherwise: once more as if no span did.
+      if (work.solve.repaired_by.empty()) break;
+      work.solve.repaired_by.clear();
+      release_light_bodies(s);
+      continue;
     }
-    s.elastic_ends.clear();  // what slides goes no further than lengths ask for
-    for (Friction& friction : s.frictions) friction.dropped = friction.normal >= 0;
-    for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
-    work.solve.smooth = true;
-    solve_direct(world, work.parts, part, s, work.solve);
-    work.solve.smooth = false;
-    double share = 1.0;
-    const std::span<const int> bodies = bodies_of(work.parts, part);
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const double radius = at(world.bodies, bodies[i]).radius,
-                   way = s.velocity[i].head<2>().norm();
-      if (way * share > longest * radius) share = longest * radius / way;
-    }
-    if (!go(world, work, part, share, before)) break;
     any = true;
     // The next step of Newton's method is from here.
     for (const int c : contacts_of(work.parts, part)) measure(world, at(world.contacts, c));
+    add_impulses(s, share, work.solve.repaired_by);
+    steady_for_repair(world, work.parts, part, work.solve.repaired_by, s);
   }
+  release_light_bodies(s);
   if (!met) ++world.diagnostics.fallbacks;
   return any;
 }

@@ -12,6 +12,7 @@
 #include "sim/solve/ordering.h"
 #include "sim/solve/rubbing.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/solve/sweeps.h"
 #include "sim/solve/system.h"
 
 namespace pinchlab {
@@ -313,8 +314,9 @@ bool solve_for_rows(PartSystem& s, SolveScratch& set) {
   return true;
 }
 
-/// Bounds friction anew for the states that there are; whether all of it stays as it was.
-bool bounds_stand(PartSystem& s, SolveScratch& set) {
+/// Bounds friction anew for the states that there are, no higher than now with `lowers`; whether
+/// all of it stays as it was.
+bool bounds_stand(PartSystem& s, SolveScratch& set, bool lowers) {
   std::vector<double>& before = set.bounds;
   const auto list = [&s](auto take) {
     for (const Friction& friction : s.frictions) {
@@ -327,6 +329,11 @@ bool bounds_stand(PartSystem& s, SolveScratch& set) {
   bound_friction(s, set);
   clamp_pinches(s);
   std::size_t k = 0;
+  for (Friction& friction : s.frictions) {
+    const double bound = before[k++];
+    if (lowers && bound >= 0.0) friction.bound = std::min(friction.bound, bound);
+  }
+  k = 0;
   bool same = true;
   list([&](double bound) { same = same && bound == before[k++]; });
   return same;
@@ -345,11 +352,14 @@ bool presses_others(PartSystem& s, SolveScratch& set) {
 
 /// Solves for all states at once; whether it has.
 bool solve_for_all(PartSystem& s, SolveScratch& set) {
-  constexpr int most_bounds = 6;  // of friction, which each solution may change
+  // Of friction, which each solution may change. That of slack cable in a pinch has another bound
+  // than that of taut cable, and where neither makes of the cable what it is for the lower holds.
+  constexpr int most_bounds = 6, before_lowering = 2;
   for (int k = 0; k < most_bounds; ++k) {
     if (!solve_complementary(s, set)) return false;
-    const bool stand = bounds_stand(s, set);
+    const bool stand = bounds_stand(s, set, k >= before_lowering);
     if (presses_others(s, set) || !stand) continue;
+    if (set.left_out) return true;
     // What these states have for a solution is exact, but may be another where there are several.
     solve_for_states(s, set);
     check(s, set);
@@ -416,53 +426,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
   return false;
 }
 
-/// Impulses below zero are within round-off of it.
-void clear_negative(PartSystem& s) {
-  for (Row& row : s.rows) {
-    if (is_unilateral(row)) row.impulse = std::max(row.impulse, 0.0);
-  }
-}
-
 }  // namespace
-
-void sweep_rows(PartSystem& s, SolveScratch& set) {
-  set.direct = set.by_dual = false;
-  set.swept = true;
-  clear_negative(s);
-  for (Run& run : set.capstan.runs) run.speed = 0.0;
-  apply_impulses(s);
-  // A fallback, which is told: it is to be finite and to make no energy, rather than right. With
-  // each sweep a row's impulse reaches the next one at least.
-  constexpr int sweeps = 200;
-  for (int k = 0; k < sweeps; ++k) {
-    for (std::size_t r = 0; r < s.rows.size(); ++r) {
-      Row& row = s.rows[r];
-      if (row.diagonal == 0.0 || row.idle) continue;
-      double least = row.clamped ? -infinity : 0.0, most = infinity;
-      if (is_friction(row)) {
-        const Friction& friction = at(s.frictions, row.friction);
-        const double force = friction.normal >= 0 ? at(s.rows, friction.normal).impulse : infinity;
-        most = friction.dropped ? 0.0 : most_friction(friction.bound, force);
-        least = -most;
-      } else if (row.kind == RowKind::sleeve_rub) {
-        const Bounds bounds = bounds_of_rubbing(s, row);
-        least = bounds.least;
-        most = bounds.most;
-      }
-      const double before = row.impulse;
-      const double w = row_speed(s, r) + row.compliance * before;
-      row.impulse = std::clamp(before - w / (row.diagonal + row.compliance), least, most);
-      push(s, r, row.impulse - before);
-    }
-  }
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Row& row = s.rows[r];
-    row.speed = row_speed(s, r);
-    if (!is_friction(row)) row.on = row.clamped || row.impulse > 0.0;
-    if (row.kind != RowKind::sleeve_rub) continue;
-    row.slip = row.speed > 0.0 ? Slip::forward : row.speed < 0.0 ? Slip::backward : Slip::stick;
-  }
-}
 
 bool solve_direct(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                   SolveScratch& set) {

@@ -33,9 +33,4 @@ bool solve_direct(const World& world, const Parts& parts, const Part& part, Part
 bool solve_again(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                  SolveScratch& scratch);
 
-/// Projected Gauss-Seidel from the present impulses: what is done when friction makes the states
-/// cycle. Sliding runs are held for this step; every impulse stays inside its bounds, so no energy
-/// comes in.
-void sweep_rows(PartSystem& system, SolveScratch& scratch);
-
 }  // namespace pinchlab

@@ -22,25 +22,15 @@ bool is_bounded(const Friction& friction) {
          !friction.frozen && friction.repeats < 0;
 }
 
-/// m/s that row r gains a N s on row q.
-double coupling(const PartSystem& s, std::size_t r, std::size_t q) {
-  const RowBodies& row = s.bodies[r];
-  const RowResponse& other = s.responses[q];
-  const ThirdBody *third = third_of(s, r), *other_third = third_of(s, q);
-  double gained = 0.0;
-  const auto meet = [&gained](int place, const Eigen::Vector3d& j, int other_place,
-                              const Eigen::Vector3d& response) {
-    if (place == other_place) gained += dot(j, response);
-  };
-  const auto see = [&](int place, const Eigen::Vector3d& j) {
-    meet(place, j, other.a, other.ra);
-    meet(place, j, other.b, other.rb);
-    if (other_third) meet(place, j, other_third->place, other_third->response);
-  };
-  see(row.a, row.ja);
-  see(row.b, row.jb);
-  if (third) see(third->place, third->j);
-  return gained;
+/// What an impulse of 1 N s on what a row sees of a body does to its velocity.
+ExtendedVelocity response(const Mobility& m, const Eigen::Vector3d& j) {
+  const Extended x = j.x(), y = j.y(), turning = j.z();
+  return {m.xx * x + m.xy * y + m.xz * turning, m.xy * x + m.yy * y + m.yz * turning,
+          m.xz * x + m.yz * y + m.angular * turning};
+}
+
+Extended dot(const Eigen::Vector3d& j, const ExtendedVelocity& v) {
+  return j.x() * v.x + j.y() * v.y + j.z() * v.turning;
 }
 
 /// A power of two near 1 / sqrt(ratio), so that units of length and mass change no digit.
@@ -51,6 +41,44 @@ double unit_of(double ratio) {
 }
 
 }  // namespace
+
+/// m/s that a row gains by a N s on the other.
+Extended Assembly::coupling(int row, int other) const {
+  Extended gained;
+  for_bodies(other, [&](int place, const Eigen::Vector3d& pushed) {
+    for_bodies(row, [&](int seen_place, const Eigen::Vector3d& seen) {
+      if (seen_place == place) gained += dot(seen, response(at(s_.mobility, place), pushed));
+    });
+  });
+  return gained;
+}
+
+/// Velocities before impulses.
+void Assembly::start() {
+  scratch_.velocities.clear();
+  for (const Eigen::Vector3d& v : s_.free_velocity) {
+    scratch_.velocities.push_back({v.x(), v.y(), v.z()});
+  }
+}
+
+void Assembly::push(int row, const Extended& impulse) {
+  for_bodies(row, [&](int place, const Eigen::Vector3d& j) {
+    const ExtendedVelocity gained = response(at(s_.mobility, place), j);
+    ExtendedVelocity& v = at(scratch_.velocities, place);
+    v.x += impulse * gained.x;
+    v.y += impulse * gained.y;
+    v.turning += impulse * gained.turning;
+  });
+}
+
+/// J v + bias (m/s).
+Extended Assembly::speed_of(int row) const {
+  Extended speed = at(s_.rows, row).bias;
+  for_bodies(row, [&](int place, const Eigen::Vector3d& j) {
+    speed += dot(j, at(scratch_.velocities, place));
+  });
+  return speed;
+}
 
 /// Whether the sleeve sticks for this step, whose friction the row is.
 bool Assembly::is_frozen(int rub) const {
@@ -104,8 +132,8 @@ void Assembly::list() {
     }
   }
   const auto gives = [this](int r) { return at(s_.rows, r).diagonal + at(s_.rows, r).compliance; };
-  s_.velocity = s_.free_velocity;
-  const auto speed = [this](int r) { return row_speed(s_, index(r)) - at(s_.rows, r).bias; };
+  start();
+  const auto speed = [this](int r) { return (speed_of(r) - at(s_.rows, r).bias).high; };
   const auto row_key = [&](int r) { return std::tuple(gives(r), speed(r), r); };
   const auto run_key = [&](int k) {
     const int in = at(set_.capstan.runs, k).row_in, out = at(set_.capstan.runs, k).row_out;
@@ -134,7 +162,7 @@ void Assembly::number() {
     at(scratch_.column_of_row, r) = static_cast<int>(scratch_.kinds.size());
     const double unit = unit_of_row(r);
     if (is_friction(row) && is_bounded(at(s_.frictions, row.friction))) {
-      at(scratch_.ways, r) = row_speed(s_, index(r)) < 0.0 ? -1.0 : 1.0;
+      at(scratch_.ways, r) = speed_of(r) < 0.0 ? -1.0 : 1.0;
       append(Unknown::friction, unit);
       append(Unknown::friction_against, unit);
       append(Unknown::sliding, unit);
@@ -211,10 +239,10 @@ void Assembly::assemble() {
     const int column = column_of(r);
     const Row& row = at(s_.rows, r);
     for_shares(r, [&](const Share& e) {
-      at(problem_.q, e.unknown) += scale(e.unknown) * e.coefficient * row_speed(s_, index(r));
+      at(problem_.q, e.unknown) += scale(e.unknown) * e.coefficient * speed_of(r);
     });
     for (const int q : scratch_.rows) {
-      double gained = coupling(s_, index(r), index(q));
+      Extended gained = coupling(r, q);
       if (q == r) gained += row.compliance;
       if (gained == 0.0) continue;
       for_shares(r, [&](const Share& e) {

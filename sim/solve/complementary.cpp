@@ -10,38 +10,83 @@
 
 namespace pinchlab {
 
-/// Nothing that is less than `round_off` (m/s) is missed.
-void Assembly::allow(double round_off) {
-  double least = infinity;
-  for (const double unit : scratch_.units) least = std::min(least, unit);
-  problem_.round_off = least < infinity ? least * round_off : 0.0;
+/// Impulses, velocities and speeds of the unknowns' values.
+void Assembly::find_values() {
+  std::vector<Extended>&impulses = scratch_.impulses, &speeds = scratch_.speeds;
+  greatest_ = 0.0;
+  for (int i = 0; i < problem_.size; ++i) {
+    if (is_impulse(i)) greatest_ = std::max(greatest_, std::abs(at(problem_.z, i).high));
+  }
+  impulses.clear();
+  start();
+  for (int r = 0; index(r) < s_.rows.size(); ++r) {
+    Extended impulse;
+    for_shares(r, [&](const Share& p) { impulse += p.coefficient * value(p.unknown); });
+    impulses.push_back(impulse);
+    push(r, impulse);
+  }
+  speeds.clear();
+  for (int r = 0; index(r) < s_.rows.size(); ++r) {
+    speeds.push_back(speed_of(r) + at(s_.rows, r).compliance * at(impulses, r));
+  }
 }
 
-/// Impulses, velocities and sliding speeds of the unknowns' values.
+/// Gives the system those, and its runs the speeds at which they slide.
 void Assembly::set_values() {
-  for (int r = 0; index(r) < s_.rows.size(); ++r) {
-    double impulse = 0.0;
-    for_shares(r, [&](const Share& p) { impulse += p.coefficient * value(p.unknown); });
-    at(s_.rows, r).impulse = impulse;
-  }
-  apply_impulses(s_);
+  find_values();
   for (std::size_t r = 0; r < s_.rows.size(); ++r) {
-    s_.rows[r].speed = row_speed(s_, r) + s_.rows[r].compliance * s_.rows[r].impulse;
+    s_.rows[r].impulse = static_cast<double>(scratch_.impulses[r]);
+    s_.rows[r].speed = static_cast<double>(scratch_.speeds[r]);
   }
-  for_runs([&](Run& run, int column) { run.speed = value(column) - value(column + 1); });
+  for (std::size_t b = 0; b < s_.velocity.size(); ++b) {
+    const ExtendedVelocity& v = scratch_.velocities[b];
+    s_.velocity[b] = {static_cast<double>(v.x), static_cast<double>(v.y),
+                      static_cast<double>(v.turning)};
+  }
+  for_runs([&](Run& run, int column) {
+    run.speed = static_cast<double>(value(column) - value(column + 1));
+  });
+}
+
+/// Sliding speed over the wrapped body at a middle link's pinch.
+Extended Assembly::sliding_beside(const Row& row) const {
+  const int run = is_friction(row) ? at(s_.frictions, row.friction).run : -1;
+  const int column = run >= 0 ? at(scratch_.column_of_run, run) : -1;
+  return column >= 0 ? value(column) - value(column + 1) : Extended();
+}
+
+/// What friction on a sleeve is at most, one way.
+Extended Assembly::friction_of(const SleevePlace& one, Slip way) {
+  Extended friction = list_friction(s_, one, way, set_.friction_terms);
+  for (const Term& term : set_.friction_terms) {
+    friction += term.coefficient * impulse_of(term.index);
+  }
+  return friction;
+}
+
+/// Tension after a run over which the material slides `way`.
+Extended Assembly::tension_after(const Run& run, int way) const {
+  Extended tension = impulse_of(run.row_in);
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const Passage& passage = at(set_.capstan.passages, k);
+    const SlidingTerms terms = sliding_terms(passage, way);
+    tension = terms.before * tension + terms.pressed * impulse_of(passage.normal) -
+              impulse_of(passage.middle);
+  }
+  return tension;
 }
 
 /// w of all unknowns for those values.
 void Assembly::find_speeds() {
-  std::vector<double>& w = scratch_.w;
-  w.assign(scratch_.kinds.size(), 0.0);
-  const auto see = [&](int row, double speed) {
+  std::vector<Extended>& w = scratch_.w;
+  w.assign(scratch_.kinds.size(), Extended());
+  const auto see = [&](int row, const Extended& speed) {
     for_shares(
         row, [&](const Share& e) { at(w, e.unknown) += scale(e.unknown) * e.coefficient * speed; });
   };
   for (const int r : scratch_.rows) {
     const Row& row = at(s_.rows, r);
-    see(r, row.speed + (is_friction(row) ? run_speed(s_, set_.capstan, row) : 0.0));
+    see(r, at(scratch_.speeds, r) + sliding_beside(row));
     const int column = column_of(r);
     if (at(scratch_.kinds, column) != Unknown::friction) continue;
     const Friction& friction = at(s_.frictions, row.friction);
@@ -50,67 +95,63 @@ void Assembly::find_speeds() {
       at(w, k) += scale(k) * value(sliding);
       at(w, sliding) -= scale(sliding) * value(k);
     }
-    at(w, sliding) += scale(sliding) * friction.bound * at(s_.rows, friction.normal).impulse;
+    at(w, sliding) += scale(sliding) * friction.bound * impulse_of(friction.normal);
   }
   for_sleeves([&](const SleevePlace& one, int column) {
     see(one.rub, value(column + 2) - value(column + 1));
     for (const Slip slip : {Slip::forward, Slip::backward}) {
       const int equation = slip == Slip::forward ? column + 1 : column + 2;
-      at(w, equation) = scale(equation) * sign(slip) *
-                        (at(s_.rows, one.rub).impulse + friction_of(s_, one, slip));
+      at(w, equation) =
+          scale(equation) * sign(slip) * (impulse_of(one.rub) + friction_of(one, slip));
     }
   });
   for_runs([&](const Run& run, int column) {
-    see(run.row_in, -run.speed);
-    see(run.row_out, run.speed);
+    const Extended speed = value(column) - value(column + 1);
+    see(run.row_in, -speed);
+    see(run.row_out, speed);
     for (const int way : {1, -1}) {
-      double limit = at(s_.rows, run.row_in).impulse;
-      for (int k = run.passages_begin; k < run.passages_end; ++k) {
-        const Passage& passage = at(set_.capstan.passages, k);
-        const auto impulse = [this](int r) { return r >= 0 ? at(s_.rows, r).impulse : 0.0; };
-        limit =
-            tension_after(passage, way, limit, impulse(passage.normal), impulse(passage.middle));
-      }
       const int equation = way > 0 ? column : column + 1;
-      at(w, equation) = scale(equation) * way * (limit - at(s_.rows, run.row_out).impulse);
+      at(w, equation) = scale(equation) * way * (tension_after(run, way) - impulse_of(run.row_out));
     }
   });
 }
 
-/// Makes up for what elimination has lost, by the solution's velocities. Whether all conditions
-/// hold within `round_off` (m/s) then.
-bool Assembly::refine(double round_off) {
-  constexpr int times = 2;
-  for (int k = 0; k < times; ++k) {
-    set_values();
-    find_speeds();
-    for (std::size_t i = 0; i < scratch_.w.size(); ++i) {
-      if (problem_.bears[i] == 0) scratch_.w[i] = 0.0;
-    }
-    correct(scratch_.w, problem_);
-  }
-  set_values();
+/// What a condition may miss by round-off, where speeds are known to `round_off` (m/s); an impulse
+/// counts by the speed that it gives its own row.
+double Assembly::allowed(std::size_t unknown, double round_off) const {
+  constexpr double rounding = 1e-10;  // of impulses, which doubles are to hold
+  const double least = round_off * scratch_.units[unknown];
+  return scratch_.kinds[unknown] < Unknown::sliding ? least : least + rounding * greatest_;
+}
+
+/// Whether those values are what was asked for, where all yields by that share: speeds by as much
+/// as that comes to, the laws of friction by round-off at most.
+bool Assembly::holds(double round_off, double share) {
+  find_values();
   find_speeds();
-  constexpr double rounding = 1e-10;  // of impulses, which come by way of a matrix
-  double greatest = 0.0;
-  for (const double z : problem_.z) greatest = std::max(greatest, std::abs(z));
-  bool holds = true;
   for (std::size_t i = 0; i < scratch_.w.size(); ++i) {
-    const double w = scratch_.w[i], z = problem_.z[i];
-    // An impulse counts by the speed that it gives its own row.
-    const double least = round_off * scratch_.units[i], of_impulse = least + rounding * greatest;
-    const double allowed = scratch_.kinds[i] < Unknown::sliding ? least : of_impulse;
-    holds = holds && (problem_.bears[i] != 0 ? std::abs(w) <= allowed : w >= -allowed) &&
-            (problem_.either[i] != 0 || z >= -of_impulse);
+    const Extended& z = problem_.z[i];
+    const double w = (scratch_.w[i] + share * z).high, most = allowed(i, round_off);
+    if (problem_.bears[i] != 0 ? std::abs(w) > most : w < -most) return false;
+    if (problem_.either[i] == 0 && z.high < -most) return false;
+    if (scratch_.kinds[i] >= Unknown::sliding && share * z.high > most) return false;
   }
-  return holds;
+  return true;
+}
+
+/// Whether speeds yield by more than round-off then.
+bool Assembly::gives_way(double round_off, double share) const {
+  for (std::size_t i = 0; i < scratch_.w.size(); ++i) {
+    if (share * std::abs(problem_.z[i].high) > allowed(i, round_off)) return true;
+  }
+  return false;
 }
 
 /// Leaves no pull or push by which its own row's speed changes by less than `round_off` (m/s).
 void Assembly::clear_rounding(double round_off) {
   for (std::size_t i = 0; i < scratch_.kinds.size(); ++i) {
     if (scratch_.kinds[i] != Unknown::unilateral) continue;
-    if (problem_.z[i] <= round_off * scratch_.units[i]) problem_.z[i] = 0.0;
+    if (problem_.z[i].high <= round_off * scratch_.units[i]) problem_.z[i] = 0.0;
   }
 }
 
@@ -129,6 +170,9 @@ void Assembly::set_states() {
     const int column = column_of(r);
     const Unknown kind = at(scratch_.kinds, column);
     if (kind == Unknown::unilateral) {
+      if (row.kind == RowKind::normal && bears(column) && !row.on && row.flipped > 0) {
+        row.returned = true;
+      }
       change(row.on, bears(column), row.flipped);
       row.idle = row.idle && !row.on;
     } else if (kind == Unknown::rubbing) {
@@ -159,10 +203,9 @@ void Assembly::set_states() {
 
 namespace {
 
-/// Whether there is nothing but what the conditions above are of, and no motor: one that winds in
-/// what hardly can give is to stall (motors.h), and would throw that if it were held exactly.
+/// Whether there is nothing but what the conditions above are of.
 bool suits(const PartSystem& s, const SolveScratch& set) {
-  return s.motors.empty() && (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
+  return (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
          std::ranges::none_of(set.capstan.passages,
                               [](const Passage& passage) { return passage.middle_out >= 0; });
 }
@@ -184,14 +227,22 @@ bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
   Assembly assembly(s, set);
   assembly.list();
   assembly.number();
-  // Pivots are about as many as unknowns, and cost the square of their number: of 200 some ten
-  // milliseconds.
+  // Pivots are about as many as unknowns, and cost the square of their number: of 200 some tenths
+  // of a second.
   constexpr std::size_t most_unknowns = 200;
   if (set.complementary.kinds.size() > most_unknowns) return false;
+  Complementarity& problem = set.complementary.problem;
   assembly.assemble();
-  assembly.allow(round_off);
-  if (!solve_complementarity(set.complementary.problem)) return false;
-  return assembly.refine(round_off);
+  problem.yielding = yielding;
+  if (!solve_complementarity(problem)) return false;
+  // What bears then does so without yielding as well, unless it contradicts itself.
+  for (const double share : {0.0, yielding}) {
+    solve_for_bearing(problem, share);
+    if (!assembly.holds(round_off, share)) continue;
+    set.left_out = assembly.gives_way(round_off, share);
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -207,10 +258,14 @@ void take_complementary(PartSystem& s, SolveScratch& set) {
 }
 
 bool solve_complementary(PartSystem& s, SolveScratch& set) {
+  set.left_out = false;
   if (!suits(s, set)) return false;
   const double round_off = s.reach / set.step_length;
-  const bool solved = solve_once(s, set, round_off) ||
-                      (leave_round_off(s, round_off) && solve_once(s, set, round_off));
+  bool solved = solve_once(s, set, round_off);
+  if ((!solved || set.left_out) && leave_round_off(s, round_off)) {
+    set.left_out = false;
+    solved = solve_once(s, set, round_off);
+  }
   if (solved) take_complementary(s, set);
   return solved;
 }

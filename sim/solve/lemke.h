@@ -7,42 +7,46 @@
 // and leaves by complementary pivots. If M is copositive (z'M z >= 0 for z >= 0) the method ends
 // with a solution unless z >= 0 with M z >= 0, z'M z = 0 and q'z < 0 tells that there need be none
 // (Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, 4.4). Ties are resolved
-// lexicographically, so that it does not circle.
+// lexicographically, so that it does not circle. Numbers are extended ones: where rows nearly
+// repeat or contradict one another doubles tell neither that they do not, nor by how much.
 
 #include <vector>
 
 #include "base/at.h"
+#include "sim/solve/extended.h"
 
 namespace pinchlab {
 
 /// A problem and what solve_complementarity finds of it, in storage that is used again.
 struct Complementarity {
   int size = 0;
-  std::vector<double> matrix;  // size x size, one row after another
-  std::vector<double> q;
+  std::vector<Extended> matrix;  // size x size, one row after another
+  std::vector<Extended> q;
   std::vector<char> either;  // of each z: it may have either sign
-  double round_off = 0.0;    // of q: w no further below zero than that are zero
+  double yielding = 0.0;     // added to M's diagonal: what repeats itself shares alike
 
-  std::vector<double> z;
+  std::vector<Extended> z;
   std::vector<char>
       bears;  // of each z: it is one of the unknowns that solve w = 0; if it is 0 too,
               // the problem is degenerate
   // Storage.
-  std::vector<double> tableau;
+  std::vector<Extended> tableau;
   std::vector<int> basis;
 
   /// Starts a problem of that size, of zeros.
   void begin(int count);
 
-  double& entry(int row, int column) { return matrix[index(row) * index(size) + index(column)]; }
+  Extended& entry(int row, int column) { return matrix[index(row) * index(size) + index(column)]; }
 };
 
 /// Whether a solution is found, in `z` and `bears`. What repeats others of those that may have
 /// either sign stays 0. Of scaled problems: diagonals of M of about 1.
 bool solve_complementarity(Complementarity& problem);
 
-/// Adds to `z` what makes up for what the w that are to be zero miss: `missing` has one each, and
-/// zeros. After solve_complementarity.
-void correct(const std::vector<double>& missing, Complementarity& problem);
+/// Gives the z that bear in the solution the values that make their w zero with another `yielding`,
+/// which may contradict their signs. Values come from the matrix itself, by the greatest pivots
+/// that there are, and are right to round-off; those by which the method has come to the solution
+/// may be small. What repeats others stays 0.
+void solve_for_bearing(Complementarity& problem, double yielding);
 
 }  // namespace pinchlab

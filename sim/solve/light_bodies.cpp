@@ -49,13 +49,13 @@ Eigen::Matrix3d masses_of(const BodyProperties& body, const Mobility& mobility) 
   return Eigen::Vector3d(mass, mass, inertia).asDiagonal();
 }
 
-/// Whether the segment counts for the body at its end `link`; `other` is its other end, or null: as
-/// if that stood.
+/// Whether the segment counts for the body at its end `link`, where h^2 T is `pull` (kg m); `other`
+/// is its other end, or null: as if that stood.
 bool note_end(const World& world, const Parts& parts, const Segment& segment, const Link& link,
-              const Link* other, double h, PartSystem& system) {
+              const Link* other, double pull, PartSystem& system) {
   const int body = link.body >= 0 ? mover_of(world, link.body) : -1;
   if (body < 0 || !can_move(at(world.bodies, body))) return false;
-  const double twice = 2.0 * h * h * segment.tension;  // m times the span's share
+  const double twice = 2.0 * pull;  // m times the span's share
   if (!(twice > negligible * at(world.bodies, body).mass * segment.length)) return false;
   const double mass = twice / segment.length;
   std::vector<SpanMass>& masses = system.span_masses;
@@ -110,6 +110,15 @@ void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2
   mobility.xz = mobility.yz = 0.0;
 }
 
+void steady_all(const World& world, std::span<const int> bodies, PartSystem& system) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    Vec2 velocity = system.free_velocity[i].head<2>();
+    steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i], velocity);
+    system.free_velocity[i].head<2>() = velocity;
+    system.mobility_changed = system.mobility_changed || system.span_masses[i].steadied;
+  }
+}
+
 /// Mobilities as they are without spans.
 void restore(const World& world, std::span<const int> bodies, double kick, PartSystem& system) {
   const bool are_new = !system.carried.empty();  // where cables have mass, with each kick
@@ -148,21 +157,34 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
         if (strung && !is_lost(world, wave_at_node(world, cable, number_of(cable, end)))) return;
         const bool followed = follows && !strung && is_node(world, end);
         if (followed && !lost) return;
+        const double pull = kick * kick * segment.tension;
         any =
-            note_end(world, parts, segment, end, followed ? nullptr : &other, kick, system) || any;
+            note_end(world, parts, segment, end, followed ? nullptr : &other, pull, system) || any;
       };
       note(head, tail);
       note(tail, head);
     }
   }
-  if (!any) return false;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Vec2 velocity = system.free_velocity[i].head<2>();
-    steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i], velocity);
-    system.free_velocity[i].head<2>() = velocity;
-    system.mobility_changed = system.mobility_changed || system.span_masses[i].steadied;
+  if (any) steady_all(world, bodies, system);
+  return any;
+}
+
+void steady_for_repair(const World& world, const Parts& parts, const Part& part,
+                       std::span<const double> impulses, PartSystem& system) {
+  release_light_bodies(system);
+  bool any = false;
+  for (std::size_t r = 0; r < system.rows.size(); ++r) {
+    const Row& row = system.rows[r];
+    if (row.kind != RowKind::segment || !(impulses[r] > 0.0)) continue;
+    const CableState& cable = at(world.cables, row.index);
+    const Segment& segment = at(cable.segments, row.item);
+    if (segment.length <= 2.0 * cable.half_width) continue;
+    for (const int link : {previous_link(cable, row.item), row.item}) {
+      const Link& end = at(cable.links, link);
+      any = note_end(world, parts, segment, end, nullptr, impulses[r], system) || any;
+    }
   }
-  return true;
+  if (any) steady_all(world, bodies_of(parts, part), system);
 }
 
 bool gains_by_steadying(const World& world, const Parts& parts, const Part& part,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
+
 namespace pinchlab {
 
 struct Part;
@@ -35,6 +37,13 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
 /// give knows no bound, nor does the mass of what has come upon it, and it throws what strikes it.
 bool gains_by_steadying(const World& world, const Parts& parts, const Part& part,
                         const PartSystem& system);
+
+/// The same for displacements, by which rows have so far had `impulses` (kg m) in all: what makes
+/// sum m d^2 / 2 least under constraints C(d) >= 0 is found by Newton's method with the second
+/// derivative m - p d^2C, to which a span adds p / L across itself. Without it a body in a straight
+/// span, which hardly can shorten that, goes far to and fro across it. Free velocities are zero.
+void steady_for_repair(const World& world, const Parts& parts, const Part& part,
+                       std::span<const double> impulses, PartSystem& system);
 
 /// Gives all of them their own masses and free velocities again, in the same kick.
 void release_light_bodies(PartSystem& system);

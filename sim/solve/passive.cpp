@@ -11,6 +11,7 @@
 #include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/solve_scratch.h"
+#include "sim/solve/sweeps.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -41,16 +42,18 @@ double least_energy(const SolveScratch& set) {
   return rounding * (energy + std::abs(set.dual.energy));
 }
 
-/// Of the bodies' motion before the rows' impulses (kg m/s), at most: every component for itself.
-double momentum(const PartSystem& s) {
-  double sum = 0.0;
+/// Of the bodies' motion before the rows' impulses (J, twice).
+double energy_before(const PartSystem& s) {
+  double energy = 0.0;
+  const auto add = [&energy](double velocity, double mobility) {
+    if (mobility > 0.0) energy += velocity * velocity / mobility;
+  };
   for (std::size_t i = 0; i < s.mobility.size(); ++i) {
-    const Mobility& m = s.mobility[i];
-    const Vec2 v = s.free_velocity[i].head<2>();
-    if (m.xx > 0.0) sum += std::abs(v.x()) / m.xx;
-    if (m.yy > 0.0) sum += std::abs(v.y()) / m.yy;
+    add(s.free_velocity[i].x(), s.mobility[i].xx);
+    add(s.free_velocity[i].y(), s.mobility[i].yy);
+    add(s.free_velocity[i].z(), s.mobility[i].angular);
   }
-  return sum;
+  return energy;
 }
 
 }  // namespace
@@ -78,9 +81,10 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
   // Ten times active_set.cpp's tolerance: what that has let pass makes no energy.
   const double rounding = 1e-11 * fastest + 1e-14 * s.extent / set.step_length;
   if (made <= impulse * rounding + 2.0 * made_up) return false;
-  // Impulses that are nothing but round-off may go with what slides as well as against it.
-  constexpr double residual = 1e-14;  // of the momentum: a hundred units in its last place
-  return !(made <= residual * momentum(s) * fastest);
+  // Impulses that are nothing but round-off may go with what slides as well as against it, and a
+  // row's speed is the difference of its bodies'.
+  constexpr double residual = 1e-14;  // a hundred units in the last place
+  return !(made <= residual * energy_before(s));
 }
 
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& s,

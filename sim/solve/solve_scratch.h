@@ -55,6 +55,11 @@ enum class Unknown : std::int8_t {
   backward,
 };
 
+/// Velocity of a body, to more digits than it is kept with.
+struct ExtendedVelocity {
+  Extended x, y, turning;  // m/s, m/s, rad/s
+};
+
 /// Storage of solve_complementary, which writes all of it.
 struct ComplementaryScratch {
   Complementarity problem;
@@ -66,7 +71,10 @@ struct ComplementaryScratch {
   std::vector<int> rows, runs;     // that take part
   std::vector<double> ways;  // rows: 1, or -1 where the first unknown of friction is against it
   std::vector<int> column_of_run;  // its first unknown, or -1
-  std::vector<double> w;           // of each unknown
+  std::vector<Extended> impulses;  // of rows
+  std::vector<Extended> speeds;    // of rows: w + compliance p
+  std::vector<ExtendedVelocity> velocities;
+  std::vector<Extended> w;  // of each unknown
   std::vector<Term> limit;
 };
 
@@ -115,7 +123,8 @@ struct SolveScratch {
   OrderScratch ordering;
   DualScratch dual;
   ComplementaryScratch complementary;
-  std::vector<double> bounds;  // of frictions, before they are made anew; by bounds_stand
+  std::vector<double> bounds;       // of frictions, before they are made anew; by bounds_stand
+  std::vector<double> repaired_by;  // kg m, of the rows in a repair so far; by repair
 };
 
 }  // namespace pinchlab

@@ -123,7 +123,7 @@ Found find_again(bool heavy) {
         if (!solve_by_guesses(scene, now, part, trial) || s.rows.empty()) continue;
         const std::vector<Eigen::Vector3d> guessed = s.velocity;
         ++found.asked;
-        if (!solve_complementary(s, trial.solve)) continue;
+        if (!solve_complementary(s, trial.solve) || trial.solve.left_out) continue;
         ++found.solved;
         expect_conditions(s, trial.solve, fmt::format("seed {}, step {}", seed, i));
         double apart = 0.0, fastest = 0.0;
