@@ -198,6 +198,18 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
   double late_by = least_clearance(work.events), early_by = least_before(work.events);
   if (!(early_by > 0.0)) early_by = infinity;  // as good as not known
   double tried = length;
+  const auto try_at = [&](double time) {
+    tried = time;
+    const auto known = static_cast<std::ptrdiff_t>(work.events.size());
+    try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
+    // What a correction throws meets what it never would.
+    if (met && work.trial.missed == infinity) {
+      work.events.erase(work.events.begin() + known, work.events.end());
+      try_again(scene, world, work, movers, {tried, 0}, watch);
+      met = false;
+    }
+    met = work.trial.met && met;
+  };
   double least_late = late_by;
   bool was_late = false, was_early = false;  // the trial before
   for (int trial = 0; trial < most_trials; ++trial) {
@@ -220,17 +232,13 @@ double locate_first_event(const Scene& scene, World& world, Workspace& work, con
     const double next = early + std::clamp(share, 0.02, 0.98) * (late - early);
     const double narrow = is_jump_first(work.events) ? 1e-9 : 1e-15;
     if (!(next > early && next < late) || late - early <= narrow * length) break;
-    tried = next;
-    try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
-    met = work.trial.met && met;
+    try_at(next);
   }
   // What jumps is nowhere between: from not yet there it has come to within its reach, and so it
   // has happened then. (A corner that a side has slid over is before one side of it, and then on
   // the other.)
   if (least_clearance(work.events) > 0.5 * aim && least_late < 0.0 && least_late >= -1.0) {
-    tried = late;
-    try_again(scene, world, work, movers, {tried, met ? shake_rounds : 0}, watch);
-    met = work.trial.met && met;
+    try_at(late);
   }
   return tried;
 }

@@ -210,17 +210,12 @@ bool suits(const PartSystem& s, const SolveScratch& set) {
                               [](const Passage& passage) { return passage.middle_out >= 0; });
 }
 
-/// Leaves what rows have missed by no more than `round_off` (m/s): where it contradicts other rows
-/// nothing can make up for it. Whether there is any.
-bool leave_round_off(PartSystem& s, double round_off) {
-  bool any = false;
+/// Leaves what rows have missed by no more than `round_off` (m/s): bodies on a straight span would
+/// be thrown by making up for it.
+void leave_round_off(PartSystem& s, double round_off) {
   for (Row& row : s.rows) {
-    const double made_up = row.bias - row.curved;
-    if (made_up == 0.0 || std::abs(made_up) > round_off) continue;
-    row.bias = row.curved;
-    any = true;
+    if (std::abs(row.bias - row.curved) <= round_off) row.bias = row.curved;
   }
-  return any;
 }
 
 bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
@@ -261,13 +256,10 @@ bool solve_complementary(PartSystem& s, SolveScratch& set) {
   set.left_out = false;
   if (!suits(s, set)) return false;
   const double round_off = s.reach / set.step_length;
-  bool solved = solve_once(s, set, round_off);
-  if ((!solved || set.left_out) && leave_round_off(s, round_off)) {
-    set.left_out = false;
-    solved = solve_once(s, set, round_off);
-  }
-  if (solved) take_complementary(s, set);
-  return solved;
+  leave_round_off(s, round_off);
+  if (!solve_once(s, set, round_off)) return false;
+  take_complementary(s, set);
+  return true;
 }
 
 }  // namespace pinchlab

@@ -27,11 +27,10 @@ struct SolveScratch;
 
 /// Finds a solution: impulses, velocities, states and sliding speeds. Whether it has; conditions
 /// hold to within the part's reach in a step, but for such as contradict one another, which yield
-/// (SolveScratch::left_out). Where round-off of positions contradicts itself it is left as it is
-/// (the rows' biases are without it then). What bears force both ways, or is without a bound, or is
-/// a sleeve's friction, does so if it is on, as it is now. Two laws are no part of this: that of
-/// cable which is pushed on to an arc, and that of a rope which presses its rim one way and not the
-/// other.
+/// (SolveScratch::left_out). Round-off of positions is left as it is (the rows' biases are without
+/// it then). What bears force both ways, or is without a bound, or is a sleeve's friction, does so
+/// if it is on, as it is now. Two laws are no part of this: that of cable which is pushed on to an
+/// arc, and that of a rope which presses its rim one way and not the other.
 bool solve_complementary(PartSystem& system, SolveScratch& scratch);
 
 /// The solution found last once more, after another solve of the same rows.
