@@ -222,8 +222,8 @@ bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
   Assembly assembly(s, set);
   assembly.list();
   assembly.number();
-  // Pivots are about as many as unknowns, and cost the square of their number: of 200 some tenths
-  // of a second.
+  // Pivots are about as many as unknowns, and cost the square of their number: of 200 about a
+  // tenth of a second.
   constexpr std::size_t most_unknowns = 200;
   if (set.complementary.kinds.size() > most_unknowns) return false;
   Complementarity& problem = set.complementary.problem;
