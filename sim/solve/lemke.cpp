@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/solve/lemke.h"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "base/at.h"
 
