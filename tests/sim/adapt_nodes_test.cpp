@@ -10,7 +10,6 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
 #include "sim/diagnostics.h"
-#include "sim/scene_error.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
 #include "tests/sim/random_hanging.h"
@@ -330,12 +329,7 @@ TEST(AdaptNodes, RefuseWhatDoesNotAdapt) {
     scene.bodies.push_back(body("wheel", BodyKind::free, 2.0, 0.0, 0.1));
     scene.cables[0].node_tolerance = 1e-3;
     change(scene);
-    try {
-      spread_nodes(scene);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&scene] { spread_nodes(scene); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_EQ(refusal([](Scene& s) { s.cables[0].end = on(0); }), "");

@@ -12,7 +12,6 @@
 #include "sim/diagnostics.h"
 #include "sim/make_world.h"
 #include "sim/outline.h"
-#include "sim/scene_error.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
@@ -321,12 +320,7 @@ TEST(MassSlip, RefusesWhatItCannot) {
   const auto refusal = [](auto change, const Configuration& configuration) -> std::string {
     Scene scene = slipping_tackle(4, 0.2);
     change(scene);
-    try {
-      make_world(scene, configuration);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&] { make_world(scene, configuration); });
   };
   const auto as_is = [](Scene&) {};
   EXPECT_EQ(refusal(as_is, Method::pinch), "");

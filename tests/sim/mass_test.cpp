@@ -12,7 +12,6 @@
 #include "sim/make_world.h"
 #include "sim/outline.h"
 #include "sim/promises.h"
-#include "sim/scene_error.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
@@ -331,12 +330,7 @@ TEST(Mass, RefuseWhatCannotBe) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = swinging_bob(4);
     change(scene);
-    try {
-      make_world(scene, Method::pinch);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    return refusal_of([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].mass_per_metre = infinity; }).find("a number"),

@@ -249,13 +249,10 @@ TEST(Nodes, RefuseWhatCannotBe) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = catenary(0, 1);
     change(scene);
-    try {
+    return refusal_of([&scene] {
       spread_nodes(scene);
       make_world(scene, Method::pinch);
-    } catch (const SceneError& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].nodes = 1000; }).find("at most 499 nodes fit"),

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "demos/scenes/build.h"
 #include "sim/diagnostics.h"
+#include "sim/scene_error.h"
 #include "sim/step.h"
 #include "sim/world.h"
 
@@ -27,6 +29,17 @@ inline Configuration measured(Method method = Method::pinch) {
   Configuration configuration = method;
   configuration.diagnostics = true;
   return configuration;
+}
+
+/// What SceneError says that `attempt` throws; nothing where it throws none.
+template <class Attempt>
+std::string refusal_of(Attempt attempt) {
+  try {
+    attempt();
+  } catch (const SceneError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 inline void run(const Scene& scene, World& world, int steps) {

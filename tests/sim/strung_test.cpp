@@ -17,7 +17,6 @@
 #include "sim/mirror.h"
 #include "sim/nodes.h"
 #include "sim/outline.h"
-#include "sim/scene_error.h"
 #include "sim/tangent.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
@@ -454,12 +453,7 @@ TEST(Strung, RefusesWhatItCannotHang) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = between_drums(0.4, 40, 4);
     change(scene);  // its nodes follow its bodies: what is added comes behind them
-    try {
-      make_world(scene, Method::pinch);
-    } catch (const SceneError& error) {
-      return error.place + ": " + error.message;
-    }
-    return "";
+    return refusal_of([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   const auto tighten = [](Scene& s) { s.cables[0].slack = 0.0; };
