@@ -102,6 +102,20 @@ void take_up(World& world, int body, const Eigen::Matrix3d& carried,
   push(world, body, carried, sleeves, at_sleeve, on_body(mass * (u - own), z));
 }
 
+/// Those of a link that is no more. Where they have become one, `merged`, that is `before`.
+struct Neighbours {
+  int before = 0, after = 0;
+  bool merged = false;
+};
+Neighbours remove_between(World& world, CableState& cable, int link) {
+  const auto links = static_cast<int>(cable.links.size());
+  remove_link(world, cable, link);
+  const auto left_over = static_cast<int>(cable.links.size());
+  const bool merged = left_over + 2 == links, first_gone = merged && link == links - 1;
+  const int after = link % left_over;
+  return {first_gone ? left_over - 1 : previous_link(cable, after), after, merged};
+}
+
 /// Whether the neighbours of a node's link come to be the ends of a side that slips.
 bool closes_side(const World& world, const CableState& cable, int link) {
   const int before = previous_link(cable, link), after = next_link(cable, link);
@@ -183,13 +197,7 @@ void leave_body(World& world, CableState& cable, int link) {
   const MassedSpan first = span_of(world, cable, index(link));
   const MassedSpan second = span_of(world, cable, index(next_link(cable, link)));
   const Vec2 u = velocity_at(world, cable, link, first.z_b);
-  const auto links = static_cast<int>(cable.links.size());
-  remove_link(world, cable, link);
-  const auto left_over = static_cast<int>(cable.links.size());
-  const bool merged = left_over + 2 == links;  // its neighbours have become one
-  const bool first_gone = merged && link == links - 1;
-  const int after = link % left_over;
-  const int before = first_gone ? left_over - 1 : previous_link(cable, after);
+  const Neighbours now = remove_between(world, cable, link);
   std::vector<Eigen::Matrix3d> carried;
   std::vector<Sleeve> sleeves;
   find_carried(world, carried, sleeves);
@@ -198,9 +206,9 @@ void leave_body(World& world, CableState& cable, int link) {
     const int sleeve = sleeve_at(world, sleeves, number, at_link);
     take_up(world, to, at(carried, to), sleeves, sleeve, 0.5 * cable.density * material, z, u);
   };
-  give(first.a, before, first.z_a, second.material);
+  give(first.a, now.before, first.z_a, second.material);
   if (!sleeves.empty()) find_carried(world, carried, sleeves);  // with new velocities
-  give(second.b, merged ? before : after, second.z_b, first.material);
+  give(second.b, now.merged ? now.before : now.after, second.z_b, first.material);
 }
 
 void join_rim(World& world, CableState& cable, int number, int rim) {
@@ -245,20 +253,16 @@ struct Share {
   double gained() const { return after(0, 0) - before(0, 0); }
 };
 
-}  // namespace
+const Eigen::Matrix3d& mass_of(const Share& share, const std::vector<Eigen::Matrix3d>& carried,
+                               const std::vector<Sleeve>& sleeves) {
+  return share.sleeve < 0 ? at(carried, share.body) : at(sleeves, share.sleeve).mass;
+}
 
-void leave_node(World& world, CableState& cable, int link) {
-  if (closes_side(world, cable, link)) return close_side(world, cable, link);
+/// What is about the node of a link; one where both neighbours are on the same, none of the world.
+std::vector<Share> list_shares(const World& world, const CableState& cable, int link,
+                               const std::vector<Eigen::Matrix3d>& carried,
+                               const std::vector<Sleeve>& sleeves) {
   const auto number = static_cast<int>(&cable - world.cables.data());
-  const int node = at(cable.links, link).body;
-  const Vec2 x = at(world.position, node), u = at(world.velocity, node);
-  std::vector<Eigen::Matrix3d> carried;
-  std::vector<Sleeve> sleeves;
-  find_carried(world, carried, sleeves);
-  const auto mass_of = [&](const Share& share) {
-    return share.sleeve < 0 ? at(carried, share.body) : at(sleeves, share.sleeve).mass;
-  };
-  const double node_mass = at(carried, node)(0, 0);
   const int before = previous_link(cable, link), after = next_link(cable, link);
   std::vector<Share> shares;
   for (const int beside : {before, after}) {
@@ -274,29 +278,35 @@ void leave_node(World& world, CableState& cable, int link) {
       shares[0].joins += share.joins;
       continue;
     }
-    share.before = mass_of(share);
+    share.before = mass_of(share, carried, sleeves);
     share.velocity = motion_of(world, share.body, sleeves, share.sleeve);
     shares.push_back(share);
   }
-  const std::size_t links = cable.links.size();
-  remove_link(world, cable, link);
-  find_carried(world, carried, sleeves);
-  const bool merged = cable.links.size() + 2 == links;  // the neighbours have become one
-  const int now_after = link % static_cast<int>(cable.links.size());
-  const bool first_gone = merged && index(link) == links - 1;
-  const int now_before =
-      first_gone ? static_cast<int>(cable.links.size()) - 1 : previous_link(cable, now_after);
-  const MassedSpan closed = span_of(world, cable, index(now_after));
-  bool alike = true;  // what was a sleeve is one, and what was none
+  return shares;
+}
+
+/// The same when the node at x has gone; whether what was a sleeve is one, and what was none.
+bool note_after(const World& world, const CableState& cable, const Neighbours& now, const Vec2& x,
+                const std::vector<Eigen::Matrix3d>& carried, const std::vector<Sleeve>& sleeves,
+                std::vector<Share>& shares) {
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  const MassedSpan closed = span_of(world, cable, index(now.after));
+  bool alike = true;
   for (Share& share : shares) {
-    const int sleeve =
-        sleeve_at(world, sleeves, number, share.is_head && !merged ? now_after : now_before);
-    alike = alike && (sleeve < 0) == (share.sleeve < 0);
-    share.sleeve = sleeve;
-    share.after = mass_of(share);
-    share.z = merged ? left(Vec2(x - share.pivot)) : share.is_head ? closed.z_b : closed.z_a;
+    const bool was_sleeve = share.sleeve >= 0;
+    share.sleeve =
+        sleeve_at(world, sleeves, number, share.is_head && !now.merged ? now.after : now.before);
+    alike = alike && (share.sleeve >= 0) == was_sleeve;
+    share.after = mass_of(share, carried, sleeves);
+    share.z = now.merged ? left(Vec2(x - share.pivot)) : share.is_head ? closed.z_b : closed.z_a;
   }
-  // What a rim gives off as the cable straightens goes to the other neighbour, as it moves.
+  return alike;
+}
+
+/// Finds the impulses by which the neighbours take up a node of that mass (kg) and velocity, and
+/// what a rim gives off as the cable straightens, which goes to the other one as it moves. Returns
+/// the energy (J) that is lost by them.
+double share_out(const World& world, double node_mass, const Vec2& u, std::vector<Share>& shares) {
   double passed = node_mass;
   Vec2 momentum = node_mass * u;
   for (const Share& share : shares) {
@@ -304,7 +314,7 @@ void leave_node(World& world, CableState& cable, int link) {
     passed -= share.gained();
     momentum -= share.gained() * at_place(share.velocity, share.z);
   }
-  double energy = 0.5 * node_mass * u.squaredNorm();  // J, more than afterwards
+  double energy = 0.5 * node_mass * u.squaredNorm();
   for (Share& share : shares) {
     const Vec2 joined =
         share.gained() < 0.0 ? at_place(share.velocity, share.z) : Vec2(momentum / passed);
@@ -318,8 +328,26 @@ void leave_node(World& world, CableState& cable, int link) {
     energy += 0.5 * share.velocity.dot((own + share.before) * share.velocity);
     energy -= 0.5 * now.dot((own + share.after) * now);
   }
+  return energy;
+}
+
+}  // namespace
+
+void leave_node(World& world, CableState& cable, int link) {
+  if (closes_side(world, cable, link)) return close_side(world, cable, link);
+  const int node = at(cable.links, link).body;
+  const Vec2 x = at(world.position, node), u = at(world.velocity, node);
+  std::vector<Eigen::Matrix3d> carried;
+  std::vector<Sleeve> sleeves;
+  find_carried(world, carried, sleeves);
+  const double node_mass = at(carried, node)(0, 0);
+  std::vector<Share> shares = list_shares(world, cable, link, carried, sleeves);
+  const Neighbours now = remove_between(world, cable, link);
+  find_carried(world, carried, sleeves);
+  const bool alike = note_after(world, cable, now, x, carried, sleeves, shares);
+  const double lost = share_out(world, node_mass, u, shares);
   for (const Share& share : shares) {
-    const bool keeps = alike && energy >= 0.0 && share.sleeve < 0;
+    const bool keeps = alike && lost >= 0.0 && share.sleeve < 0;
     const Vector3d joins = on_body(share.joins * (u - at_place(share.velocity, share.z)), share.z);
     push(world, share.body, at(carried, share.body), sleeves, share.sleeve,
          keeps ? share.impulse : joins);
