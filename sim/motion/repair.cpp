@@ -11,6 +11,7 @@
 #include "sim/solve/active_set.h"
 #include "sim/solve/complementary.h"
 #include "sim/solve/light_bodies.h"
+#include "sim/solve/motors.h"
 #include "sim/solve/rows.h"
 #include "sim/solve/rubbing.h"
 #include "sim/touch.h"
@@ -203,10 +204,13 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     find_way(world, work, part);
     const double share = share_to_go(world, bodies_of(work.parts, part), s);
     if (!go(world, work, part, share, before)) {
-      // Bodies with corners turn otherwise: once more as if no span did.
-      if (work.solve.repaired_by.empty()) break;
-      work.solve.repaired_by.clear();
-      release_light_bodies(s);
+      // Bodies with corners turn otherwise: once more as if no span did. Then, motors give.
+      if (!work.solve.repaired_by.empty()) {
+        work.solve.repaired_by.clear();
+        release_light_bodies(s);
+      } else if (!stall_all(s)) {
+        break;
+      }
       continue;
     }
     any = true;

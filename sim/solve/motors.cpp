@@ -163,6 +163,17 @@ bool change_limited_motors(PartSystem& s) {
   return changed;
 }
 
+bool stall_all(PartSystem& s) {
+  bool any = false;
+  for (Motor& motor : s.motors) {
+    if (motor.state != MotorState::holds && motor.state != MotorState::insists) continue;
+    motor.state = MotorState::stalls;
+    any = true;
+  }
+  if (any) drive(s);
+  return any;
+}
+
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& s,
                    const SolveScratch& set) {
   const bool changed = change_limited_motors(s);

@@ -43,6 +43,9 @@ bool change_limited_motors(PartSystem& system);
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                    const SolveScratch& scratch);
 
+/// Lets all motors that hold a speed leave their bodies to the rows; whether there are any.
+bool stall_all(PartSystem& system);
+
 /// Of what a part's motors do, in one solve. Each has five states (MotorState): eight changes are
 /// more than one goes through, and end a cycle.
 constexpr int most_motor_changes = 8;
