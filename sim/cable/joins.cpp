@@ -107,6 +107,8 @@ struct Neighbours {
   int before = 0, after = 0;
   bool merged = false;
 };
+
+/// Removes the link from between them.
 Neighbours remove_between(World& world, CableState& cable, int link) {
   const auto links = static_cast<int>(cable.links.size());
   remove_link(world, cable, link);

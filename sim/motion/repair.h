@@ -17,8 +17,9 @@ void refill_pinches(World& world, const Parts& parts);
 
 /// Puts right what is too long or too near in a part by moving its bodies, the heavier the less;
 /// their velocities stay. A step of this Newton's method is no longer than a small share of a body,
-/// and one that makes nothing better is taken back: where a constraint has hardly any gradient, its
-/// violation stays, as a fallback. Returns whether anything has been moved.
+/// and one that makes nothing better is taken back. Where no other does, motors let their bodies
+/// turn; where a constraint has hardly any gradient then, its violation stays, as a fallback.
+/// Returns whether anything has been moved.
 bool repair(const Scene& scene, World& world, Workspace& work, Part& part);
 
 }  // namespace pinchlab

@@ -12,6 +12,7 @@
 #include "base/partial_file.h"
 #include "base/read_file.h"
 #include "base/why_not_written.h"
+#include "tests/base/message_of.h"
 #include "tests/base/temporary_folder.h"
 
 namespace pinchlab {

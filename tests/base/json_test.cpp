@@ -4,6 +4,7 @@
 #include "base/input_error.h"
 #include "base/json_object.h"
 #include "base/strict_json.h"
+#include "tests/base/message_of.h"
 #include "tests/base/temporary_folder.h"
 
 namespace pinchlab {

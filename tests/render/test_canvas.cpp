@@ -8,6 +8,7 @@
 
 #include "render/canvas.h"
 #include "render/picture/compose.h"
+#include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {

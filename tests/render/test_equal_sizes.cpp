@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {

@@ -8,6 +8,7 @@
 #include "render/canvas.h"
 #include "render/palette.h"
 #include "render/video.h"
+#include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {

@@ -329,7 +329,7 @@ TEST(AdaptNodes, RefuseWhatDoesNotAdapt) {
     scene.bodies.push_back(body("wheel", BodyKind::free, 2.0, 0.0, 0.1));
     scene.cables[0].node_tolerance = 1e-3;
     change(scene);
-    return refusal_of([&scene] { spread_nodes(scene); });
+    return message_of<SceneError>([&scene] { spread_nodes(scene); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_EQ(refusal([](Scene& s) { s.cables[0].end = on(0); }), "");

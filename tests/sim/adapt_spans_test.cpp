@@ -274,7 +274,7 @@ TEST(AdaptSpans, RefusesWhatDoesNotAdapt) {
     scene.cables[0].nodes = automatic_nodes;
     scene.cables[0].node_tolerance = 1e-3;
     change(scene);
-    return refusal_of([&scene] {
+    return message_of<SceneError>([&scene] {
       spread_nodes(scene);
       make_world(scene, Method::pinch);
     });

@@ -83,7 +83,7 @@ TEST(Outline, OnlyConvexCornersCounterClockwiseAreTaken) {
   const auto refusal = [](const std::vector<Vec2>& corners) -> std::string {
     Scene scene;
     scene.bodies.push_back(polygon("p", BodyKind::free, Vec2::Zero(), corners));
-    return refusal_of([&scene] { make_world(scene, Method::pinch); });
+    return message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal(box_corners(1.0, 1.0)), "");
   EXPECT_NE(refusal({{0, 0}, {3, 0}, {0, 3}}).find("lies at [1, 1]"), std::string::npos);

@@ -314,7 +314,7 @@ TEST(MassSlipOnPolygons, RefusesWhatItCannot) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = rope_over_beam(4, 0.2, 0.9, 0.4, 1.0, 1.0);
     change(scene);
-    return refusal_of([&scene] { make_world(scene, Method::pinch); });
+    return message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_EQ(refusal([](Scene& scene) { scene.bodies[2].cable_friction = infinity; }), "");

@@ -320,7 +320,7 @@ TEST(MassSlip, RefusesWhatItCannot) {
   const auto refusal = [](auto change, const Configuration& configuration) -> std::string {
     Scene scene = slipping_tackle(4, 0.2);
     change(scene);
-    return refusal_of([&] { make_world(scene, configuration); });
+    return message_of<SceneError>([&] { make_world(scene, configuration); });
   };
   const auto as_is = [](Scene&) {};
   EXPECT_EQ(refusal(as_is, Method::pinch), "");

@@ -330,7 +330,7 @@ TEST(Mass, RefuseWhatCannotBe) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = swinging_bob(4);
     change(scene);
-    return refusal_of([&scene] { make_world(scene, Method::pinch); });
+    return message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   EXPECT_NE(refusal([](Scene& s) { s.cables[0].mass_per_metre = infinity; }).find("a number"),

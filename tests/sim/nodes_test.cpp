@@ -249,7 +249,7 @@ TEST(Nodes, RefuseWhatCannotBe) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = catenary(0, 1);
     change(scene);
-    return refusal_of([&scene] {
+    return message_of<SceneError>([&scene] {
       spread_nodes(scene);
       make_world(scene, Method::pinch);
     });

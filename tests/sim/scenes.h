@@ -6,13 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 #include "demos/scenes/build.h"
 #include "sim/diagnostics.h"
 #include "sim/scene_error.h"
 #include "sim/step.h"
 #include "sim/world.h"
+#include "tests/base/message_of.h"
 
 namespace pinchlab::testing {
 
@@ -21,6 +21,7 @@ using build::body;
 using build::cable;
 using build::load_chain;
 using build::on;
+using test::message_of;
 
 constexpr double g = 9.81;  // m/s^2, the default gravity
 
@@ -29,17 +30,6 @@ inline Configuration measured(Method method = Method::pinch) {
   Configuration configuration = method;
   configuration.diagnostics = true;
   return configuration;
-}
-
-/// What SceneError says that `attempt` throws; nothing where it throws none.
-template <class Attempt>
-std::string refusal_of(Attempt attempt) {
-  try {
-    attempt();
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 inline void run(const Scene& scene, World& world, int steps) {

@@ -136,7 +136,7 @@ TEST(StrungLayers, HangsAsBeforeOnceItWasWoundUp) {
 // away.
 TEST(StrungLayers, RefusesPiecesThatAreTooShort) {
   Scene scene = hanging_hoist(true, 180, 4);
-  const std::string text = refusal_of([&scene] {
+  const std::string text = message_of<SceneError>([&scene] {
     spread_nodes(scene);
     make_world(scene, Method::pinch);
   });
@@ -150,7 +150,7 @@ TEST(StrungLayers, RefusesWhatStretches) {
   Scene scene = hanging_hoist(true, 40, 4);
   scene.cables[0].axial_stiffness = 1e5;
   spread_nodes(scene);
-  const std::string text = refusal_of([&scene] { make_world(scene, Method::pinch); });
+  const std::string text = message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
   EXPECT_NE(text.find("stretches cannot lie in layers"), std::string::npos) << text;
 }
 

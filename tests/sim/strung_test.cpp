@@ -453,7 +453,7 @@ TEST(Strung, RefusesWhatItCannotHang) {
   const auto refusal = [](auto change) -> std::string {
     Scene scene = between_drums(0.4, 40, 4);
     change(scene);  // its nodes follow its bodies: what is added comes behind them
-    return refusal_of([&scene] { make_world(scene, Method::pinch); });
+    return message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
   };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   const auto tighten = [](Scene& s) { s.cables[0].slack = 0.0; };

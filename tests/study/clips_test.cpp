@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/base/message_of.h"
 #include "tests/base/temporary_folder.h"
 #include "tests/study/support.h"
 
