@@ -185,25 +185,6 @@ void refuse_impossible_cable_mass(const Cable& cable, const Place& place) {
       "not; leave out its nodes, its axial stiffness or the layers");
 }
 
-/// Sleeves (cable/sleeve.h), where a cable with mass slips, are of discs, about their centres; and
-/// of polygons that stand.
-void refuse_slip_on_polygons(const Scene& scene) {
-  const auto massed = std::ranges::find_if(
-      scene.cables, [](const Cable& cable) { return cable.mass_per_metre != 0.0; });
-  if (massed == scene.cables.end()) return;
-  for (const Body& body : scene.bodies) {
-    const bool is_shape = body.carrier >= 0;
-    const bool moves = !body.corners.empty() && body.kind != BodyKind::fixed;
-    if (body.cable_friction == infinity || (!is_shape && !moves)) continue;
-    throw SceneError(
-        Place{"cables", static_cast<int>(massed - scene.cables.begin())},
-        fmt::format("a cable with mass slips on discs and on polygons that are fixed, "
-                    "and could on body '{}', which is {}; leave out the body's "
-                    "cable_friction, or the cable's mass",
-                    body.name, is_shape ? "a shape of another" : "a polygon that can move"));
-  }
-}
-
 void refuse_impossible_figures_of(const Cable& cable, const Place& place) {
   refuse(!positive(cable.half_width), place, "the half width must be a number above 0");
   refuse(!positive(cable.axial_stiffness) && cable.axial_stiffness != infinity, place,
@@ -365,7 +346,6 @@ void refuse_impossible_figures(const Scene& scene) {
     refuse_impossible_body(scene, static_cast<int>(b));
   }
   for (std::size_t c = 0; c < scene.cables.size(); ++c) refuse_impossible_cable(scene, c);
-  refuse_slip_on_polygons(scene);
   for (std::size_t w = 0; w < scene.walls.size(); ++w) refuse_impossible_wall(scene, w);
   int bodies = 0;
   for (std::size_t i = 0; i < scene.chains.size(); ++i) {

@@ -23,10 +23,9 @@ using Eigen::Vector3d;
 /// Velocities of a body, or of its sleeve `at_sleeve` (-1: the body itself).
 Vector3d motion_of(const World& world, int body, const std::vector<Sleeve>& sleeves,
                    int at_sleeve) {
+  if (at_sleeve >= 0) return at(sleeves, at_sleeve).velocity;
   const Vec2& v = at(world.velocity, body);
-  const double turning =
-      at_sleeve < 0 ? at(world.angular_velocity, body) : at(sleeves, at_sleeve).velocity.z();
-  return {v.x(), v.y(), turning};
+  return {v.x(), v.y(), at(world.angular_velocity, body)};
 }
 
 /// Gives the body, or its sleeve, an impulse (N s, N s, N m s), which it takes up with what it
@@ -34,8 +33,13 @@ Vector3d motion_of(const World& world, int body, const std::vector<Sleeve>& slee
 void push(World& world, int body, const Eigen::Matrix3d& carried,
           const std::vector<Sleeve>& sleeves, int at_sleeve, const Vector3d& impulse) {
   std::vector<int> on_body;
+  std::vector<Eigen::Index> turns;  // which of the velocities below its angle is
+  Eigen::Index count = 3;
   for (std::size_t k = 0; k < sleeves.size(); ++k) {
-    if (sleeves[k].body == body) on_body.push_back(static_cast<int>(k));
+    if (mover_of(world, sleeves[k].body) != body) continue;
+    on_body.push_back(static_cast<int>(k));
+    if (!sleeves[k].goes_on) ++count;
+    turns.push_back(count - 1);
   }
   const BodyProperties& properties = at(world.bodies, body);
   Eigen::Matrix3d own = carried;
@@ -50,20 +54,18 @@ void push(World& world, int body, const Eigen::Matrix3d& carried,
     return;
   }
   // Of the velocities (x, y, angle; angles of sleeves) those that what holds the body leaves free.
-  const auto count = static_cast<Eigen::Index>(3 + on_body.size());
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd given = Eigen::VectorXd::Zero(count);
   all.topLeftCorner<3, 3>() = own;
-  given.head<2>() = impulse.head<2>();
-  if (at_sleeve < 0) given(2) = impulse.z();
+  if (at_sleeve < 0) given.head<3>() = impulse;
   for (std::size_t k = 0; k < on_body.size(); ++k) {
-    const Eigen::Matrix3d& m = at(sleeves, on_body[k]).mass;
-    const auto turning = static_cast<Eigen::Index>(3 + k);
-    all.topLeftCorner<2, 2>() += m.topLeftCorner<2, 2>();
-    all.block<2, 1>(0, turning) += m.topRightCorner<2, 1>();
-    all.block<1, 2>(turning, 0) += m.bottomLeftCorner<1, 2>();
-    all(turning, turning) += m(2, 2);
-    if (on_body[k] == at_sleeve) given(turning) = impulse.z();
+    const Sleeve& sleeve = at(sleeves, on_body[k]);
+    Eigen::MatrixXd sees = Eigen::MatrixXd::Zero(3, count);  // the sleeve of these velocities
+    sees.topLeftCorner<2, 2>().setIdentity();
+    sees.block<2, 1>(0, 2) = left(sleeve.centre);
+    sees(2, turns[k]) = 1.0;
+    all += sees.transpose() * sleeve.mass * sees;
+    if (on_body[k] == at_sleeve) given += sees.transpose() * impulse;
   }
   const auto body_ways = ways_of(properties);
   Eigen::MatrixXd ways = Eigen::MatrixXd::Zero(count, body_ways.cols() + count - 3);
@@ -77,7 +79,7 @@ void push(World& world, int body, const Eigen::Matrix3d& carried,
     const Sleeve& sleeve = at(sleeves, on_body[k]);
     CableState& cable = at(world.cables, sleeve.cable);
     const Link& link = at(cable.links, sleeve.first);
-    const double faster = change(static_cast<Eigen::Index>(3 + k)) - change.z();
+    const double faster = change(turns[k]) - change.z();
     set_slip(cable, sleeve, link.slip, link.slip_speed + faster * link.signed_radius());
   }
 }
@@ -125,6 +127,43 @@ bool closes_side(const World& world, const CableState& cable, int link) {
          is_slipping_side(world, at(cable.links, before), at(cable.links, after));
 }
 
+/// What slips is to have this impulse besides; at the corner that it was at, on another sleeve.
+struct Surplus {
+  int corner = -1;
+  Vec2 centre = Vec2::Zero();
+  Vector3d impulse = Vector3d::Zero();
+};
+
+/// Lets all that slips as one with sleeve k slip at `speed`. Appends the momentum that it loses.
+void slip_alike(CableState& cable, const std::vector<Sleeve>& sleeves, int k, double speed,
+                std::vector<Surplus>& lost) {
+  for (int i = head_of(sleeves, k); i <= tail_of(sleeves, k); ++i) {
+    const Sleeve& sleeve = at(sleeves, i);
+    const Link& link = at(cable.links, sleeve.first);
+    const double slower = (link.slip_speed - speed) / link.signed_radius();
+    lost.push_back({link.corner, sleeve.centre, slower * sleeve.mass.col(2)});
+    set_slip(cable, sleeve, link.slip, speed);
+  }
+}
+
+/// Gives a body, or what lies there of the sleeves that slip as one with k (-1: nothing slips),
+/// what was to be given at a corner.
+void give_back(World& world, int body, const Eigen::Matrix3d& carried,
+               const std::vector<Sleeve>& sleeves, int k, const Surplus& lost) {
+  if (k < 0) {
+    const Vec2 force = lost.impulse.head<2>();
+    const Vector3d turned = on_body(force, left(lost.centre)) + Vector3d(0, 0, lost.impulse.z());
+    return push(world, body, carried, sleeves, -1, turned);
+  }
+  int there = head_of(sleeves, k);
+  const auto corner = [&](int i) {
+    const Sleeve& sleeve = at(sleeves, i);
+    return at(at(world.cables, sleeve.cable).links, sleeve.first).corner;
+  };
+  while (there < tail_of(sleeves, k) && corner(there) != lost.corner) ++there;
+  push(world, body, carried, sleeves, there, lost.impulse);
+}
+
 /// Removes such a link. What slips on either side of it goes on as one along the side, with the
 /// momentum of both, and that of a node which is not moored.
 void close_side(World& world, CableState& cable, int link) {
@@ -133,27 +172,40 @@ void close_side(World& world, CableState& cable, int link) {
   std::vector<Sleeve> sleeves;
   find_carried(world, carried, sleeves);
   const int before = previous_link(cable, link), after = next_link(cable, link);
-  const Link& node = at(cable.links, link);
-  const Vec2 side =
-      link_centre(world, at(cable.links, after)) - link_centre(world, at(cable.links, before));
-  double all = node.moored ? 0.0 : at(carried, node.body)(0, 0);  // kg
-  double momentum = all * at(world.velocity, node.body).dot(side.normalized());
-  bool fast = false;
-  for (const int beside : {before, after}) {
-    const int k = sleeve_at(world, sleeves, number, beside);
-    fast = fast || k < 0;
-    if (k < 0) continue;
-    const double p = at(cable.links, beside).signed_radius();
-    const double slips = at(sleeves, k).mass(2, 2) / (p * p);
-    all += slips;
-    momentum += slips * at(cable.links, beside).slip_speed;
+  const Link node = at(cable.links, link);
+  const Vec2 x = link_centre(world, node);
+  const Vec2 u = node.moored ? Vec2::Zero() : at(world.velocity, node.body);
+  const auto half = [&](int segment) {  // kg, which goes to the other end of the side
+    const double material = std::max(material_of_span(cable, index(segment)), 0.0);
+    return node.moored ? 0.0 : 0.5 * cable.density * material;
+  };
+  const double to_after = half(link), to_before = half(after);
+  const int at_before = sleeve_at(world, sleeves, number, before);
+  const int at_after = sleeve_at(world, sleeves, number, after);
+  const bool slips = at_before >= 0 && at_after >= 0;
+  const double speed = slips ? at(cable.links, before).slip_speed : 0.0;
+  std::vector<Surplus> lost;
+  for (const int k : {at_before, at_after}) {
+    if (k >= 0) slip_alike(cable, sleeves, k, speed, lost);
   }
-  for (const int beside : {before, after}) {
-    const int k = sleeve_at(world, sleeves, number, beside);
-    if (k < 0) continue;
-    set_slip(cable, at(sleeves, k), at(cable.links, beside).slip, fast ? 0.0 : momentum / all);
+  const int body = mover_of(world, at(cable.links, before).body);
+  const Neighbours now = remove_between(world, cable, link);
+  find_carried(world, carried, sleeves);
+  const int k = sleeve_at(world, sleeves, number, now.before);
+  for (const Surplus& one : lost) give_back(world, body, at(carried, body), sleeves, k, one);
+  if (node.moored || (k < 0 && !is_mobile(at(world.bodies, body)))) return;
+  const auto take = [&](int beside, double mass, const Vec2& z) {
+    find_carried(world, carried, sleeves);  // with new velocities
+    const int sleeve = sleeve_at(world, sleeves, number, beside);
+    take_up(world, body, at(carried, body), sleeves, sleeve, mass, z, u);
+  };
+  if (now.merged) {
+    const Vec2 z = left(Vec2(x - pivot_of_link(world, cable, now.before)));
+    return take(now.before, to_before + to_after, z);
   }
-  remove_link(world, cable, link);
+  const MassedSpan side = span_of(world, cable, index(now.after));
+  take(now.before, to_before, side.z_a);
+  take(now.after, to_after, side.z_b);
 }
 
 }  // namespace
@@ -237,7 +289,7 @@ void join_rim(World& world, CableState& cable, int number, int rim) {
   if (sleeve < 0 && !is_mobile(at(world.bodies, mover))) return;
   const double mass = end_mass(span_of(world, cable, index(number))) +
                       end_mass(span_of(world, cable, index(next_link(cable, number))));
-  const Vec2 z = left(Vec2(x - pivot_of_link(world, link)));
+  const Vec2 z = left(Vec2(x - pivot_of_link(world, cable, number)));
   take_up(world, mover, at(carried, mover), sleeves, sleeve, mass, z, u);
 }
 
@@ -275,7 +327,7 @@ std::vector<Share> list_shares(const World& world, const CableState& cable, int 
     share.sleeve = sleeve_at(world, sleeves, number, beside);
     share.is_head = beside == after;
     if (index(share.body) == world.bodies.size()) continue;
-    share.pivot = pivot_of_link(world, at(cable.links, beside));
+    share.pivot = pivot_of_link(world, cable, beside);
     if (!shares.empty() && shares[0].body == share.body && shares[0].sleeve == share.sleeve) {
       shares[0].joins += share.joins;
       continue;

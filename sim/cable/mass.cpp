@@ -29,8 +29,10 @@ Vec2 centre_of(const World& world, const Link& link) {
 }
 
 /// The same from what it turns about.
-Vec2 turning_centre(const World& world, const Link& link) {
-  return link.body < 0 ? link.offset : link_centre(world, link) - pivot_of_link(world, link);
+Vec2 turning_centre(const World& world, const CableState& cable, int number) {
+  const Link& link = at(cable.links, number);
+  if (link.body < 0) return link.offset;
+  return link_centre(world, link) - pivot_of_link(world, cable, number);
 }
 
 /// Of a span that leaves a drum which fills; or lies between that and the cable's end on it, where
@@ -53,23 +55,23 @@ void let_fill(const Link& from, const Link& to, MassedSpan& span) {
 }  // namespace
 
 MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
-  const Link& from = at(cable.links, previous_link(cable, static_cast<int>(i)));
-  const Link& to = cable.links[i];
+  const int head = static_cast<int>(i), tail = previous_link(cable, head);
+  const Link &from = at(cable.links, tail), &to = cable.links[i];
   const Segment& segment = cable.segments[i];
   MassedSpan span;
   span.a = mover_or_world(world, from);
   span.b = mover_or_world(world, to);
   span.p_a = from.signed_radius();
   span.p_b = to.signed_radius();
-  span.centre_a = turning_centre(world, from);
-  span.centre_b = turning_centre(world, to);
+  span.centre_a = turning_centre(world, cable, tail);
+  span.centre_b = turning_centre(world, cable, head);
   span.direction = segment.direction;
   span.z_a = left(span.centre_a) + span.p_a * span.direction;
   span.z_b = left(span.centre_b) + span.p_b * span.direction;
   span.pinched = segment.pinched;
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
   if (!cable.rims.empty()) {
-    const Rim& before = at(cable.rims, previous_link(cable, static_cast<int>(i)));
+    const Rim& before = at(cable.rims, tail);
     const double taken = cable.rims[i].slope;  // now, as the interval begins
     span.laying_a = laying_at(before, true, taken);
     span.laying_b = laying_at(cable.rims[i], false, taken);
@@ -78,7 +80,7 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.length = segment.length;
   span.material = std::max(material_of_span(cable, i), 0.0);
   // All of what a side bears is a sleeve's: arc_that_turns.
-  span.density = is_slipping_side(world, from, to) ? 0.0 : cable.density;
+  span.density = is_side_of_sleeve(world, from, to) ? 0.0 : cable.density;
   return span;
 }
 
@@ -151,9 +153,9 @@ MassedArc arc_of(const World& world, const CableState& cable, std::size_t i, con
 /// What lies on link i as the motion needs it: with the side before it, where that slips.
 MassedArc arc_that_turns(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  MassedArc arc = arc_of(world, cable, i, turning_centre(world, link));
+  MassedArc arc = arc_of(world, cable, i, turning_centre(world, cable, static_cast<int>(i)));
   const int before = previous_link(cable, static_cast<int>(i));
-  if (before < 0 || !is_slipping_side(world, at(cable.links, before), link)) return arc;
+  if (before < 0 || !is_side_of_sleeve(world, at(cable.links, before), link)) return arc;
   const double p = link.signed_radius();
   const double mass = cable.density * std::max(material_of_span(cable, i), 0.0);
   arc.mass += mass;
@@ -435,13 +437,6 @@ void add_weight_rates(const CableMasses& masses, const Vec2& gravity, double fac
   }
 }
 
-Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z) {
-  const int body = mover_or_world(world, at(cable.links, link));
-  if (index(body) == world.bodies.size()) return Vec2::Zero();
-  const auto number = static_cast<int>(&cable - world.cables.data());
-  return at(world.velocity, body) + turning_at(world, number, link) * z;
-}
-
 Flow flow_at(const World& world, const CableState& cable, std::size_t segment, bool at_head) {
   const int head = static_cast<int>(segment);
   const int number = at_head ? head : previous_link(cable, head);
@@ -487,10 +482,16 @@ Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& m
   return inverse_on(ways_of(body), matrix);
 }
 
-Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix) {
+Eigen::Matrix3d inverse_for_sleeve(const World& world, const Sleeve& sleeve,
+                                   const Eigen::Matrix3d& matrix) {
+  const BodyProperties& mover = at(world.bodies, mover_of(world, sleeve.body));
   Ways ways(3, 0);
-  add_ways_of_centre(body, ways);
-  add_way(Vector3d::UnitZ(), ways);
+  if (is_carried_round(world, sleeve)) {
+    ways = Eigen::Matrix3d::Identity();
+  } else {
+    add_ways_of_centre(mover, ways);
+    add_way(Vector3d::UnitZ(), ways);
+  }
   return inverse_on(ways, matrix);
 }
 

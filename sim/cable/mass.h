@@ -129,8 +129,9 @@ double potential_energy(const World& world, const CableState& cable, const Vec2&
 /// Inverse of a matrix for (x, y, angle) on what the body can do: move, move along its rail, turn.
 Eigen::Matrix3d inverse_for(const BodyProperties& body, const Eigen::Matrix3d& matrix);
 
-/// The same on what a sleeve on the body can do: it turns whatever holds the body.
-Eigen::Matrix3d inverse_for_sleeve(const BodyProperties& body, const Eigen::Matrix3d& matrix);
+/// The same on what a sleeve can do: it turns whatever holds its body.
+Eigen::Matrix3d inverse_for_sleeve(const World& world, const Sleeve& sleeve,
+                                   const Eigen::Matrix3d& matrix);
 
 /// Velocity of a place z = left(x), x off a body's centre (m/s), and what a force or an impulse
 /// there is to the body.
@@ -159,9 +160,6 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t segm
 /// What the body can do: move, move along its rail, turn. One a column.
 using Ways = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3>;
 Ways ways_of(const BodyProperties& body);
-
-/// Of the place z of what lies at a link of the cable (m/s).
-Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z);
 
 /// How the material at an end of a segment moves (m/s): with what holds the link's circle, and
 /// along the cable by the circle's turning.

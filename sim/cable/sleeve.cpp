@@ -19,6 +19,15 @@ bool lies_loose(const World& world, const Link& link) {
          at(world.bodies, link.body).cable_friction < infinity;
 }
 
+/// The link beyond a pinch or a side before this one, where what lies at it slips there as well;
+/// else -1.
+int part_before(const World& world, const CableState& cable, int link) {
+  const int before = previous_link(cable, link);
+  if (before < 0) return -1;
+  if (is_slipping_side(world, at(cable.links, before), at(cable.links, link))) return before;
+  return at(cable.links, before).pinch_middle ? previous_link(cable, before) : -1;
+}
+
 /// The last link of what begins with `first`: beyond each pinch, and along each side, it goes on.
 int last_part(const World& world, const CableState& cable, int first) {
   int last = first;
@@ -46,18 +55,22 @@ bool is_fast(const CableState& cable, int first, int last) {
          (after >= 0 && is_fast(at(cable.links, after), at(cable.links, last)));
 }
 
-/// Calls `visit(first, last)` for each sleeve of a cable.
+/// Calls `visit(first, last, goes_on)` for each sleeve of a cable.
 template <class Visit>
 void each_sleeve(const World& world, const CableState& cable, Visit visit) {
   for (int i = 0; index(i) < cable.links.size(); ++i) {
-    const int before = previous_link(cable, i);
-    const Link& link = at(cable.links, i);
-    if (!lies_loose(world, link)) continue;
-    const bool goes_on = before >= 0 && (at(cable.links, before).pinch_middle ||
-                                         is_slipping_side(world, at(cable.links, before), link));
-    if (goes_on) continue;  // from there
+    if (!lies_loose(world, at(cable.links, i))) continue;
+    if (part_before(world, cable, i) >= 0) continue;  // from there
     const int last = last_part(world, cable, i);
-    if (!is_fast(cable, i, last)) visit(i, last);
+    if (is_fast(cable, i, last)) continue;
+    int first = i;
+    for (int link = i; link != last; link = next_link(cable, link)) {
+      const Link &from = at(cable.links, link), &to = at(cable.links, next_link(cable, link));
+      if (!is_slipping_side(world, from, to) || is_side_of_sleeve(world, from, to)) continue;
+      visit(first, link, first != i);
+      first = next_link(cable, link);
+    }
+    visit(first, last, first != i);
   }
 }
 
@@ -80,21 +93,30 @@ bool is_slipping_side(const World& world, const Link& from, const Link& to) {
          lies_loose(world, to);
 }
 
+bool is_side_of_sleeve(const World& world, const Link& from, const Link& to) {
+  return is_slipping_side(world, from, to) &&
+         at(world.bodies, mover_of(world, to.body)).kind == BodyKind::fixed;
+}
+
 bool has_sleeves(const World& world, const CableState& cable) {
   bool any = false;
-  if (is_massed(cable)) each_sleeve(world, cable, [&any](int, int) { any = true; });
+  if (is_massed(cable)) each_sleeve(world, cable, [&any](int, int, bool) { any = true; });
   return any;
 }
 
 void list_sleeves(const World& world, int number, std::vector<Sleeve>& to) {
   const CableState& cable = at(world.cables, number);
   if (!is_massed(cable)) return;
-  each_sleeve(world, cable, [&](int first, int last) {
+  each_sleeve(world, cable, [&](int first, int last, bool goes_on) {
     Sleeve& sleeve = to.emplace_back();
     sleeve.cable = number;
     sleeve.first = first;
     sleeve.last = last;
-    sleeve.body = at(cable.links, first).body;
+    sleeve.goes_on = goes_on;
+    const Link& link = at(cable.links, first);
+    sleeve.body = link.body;
+    if (link.corner < 0 && mover_of(world, link.body) == link.body) return;
+    sleeve.centre = link_centre(world, link) - at(world.position, mover_of(world, link.body));
   });
 }
 
@@ -132,13 +154,57 @@ double turning_at(const World& world, int cable, int number) {
   return lies_loose(world, link) ? turning + link.slip_speed / link.signed_radius() : turning;
 }
 
-Vec2 pivot_of_link(const World& world, const Link& link) {
-  const bool at_corner = link.corner >= 0 && at(world.bodies, link.body).kind == BodyKind::fixed;
-  return at_corner ? place_of_point(world, link.body, link.corner) : pivot_of(world, link.body);
+int tail_of(const std::vector<Sleeve>& sleeves, int k) {
+  while (index(k + 1) < sleeves.size() && sleeves[index(k + 1)].goes_on) ++k;
+  return k;
+}
+
+int head_of(const std::vector<Sleeve>& sleeves, int k) {
+  while (at(sleeves, k).goes_on) --k;
+  return k;
+}
+
+bool is_on_sleeve(const World& world, const CableState& cable, int link) {
+  if (!is_massed(cable)) return false;
+  if (at(cable.links, link).moored) link = rim_of(cable, link);
+  if (!lies_loose(world, at(cable.links, link))) return false;
+  int first = link;
+  for (std::size_t seen = 0; seen < cable.links.size(); ++seen) {
+    const int before = part_before(world, cable, first);
+    if (before < 0) break;
+    first = before;
+  }
+  return !is_fast(cable, first, last_part(world, cable, first));
+}
+
+Vec2 pivot_of_link(const World& world, const CableState& cable, int number) {
+  const Link& link = at(cable.links, number);
+  const int mover = mover_of(world, link.body);
+  if (link.corner < 0 && mover == link.body) return at(world.position, mover);
+  // Of what is fixed all but a sleeve stands.
+  const bool fixed = link.corner >= 0 && at(world.bodies, mover).kind == BodyKind::fixed;
+  if (!fixed && !is_on_sleeve(world, cable, number)) return at(world.position, mover);
+  return place_of_point(world, link.body, link.corner);
+}
+
+Vec2 velocity_at(const World& world, const CableState& cable, int link, const Vec2& z) {
+  const int body = mover_or_world(world, at(cable.links, link));
+  if (index(body) == world.bodies.size()) return Vec2::Zero();
+  const auto number = static_cast<int>(&cable - world.cables.data());
+  const Vec2 centre = pivot_of_link(world, cable, link) - at(world.position, body);
+  return at(world.velocity, body) + at(world.angular_velocity, body) * left(centre) +
+         turning_at(world, number, link) * z;
+}
+
+bool is_carried_round(const World& world, const Sleeve& sleeve) {
+  return !sleeve.centre.isZero(0.0) &&
+         at(world.bodies, mover_of(world, sleeve.body)).kind != BodyKind::fixed;
 }
 
 Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve) {
-  const Vec2& v = at(world.velocity, sleeve.body);
+  const int mover = mover_of(world, sleeve.body);
+  const Vec2 v =
+      at(world.velocity, mover) + at(world.angular_velocity, mover) * left(sleeve.centre);
   return {v.x(), v.y(), turning_at(world, sleeve.cable, sleeve.first)};
 }
 

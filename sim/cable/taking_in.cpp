@@ -183,7 +183,7 @@ int cast_off_node(World& world, CableState& cable, int link) {
   Link& moored = at(cable.links, link);
   const int node = node_of(cable, moored);
   const Vec2 x = link_centre(world, moored);
-  const Vec2 z = left(Vec2(x - pivot_of_link(world, moored)));
+  const Vec2 z = left(Vec2(x - pivot_of_link(world, cable, link)));
   free_node(world, node, x, velocity_at(world, cable, link, z));
   moored.body = node;
   moored.corner = -1;

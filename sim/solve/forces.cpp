@@ -172,18 +172,28 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
   }
 }
 
+/// Whether sleeves have some of the mass of the body at that place.
+bool shares_mass(const PartSystem& s, int place) {
+  return std::ranges::any_of(
+      s.sleeves, [place](const SleevePlace& one) { return one.body == place && one.share > 0.0; });
+}
+
 /// Mobility and free velocity of a body that carries mass M beside its own,
 ///     (M_b + M + M_b after) v' = (M_b + M - M_b before) v + k f,   see Drag,
-/// where v' is given in what the body cannot do by itself. `kept`: the share of its own mass that
-/// its sleeves do not have.
+/// where v' is given in what the body cannot do by itself.
 void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d& v, double k,
-          double kept, int place, PartSystem& s) {
+          int place, PartSystem& s) {
   const Eigen::Vector3d own(body.mass, body.mass, inertia_of(body));
   const Drag linear(k * body.linear_drag), angular(k * body.angular_drag);
   const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
   Eigen::Matrix3d all = at(s.carried, place);
   Eigen::Vector3d force = all * pull + at(s.flow, place);
-  all.diagonal() += Eigen::Vector3d(kept * own.x(), kept * own.y(), own.z());
+  all.diagonal() += own;
+  for (const SleevePlace& one : s.sleeves) {
+    if (one.body != place) continue;
+    const Vec2& c = one.sleeve.centre;
+    add_moments(all, -one.share, -one.share * left(c), -one.share * c.squaredNorm());
+  }
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
   Eigen::Matrix3d old = all;
   Eigen::Vector3d dragged = own;  // a node is the cable that it carries
@@ -202,27 +212,31 @@ void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d
 }
 
 /// The same of a sleeve.
-void load_sleeve(const BodyProperties& body, const Vec2& gravity, double k, const SleevePlace& one,
+void load_sleeve(const World& world, const Vec2& gravity, double k, const SleevePlace& one,
                  PartSystem& s) {
   const Eigen::Vector3d& v = at(s.velocity, one.place);
   const Eigen::Vector3d pull(gravity.x(), gravity.y(), 0.0);
   Eigen::Matrix3d all = at(s.carried, one.place);
   const Eigen::Vector3d force = all * pull + at(s.flow, one.place);
   all.diagonal() += Eigen::Vector3d(one.share, one.share, 0.0);
-  const Eigen::Matrix3d inverse = inverse_for_sleeve(body, all);
+  const Eigen::Matrix3d inverse = inverse_for_sleeve(world, one.sleeve, all);
   at(s.free_velocity, one.place) = v + k * (inverse * force);
   at(s.mobility, one.place) = {inverse(0, 0), inverse(0, 1), inverse(1, 1),
                                inverse(2, 2), inverse(0, 2), inverse(1, 2)};
 }
 
-/// The share of its own mass that a body keeps to itself.
-double kept_share(const BodyProperties& body, int place, const PartSystem& s) {
-  if (!can_move(body)) return 1.0;
-  double kept = body.mass;
+/// Adds to the forces on sleeves, and on bodies less their shares, what centres that are carried
+/// round gain by that: -omega^2 c of acceleration that no change of velocities at one place tells.
+void carry_round(const PartSystem& s, std::span<const Eigen::Vector3d> velocities,
+                 std::span<Eigen::Vector3d> flow) {
   for (const SleevePlace& one : s.sleeves) {
-    if (one.body == place) kept -= one.share;
+    if (one.body == s.ground()) continue;
+    const double turning = at(velocities, one.body).z();
+    const Vec2 out = turning * turning * one.sleeve.centre;
+    at(flow, one.place) += at(s.carried, one.place).leftCols<2>() * out;
+    at(flow, one.place).head<2>() += one.share * out;
+    at(flow, one.body).head<2>() -= one.share * out;
   }
-  return kept / body.mass;
 }
 
 /// What a force at an end of a cable does to the body that holds it, in a kick of k seconds.
@@ -234,7 +248,7 @@ void pull(const World& world, const Parts& parts, const Link& end, const Vec2& f
   const Eigen::Vector3d impulse(k * force.x(), k * force.y(), k * cross(arm, force));
   Mobility mobility = at(s.mobility, place);
   const bool loaded = !s.carried.empty() && at(s.carried, place)(0, 0) > 0.0;
-  if (!loaded && kept_share(at(world.bodies, mover_of(world, end.body)), place, s) == 1.0) {
+  if (!loaded && !shares_mass(s, place)) {
     // Its own: that of the step before may be a light body's still (light_bodies.h).
     const Mobility own = mobility_of(at(world.bodies, mover_of(world, end.body)), k);
     mobility.xx = own.xx;
@@ -279,25 +293,27 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
   list_velocities(world, bodies, s.sleeves, s.velocity);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, scene.gravity, s.velocity, s.flow);
+  carry_round(s, s.velocity, s.flow);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& given = at(scene.bodies, bodies[i]);
     const BodyProperties& body = at(world.bodies, bodies[i]);
-    const double kept = s.sleeves.empty() ? 1.0 : kept_share(body, static_cast<int>(i), s);
-    if (s.carried[i](0, 0) == 0.0 && kept == 1.0) {
+    const int place = static_cast<int>(i);
+    if (s.carried[i](0, 0) == 0.0 && !shares_mass(s, place)) {
       s.mobility[i] = mobility_of(body, t.kick);  // it may have carried some before
       continue;
     }
-    const int place = static_cast<int>(i);
     load(given.motor.empty() ? body : driven_now(given, t, body), scene.gravity, s.velocity[i],
-         t.kick, kept, place, s);
+         t.kick, place, s);
   }
   note_flow(s, s.velocity);
-  for (const SleevePlace& one : s.sleeves) {
-    load_sleeve(at(world.bodies, one.sleeve.body), scene.gravity, t.kick, one, s);
-  }
+  for (const SleevePlace& one : s.sleeves) load_sleeve(world, scene.gravity, t.kick, one, s);
   for (Motor& motor : s.motors) {
     const Eigen::Matrix3d& carried = at(s.carried, motor.place);
     motor.inertia += carried(2, 2);
+    for (const SleevePlace& one : s.sleeves) {
+      const double squared = one.sleeve.centre.squaredNorm();
+      if (one.body == motor.place) motor.inertia -= one.share * squared;
+    }
     const double torque = carried.row(2).head<2>().dot(scene.gravity) + at(s.flow, motor.place).z();
     motor.before += t.kick * torque / motor.inertia;
     find_first_state(motor);
@@ -323,7 +339,13 @@ void add_curved_weight(const Vec2& gravity, const Start& start, std::span<const 
   }
   const double before = 2.0 * t.lag, after = t.length;
   const double square = before * before - before * after + after * after;
-  add_weight_rates(s.masses, gravity, square / (12.0 * t.kick), s.flow_velocity, s.flow);
+  const double factor = square / (12.0 * t.kick);
+  add_weight_rates(s.masses, gravity, factor, s.flow_velocity, s.flow);
+  for (const SleevePlace& one : s.sleeves) {  // whose weight turns the body as it comes round
+    const double mass = at(s.carried, one.place)(0, 0);
+    at(s.flow, one.body).z() -=
+        factor * mass * at(s.flow_velocity, one.body).z() * one.sleeve.centre.dot(gravity);
+  }
 }
 
 }  // namespace
@@ -408,6 +430,7 @@ void follow_flow(const Scene& scene, const Start& start, const Parts& parts, con
   s.flow_before.swap(s.flow);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, scene.gravity, s.flow_velocity, s.flow);
+  carry_round(s, s.flow_velocity, s.flow);
   note_flow(s, s.flow_velocity);
   if (t.kick > 0.0) add_curved_weight(scene.gravity, start, bodies, t, s);
   for (std::size_t i = 0; i < bodies.size() + s.sleeves.size(); ++i) {

@@ -208,8 +208,8 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
   }
   for (const SleevePlace& one : s.sleeves) {
     const Eigen::Matrix3d mobility = matrix_of(at(s.mobility, one.place));
-    add(inverse_for_sleeve(at(world.bodies, one.sleeve.body), mobility),
-        at(s.free_velocity, one.place), at(s.velocity, one.place));
+    add(inverse_for_sleeve(world, one.sleeve, mobility), at(s.free_velocity, one.place),
+        at(s.velocity, one.place));
   }
   for (const Row& row : s.rows) {
     if (row.impulse == 0.0) continue;

@@ -73,7 +73,7 @@ enum class RowKind : std::int8_t {
                  // or with PinchRows::three two of kind `segment`
   normal,        // contact force, >= 0
   tangent,       // Coulomb friction of bare surfaces, |.| <= mu * normal
-  sleeve_hold,   // keeps a sleeve's centre at its disc's
+  sleeve_hold,   // keeps a sleeve's centre where its body has it, or its turning its neighbour's
   sleeve_rub,    // friction between the two: rubbing.h
 };
 
@@ -187,27 +187,38 @@ struct Motor {
   MotorState state = MotorState::holds;
 };
 
-/// What friction on a sleeve is at most, one way, as a sum of the rows' impulses and of what is
-/// known: rubbing.h.
+/// A force (N) that is linear in how centres of sleeves on one body accelerate, less gravity.
+struct Carried {
+  Eigen::Vector3d of_body = Eigen::Vector3d::Zero();  // kg, kg, kg m: of the body's acceleration,
+  double turning = 0.0;                               // kg m: of the square of its turning,
+  double slipping = 0.0;                              // kg, of that times the slip speed
+};
+
+/// What friction on a sleeve, and on those that go on from it, is at most, one way, as a sum of the
+/// rows' impulses and of what is known: rubbing.h.
 struct RubLaw {
-  double in = 0.0, out = 0.0;          // of the tensions before and after it
-  Vec2 carried = Vec2::Zero();         // kg, of the velocity that its centre gains
+  double in = 0.0, out = 0.0;  // of the tensions before and after it
+  Carried carried;
   int terms_begin = 0, terms_end = 0;  // of PartSystem::rub_terms: of pinches on the way
 };
 
 /// A sleeve as a body of the part, and how it rubs.
 struct SleevePlace {
   Sleeve sleeve;
-  int place = 0, body = 0;                           // of the sleeve and the disc
+  int place = 0, body = 0;                           // of the sleeve and of what moves its body
+  int head = 0, tail = 0;                            // of those that go on from one another
+  int hold = -1;                                     // first row that holds its centre, or -1
   int cable_place = 0;                               // in the part's cables
   double radius = 0.0;                               // m, signed, of the cable's centre line
-  double share = 0.0;                                // kg, of the disc's mass
+  double share = 0.0;                                // kg, of the body's mass
   int span_in = -1, span_out = -1;                   // of PartSystem::masses
-  int row_in = -1, row_out = -1;                     // of the segments before and after it
-  int rub = -1;                                      // row; -1: it does not
-  Eigen::Vector3d before = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s: before the kick
+  int row_in = -1, row_out = -1;                     // of the segments before and after all
+  int rub = -1;                                      // row of a head; -1: it does not
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();  // m/s, m/s, rad/s: before the kick,
+  Eigen::Vector3d body_before = before;              // and the body's
   double flow_in = 0.0, flow_out = 0.0;  // N, by what tensions are more than rows' forces, less
                                          // what goes into the bend
+  double turning = 0.0, slipping = 0.0;  // rad/s of the body, m/s, then
   RubLaw forward, backward;
   double known = 0.0;    // N s, of the impulse where it slips: what is no unknown
   bool dropped = false;  // bears nothing in this solve

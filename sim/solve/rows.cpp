@@ -35,23 +35,23 @@ void weigh(PartSystem& s, int r) {
   at(s.rows, r).diagonal += third.j.dot(third.response);
 }
 
-/// The sleeve's that the link of a cable is part of, or else `body`.
-int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link, int body) {
-  const int sleeve = sleeve_at(world, s.listed_sleeves, cable, link);
-  return sleeve >= 0 ? at(s.sleeves, sleeve).place : body;
-}
-
-bool has_fixed_lever(const World& world, const Link& link) {
+bool has_fixed_lever(const World& world, const CableState& cable, int number) {
+  const Link& link = at(cable.links, number);
   if (link.body < 0 || (is_central(link) && mover_of(world, link.body) == link.body)) return true;
-  // What moves on a polygon that is fixed, if anything, turns about the corner.
-  return link.corner >= 0 && !link.moored && at(world.bodies, link.body).kind == BodyKind::fixed;
+  if (link.moored) return false;
+  // What slips turns about the link's own circle, and of what is fixed nothing else moves.
+  const int mover = mover_of(world, link.body);
+  const bool fixed = link.corner >= 0 && at(world.bodies, mover).kind == BodyKind::fixed;
+  return fixed || is_on_sleeve(world, cable, number);
 }
 
 /// Lever of a force along e on the link's circle: torque on the body = lever * force, since
 /// cross(c - p left(e), e) = cross(c, e) + p with the circle's centre at c from the body's.
-double lever(const World& world, const Link& link, const Vec2& e) {
-  if (has_fixed_lever(world, link)) return link.signed_radius();
-  return link.signed_radius() + cross(link_centre(world, link) - pivot_of_link(world, link), e);
+double lever(const World& world, const CableState& cable, int number, const Vec2& e) {
+  const Link& link = at(cable.links, number);
+  const double p = link.signed_radius();
+  if (has_fixed_lever(world, cable, number)) return p;
+  return p + cross(link_centre(world, link) - pivot_of_link(world, cable, number), e);
 }
 
 /// dC/dt = e.(v_B - v_A) + p_B om_B - p_A om_A with C = L - l; the row's J is its negative, so that
@@ -63,16 +63,18 @@ double lever(const World& world, const Link& link, const Vec2& e) {
 ///     |Delta| / D times e.(v_B - v_A).
 /// So J says how rest lengths change, and its forces have no moment: neither energy nor angular
 /// momentum comes from a pinch.
-void set_segment_bodies(const World& world, const Link& from, const Link& to,
-                        const Segment& segment, bool sunk, RowBodies& row) {
+void set_segment_bodies(const World& world, const CableState& cable, int from, int to, bool sunk,
+                        RowBodies& row) {
+  const Segment& segment = at(cable.segments, to);
   Vec2 e = segment.direction;
   if (sunk) {
     const double distance = (segment.head_centre - segment.tail_centre).norm();
-    const double delta = std::abs(to.signed_radius() - from.signed_radius());
+    const double p_a = at(cable.links, from).signed_radius();
+    const double delta = std::abs(at(cable.links, to).signed_radius() - p_a);
     if (distance > 0.0) e *= delta / distance;
   }
-  row.ja = {e.x(), e.y(), lever(world, from, e)};
-  row.jb = {-e.x(), -e.y(), -lever(world, to, e)};
+  row.ja = {e.x(), e.y(), lever(world, cable, from, e)};
+  row.jb = {-e.x(), -e.y(), -lever(world, cable, to, e)};
 }
 
 /// What the row has left before it bears force, and what its speed must therefore be.
@@ -215,27 +217,6 @@ void add_friction(PartSystem& s, const Friction& friction) {
   s.frictions.push_back(friction);
 }
 
-/// The place of the sleeve that a contact presses, or else of the body `slips_on`: what presses a
-/// rope that slips rubs on its sleeve.
-int place_that_is_pressed(const World& world, const PartSystem& s, const Contact& contact,
-                          int body) {
-  if (s.sleeves.empty()) return body;
-  const int cable = contact.slipping_cable;
-  const std::vector<Link>& links = at(world.cables, cable).links;
-  for (int i = 0; index(i) < links.size(); ++i) {
-    if (presses(contact, cable, at(links, i))) return place_of_sleeve(world, s, cable, i, body);
-  }
-  return body;
-}
-
-/// What a polygon's sleeve at that place sees of friction: it moves along the side with its centre
-/// line.
-void roll_on_sleeve(const PartSystem& s, int pressed, RowBodies& row) {
-  for (const SleevePlace& one : s.sleeves) {
-    if (one.place == pressed) (row.a == pressed ? row.ja : row.jb).z() = -std::abs(one.radius);
-  }
-}
-
 /// The friction of a contact of coefficient mu, whose normal row that is.
 void append_tangent_row(const World& world, const Parts& parts, int normal, double mu,
                         const TimeSpan& interval, PartSystem& s) {
@@ -252,7 +233,7 @@ void append_tangent_row(const World& world, const Parts& parts, int normal, doub
     set_bodies_at_piece(world, parts, contact, true, s, tangent);
   } else {
     set_tangent_bodies(world, contact, interval, s.bodies.back());
-    if (in_pinch && contact.slips_corner >= 0) roll_on_sleeve(s, pressed, s.bodies.back());
+    if (in_pinch) roll_on_sleeve(s, contact, pressed, s.bodies.back());
   }
   const int way = way_of_row(contact);
   row.slip = along(way, contact.slip);
@@ -336,13 +317,14 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
     s.segment_begin.push_back(static_cast<int>(begin));
     s.row_of_segment.resize(begin + cable.segments.size(), -1);
     for (int i = static_cast<int>(first_segment(cable)); index(i) < cable.segments.size(); ++i) {
-      const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
+      const int before = previous_link(cable, i);
+      const Link &to = at(cable.links, i), &from = at(cable.links, before);
       // After a middle link comes the opposite of the row before it: one signed row serves both.
       if (from.pinch_middle && !three) continue;
       if (from.body == to.body && (wound_end(from, to) || is_side(from, to))) continue;
       int a = place_of(parts, s, from.body), b = place_of(parts, s, to.body);
       if (!s.sleeves.empty()) {
-        a = place_of_sleeve(world, s, c, previous_link(cable, i), a);
+        a = place_of_sleeve(world, s, c, before, a);
         b = place_of_sleeve(world, s, c, i, b);
       }
       if (a == b) a = b = s.ground();  // between two points of one body nothing changes
@@ -351,7 +333,7 @@ void list_segment_rows(const World& world, const Parts& parts, const Part& part,
       Row& row = s.rows.back();
       row.index = c;
       row.item = i;
-      row.turns = !has_fixed_lever(world, from) || !has_fixed_lever(world, to);
+      row.turns = !has_fixed_lever(world, cable, before) || !has_fixed_lever(world, cable, i);
       if (!to.pinch_middle || three) continue;
       row.kind = RowKind::pinch_middle;
       s.middles.push_back(number);
@@ -383,12 +365,11 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
 /// What a row that has moved, or is new, sees of its bodies.
 void place_segment_row(const World& world, const CableState& cable, const Segment& segment,
                        const TimeSpan& interval, bool plain, RowBodies& bodies, Row& row) {
-  const Link &to = at(cable.links, row.item),
-             &from = at(cable.links, previous_link(cable, row.item));
-  set_segment_bodies(world, from, to, segment, segment.pinched && yields(cable), bodies);
-  if (plain && segment.pinched) {
-    turn_to_centre_line(world, from, to, segment, interval, bodies, row);
-  }
+  const int to = row.item, from = previous_link(cable, to);
+  set_segment_bodies(world, cable, from, to, segment.pinched && yields(cable), bodies);
+  if (!plain || !segment.pinched) return;
+  turn_to_centre_line(world, at(cable.links, from), at(cable.links, to), segment, interval, bodies,
+                      row);
 }
 
 }  // namespace

@@ -6,11 +6,14 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/compound.h"
 #include "sim/parts.h"
 #include "sim/solve/friction.h"
 #include "sim/solve/rows.h"
+#include "sim/solve/rub_law.h"
 #include "sim/solve/solve_scratch.h"
 #include "sim/tangent.h"
+#include "sim/touch.h"
 
 namespace pinchlab {
 
@@ -20,16 +23,32 @@ double radius_of(const World& world, const Sleeve& sleeve) {
   return at(at(world.cables, sleeve.cable).links, sleeve.first).signed_radius();
 }
 
-/// A disc that can move shares half of its mass evenly among its sleeves, which move with it:
-/// whatever lies on a sleeve, its matrix has an inverse then.
+/// A body that can move shares half of its mass evenly among its sleeves, which move with it:
+/// whatever lies on a sleeve, its matrix has an inverse then. With those that it carries round,
+/// centre at c, it shares no more than a quarter, and than a quarter of its moment of inertia I.
+/// With m' = sum of the shares s there, what is left has an inverse, since
+///     (sum s c)^2 <= m' sum s c^2 <= m I / 16.
 void share_masses(const World& world, PartSystem& s) {
   for (SleevePlace& one : s.sleeves) {
-    const BodyProperties& body = at(world.bodies, one.sleeve.body);
-    const auto on_it = std::count_if(
-        s.sleeves.begin(), s.sleeves.end(),
-        [&one](const SleevePlace& other) { return other.sleeve.body == one.sleeve.body; });
-    one.share = can_move(body) ? 0.5 * body.mass / static_cast<double>(on_it) : 0.0;
+    const int mover = mover_of(world, one.sleeve.body);
+    const BodyProperties& body = at(world.bodies, mover);
+    const auto on_it = static_cast<double>(
+        std::ranges::count_if(s.sleeves, [&world, mover](const SleevePlace& other) {
+          return mover_of(world, other.sleeve.body) == mover;
+        }));
+    const bool round = is_carried_round(world, one.sleeve);
+    one.share = can_move(body) ? (round ? 0.25 : 0.5) * body.mass / on_it : 0.0;
+    if (!round) continue;
+    const double turning = 0.25 * inertia_of(body) / (on_it * one.sleeve.centre.squaredNorm());
+    one.share = can_move(body) ? std::min(one.share, turning) : turning;
   }
+}
+
+/// Of a body that moves some places, and of one that stands.
+Eigen::Vector3d motion_of_body(const World& world, const SleevePlace& one) {
+  const int mover = mover_of(world, one.sleeve.body);
+  const Vec2& v = at(world.velocity, mover);
+  return {v.x(), v.y(), at(world.angular_velocity, mover)};
 }
 
 }  // namespace
@@ -51,6 +70,9 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
     const int local = at(parts.local, one.sleeve.body);
     one.body = local >= 0 ? local : ground;
     one.before = velocity_of(world, one.sleeve);
+    one.body_before = motion_of_body(world, one);
+    one.head = head_of(s.listed_sleeves, static_cast<int>(k));
+    one.tail = tail_of(s.listed_sleeves, static_cast<int>(k));
     one.radius = radius_of(world, one.sleeve);
     one.dropped = one.frozen = false;
   }
@@ -63,11 +85,38 @@ void note_flow(PartSystem& s, std::span<const Eigen::Vector3d> velocities) {
     const MassedSpan& out = at(s.masses.spans, one.span_out);
     const Eigen::Vector3d& v = at(velocities, one.place);
     const double w = one.radius * v.z();
+    one.turning = at(velocities, one.body).z();
+    one.slipping = w - one.radius * one.turning;
     const double bend = 0.5 * in.density * (w * w + v.head<2>().squaredNorm());
     // A node that is moored there is pulled at by the tension itself.
     const double at_node = -in.density * w * w;
     one.flow_in = in.p_b != 0.0 ? flow_tensions(in, velocities).y() - bend : at_node;
     one.flow_out = out.p_a != 0.0 ? flow_tensions(out, velocities).x() - bend : at_node;
+  }
+}
+
+int place_of_sleeve(const World& world, const PartSystem& s, int cable, int link, int body) {
+  const int sleeve = sleeve_at(world, s.listed_sleeves, cable, link);
+  return sleeve >= 0 ? at(s.sleeves, sleeve).place : body;
+}
+
+int place_that_is_pressed(const World& world, const PartSystem& s, const Contact& contact,
+                          int body) {
+  if (s.sleeves.empty()) return body;
+  const int cable = contact.slipping_cable;
+  const std::vector<Link>& links = at(world.cables, cable).links;
+  for (int i = 0; index(i) < links.size(); ++i) {
+    if (presses(contact, cable, at(links, i))) return place_of_sleeve(world, s, cable, i, body);
+  }
+  return body;
+}
+
+void roll_on_sleeve(const PartSystem& s, const Contact& contact, int pressed, RowBodies& row) {
+  for (const SleevePlace& one : s.sleeves) {
+    if (one.place != pressed) continue;
+    Eigen::Vector3d& j = row.a == pressed ? row.ja : row.jb;
+    j.z() -= cross(one.sleeve.centre, Vec2(j.head<2>()));
+    if (contact.slips_corner >= 0) j.z() = -std::abs(one.radius);
   }
 }
 
@@ -91,15 +140,23 @@ void append_sleeve_rows(const World& world, PartSystem& s) {
     bodies->ja = -bodies->jb;
   };
   for (SleevePlace& one : s.sleeves) {
-    const BodyProperties& body = at(world.bodies, one.sleeve.body);
-    if (body.kind == BodyKind::free) {
+    const BodyProperties& body = at(world.bodies, mover_of(world, one.sleeve.body));
+    one.hold = static_cast<int>(s.rows.size());
+    if (body.kind == BodyKind::free || is_carried_round(world, one.sleeve)) {
       hold(one, Vec2::UnitX());
       hold(one, Vec2::UnitY());
     } else if (body.kind == BodyKind::rail) {
       hold(one, body.rail_axis.normalized());
     }
     one.rub = -1;
-    if (body.cable_friction == 0.0) continue;
+    if (one.sleeve.goes_on) {
+      RowBodies* bodies = append(one, RowKind::sleeve_hold);
+      bodies->a = s.responses.back().a = one.place - 1;
+      bodies->jb = {0.0, 0.0, one.radius};
+      bodies->ja = -bodies->jb;
+      continue;
+    }
+    if (at(world.bodies, one.sleeve.body).cable_friction == 0.0) continue;
     one.rub = static_cast<int>(s.rows.size());
     RowBodies* bodies = append(one, RowKind::sleeve_rub);
     bodies->jb = {0.0, 0.0, radius_of(world, one.sleeve)};
@@ -109,142 +166,22 @@ void append_sleeve_rows(const World& world, PartSystem& s) {
 
 namespace {
 
-int row_of_segment(const PartSystem& s, const SleevePlace& one, int segment) {
-  return at(s.row_of_segment, at(s.segment_begin, one.cable_place) + segment);
-}
-
-/// X after some of the way, in terms of that before it and of what else there is.
-struct Way {
-  double in = 1.0;            // of X before
-  double faster = 0.0;        // kg, of w'
-  Vec2 moved = Vec2::Zero();  // kg, of b
-  // The same of the whole without friction:
-  double mass = 0.0;          // kg, of w'
-  Vec2 first = Vec2::Zero();  // kg, of b
-  double exponent = 0.0;      // of `in`
-};
-
-/// Goes on by an arc of `angle` (rad) with friction m, forward positive.
-void pass_arc(const CableState& cable, const Link& link, double angle, const Vec2& e_in,
-              const Vec2& e_out, double mu, RubLaw& law, Way& way, std::vector<Term>& terms) {
-  const double o = link.orientation, mass = cable.density * link.radius;  // kg a rad
-  const double m =
-      angle > 0.0
-          ? std::copysign(std::min(std::abs(mu), (largest_exponent - way.exponent) / angle), mu)
-          : mu;
-  const double k = std::exp(m * angle);
-  way.exponent += std::abs(m) * angle;
-  way.in *= k;
-  const Vec2 d = e_out - k * e_in;
-  const Vec2 z = ((1.0 - m * m) * d - 2.0 * o * m * left(d)) / (1.0 + m * m);
-  way.moved = k * way.moved - mass * o * left(z);
-  way.faster = k * way.faster + mass * (m != 0.0 ? std::expm1(m * angle) / m : angle);
-  for (int t = law.terms_begin; index(t) < terms.size(); ++t) at(terms, t).coefficient *= k;
-  way.mass += mass * angle;
-  way.first -= mass * o * left(Vec2(e_out - e_in));
-}
-
-/// What presses at a pinch on the way adds friction.
-void pass_pinch(const World& world, const SolveScratch& scratch, int contact, double mu,
-                std::vector<Term>& terms) {
-  const Press press = press_of(world, scratch, contact, mu);
-  if (press.normal >= 0 && mu != 0.0) terms.push_back({press.normal, press.friction});
-}
-
-/// Goes on by a link, whose arc is cut where contacts press it that have no link of their own.
-void pass_link(const World& world, SolveScratch& scratch, const SleevePlace& one, int i, double mu,
-               double pinched, PartSystem& s, RubLaw& law, Way& way) {
-  const CableState& cable = at(world.cables, one.sleeve.cable);
-  const Link& link = at(cable.links, i);
-  const double wrap = std::max(link.wrap, 0.0);
-  find_cuts(world, scratch.capstan.pressing, one.sleeve.cable, i, wrap, scratch.capstan.cuts);
-  Vec2 e = at(cable.segments, i).direction;
-  double passed = 0.0;
-  for (const ArcCut& cut : scratch.capstan.cuts) {
-    const Vec2 there = turned(at(cable.segments, i).direction, link.orientation * cut.arc);
-    pass_arc(cable, link, cut.arc - passed, e, there, mu, law, way, s.rub_terms);
-    pass_pinch(world, scratch, cut.contact, pinched, s.rub_terms);
-    const int normal = at(scratch.normal_row_of_contact, cut.contact);
-    const int tangent = normal >= 0 ? tangent_row_of(s, normal) : -1;
-    if (tangent >= 0) s.rub_terms.push_back({tangent, -1.0});
-    e = there;
-    passed = cut.arc;
-  }
-  const Vec2& leaves = at(cable.segments, next_link(cable, i)).direction;
-  pass_arc(cable, link, wrap - passed, e, leaves, mu, law, way, s.rub_terms);
-}
-
-/// Goes on along the side of a polygon that is fixed, before link i. There the rope presses by its
-/// weight alone, if at all: N ds = -rho b.n ds.
-void pass_side(const CableState& cable, int i, double mu, const Vec2& gravity, Way& way) {
-  const Vec2& e = at(cable.segments, i).direction;
-  const Vec2 n = at(cable.links, i).orientation * left(e);
-  const double mass = cable.density * std::max(at(cable.segments, i).rest_length, 0.0);
-  way.moved += mass * e;
-  if (gravity.dot(n) > 0.0) way.moved -= mass * mu * n;
-  way.faster += mass;
-  way.mass += mass;
-  way.first += mass * e;
-}
-
-/// The law for slipping forward (sign = 1) or backward (-1).
-void find_law(const World& world, SolveScratch& scratch, const SleevePlace& one, int sign,
-              PartSystem& s, RubLaw& law) {
-  const CableState& cable = at(world.cables, one.sleeve.cable);
-  const double mu = sign * at(world.bodies, one.sleeve.body).cable_friction;
-  const double pinched = sign * friction_in_pinch(world, cable, one.sleeve.body);
-  std::vector<Term>& terms = s.rub_terms;
-  law = {};
-  law.terms_begin = static_cast<int>(terms.size());
-  Way way;
-  pass_pinch(world, scratch, at(cable.segments, one.sleeve.first).contact, pinched, terms);
-  for (int i = one.sleeve.first;; i = next_link(cable, i)) {
-    const Link& link = at(cable.links, i);
-    const int after = next_link(cable, i);
-    if (link.pinch_middle) {
-      pass_pinch(world, scratch, link.contact, pinched, terms);
-      terms.push_back({row_of_segment(s, one, i), -1.0});
-    } else {
-      const bool along = i != one.sleeve.first && at(cable.links, i).corner >= 0;
-      if (along) pass_side(cable, i, mu, s.rub_fall, way);
-      pass_link(world, scratch, one, i, mu, pinched, s, law, way);
-    }
-    if (i != one.sleeve.last) continue;
-    pass_pinch(world, scratch, at(cable.segments, after).contact, pinched, terms);
-    break;
-  }
-  law.terms_end = static_cast<int>(terms.size());
-
-  const MassedSpan& in = at(s.masses.spans, one.span_in);
-  const MassedSpan& out = at(s.masses.spans, one.span_out);
-  const double m_i = end_mass(in), m_o = end_mass(out);
-  const double mass = at(s.carried, one.place)(0, 0);
-  const double rest = std::max(0.0, mass - (m_i + m_o + way.mass));  // next to nothing: least_mass
-  const double share = mass / (m_o + way.in * m_i + way.faster + rest);
-  law.in = way.in * share - 1.0;
-  law.out = 1.0 - share;
-  law.carried = share * (m_o * out.direction + way.in * m_i * in.direction + way.moved) -
-                (m_o * out.direction + m_i * in.direction + way.first);
-  for (int t = law.terms_begin; t < law.terms_end; ++t) {
-    Term& term = at(terms, t);
-    const bool middle = at(s.rows, term.index).kind != RowKind::normal;
-    term.coefficient = share * term.coefficient + (middle ? 1.0 : 0.0);
-  }
-}
-
 /// What of f is neither a row's impulse nor the centre's velocity after the kick.
 double known_friction(const PartSystem& s, const SleevePlace& one, const RubLaw& law) {
-  const Vec2 before =
-      Vec2((s.rub_kick > 0.0 ? one.before : at(s.free_velocity, one.body)).head<2>());
-  return s.rub_kick * (law.in * one.flow_in + law.out * one.flow_out) -
-         law.carried.dot(before + s.rub_fall);
+  const Eigen::Vector3d& before =
+      s.rub_kick > 0.0 ? one.body_before : at(s.free_velocity, one.body);
+  const Carried& carried = law.carried;
+  const double round =
+      one.turning * (one.turning * carried.turning + one.slipping * carried.slipping);
+  return s.rub_kick * (law.in * one.flow_in + law.out * at(s.sleeves, one.tail).flow_out + round) -
+         carried.of_body.dot(before) - carried.of_body.head<2>().dot(s.rub_fall);
 }
 
 /// f for the present impulses and velocities (N s).
 double friction_of(const PartSystem& s, const SleevePlace& one, const RubLaw& law) {
   double f = known_friction(s, one, law) + law.in * at(s.rows, one.row_in).impulse +
              law.out * at(s.rows, one.row_out).impulse +
-             law.carried.dot(at(s.velocity, one.body).head<2>());
+             law.carried.of_body.dot(at(s.velocity, one.body));
   for (int t = law.terms_begin; t < law.terms_end; ++t) {
     const Term& term = at(s.rub_terms, t);
     f += term.coefficient * at(s.rows, term.index).impulse;
@@ -267,12 +204,27 @@ bool slips(const Row& row) {
 
 }  // namespace
 
+namespace {
+
+/// Centres that are carried round are where they have come to.
+void place_holds(const World& world, PartSystem& s) {
+  for (const SleevePlace& one : s.sleeves) {
+    if (!is_carried_round(world, one.sleeve)) continue;
+    const Vec2 arm = left(one.sleeve.centre);
+    at(s.bodies, one.hold).ja.z() = -arm.x();
+    at(s.bodies, one.hold + 1).ja.z() = -arm.y();
+  }
+}
+
+}  // namespace
+
 void make_sleeve_rows(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                       const TimeSpan& interval, PartSystem& s, SolveScratch& scratch) {
   list_pressing(world, parts, part, scratch.capstan.pressing);
   s.rub_terms.clear();
   s.rub_kick = interval.kick;
   s.rub_fall = interval.kick * scene.gravity;
+  place_holds(world, s);
   for (int r = s.first_sleeve_row; r < s.first_contact_row; ++r) {
     Row& row = at(s.rows, r);
     RowResponse& response = at(s.responses, r);
@@ -293,7 +245,7 @@ void make_sleeve_rows(const Scene& scene, const World& world, const Parts& parts
     row.slip = at(at(world.cables, one.sleeve.cable).links, one.sleeve.first).slip;
     const CableState& cable = at(world.cables, one.sleeve.cable);
     one.row_in = row_of_segment(s, one, span_before(cable, one.sleeve));
-    one.row_out = row_of_segment(s, one, span_after(cable, one.sleeve));
+    one.row_out = row_of_segment(s, one, span_after(cable, at(s.sleeves, one.tail).sleeve));
     find_law(world, scratch, one, 1, s, one.forward);
     find_law(world, scratch, one, -1, s, one.backward);
   }
@@ -322,13 +274,14 @@ double list_friction(const PartSystem& s, const SleevePlace& one, Slip way,
   for (int r = 0; one.share > 0.0 && index(r) < s.rows.size(); ++r) {
     const RowResponse& response = at(s.responses, r);
     double along = 0.0;
-    if (response.a == one.body) along += law.carried.dot(response.ra.head<2>());
-    if (response.b == one.body) along += law.carried.dot(response.rb.head<2>());
+    const Eigen::Vector3d& moved = law.carried.of_body;
+    if (response.a == one.body) along += moved.dot(response.ra);
+    if (response.b == one.body) along += moved.dot(response.rb);
     const ThirdBody* third = third_of(s, index(r));
-    if (third && third->place == one.body) along += law.carried.dot(third->response.head<2>());
+    if (third && third->place == one.body) along += moved.dot(third->response);
     add(r, along);
   }
-  return known_friction(s, one, law) + law.carried.dot(at(s.free_velocity, one.body).head<2>());
+  return known_friction(s, one, law) + law.carried.of_body.dot(at(s.free_velocity, one.body));
 }
 
 double friction_of(const PartSystem& s, const SleevePlace& one, Slip way) {
@@ -436,7 +389,7 @@ void stick_rubbing(PartSystem& s) {
 
 double slip_speed_of(const PartSystem& s, std::span<const Eigen::Vector3d> velocities,
                      const World& world, std::size_t k) {
-  const SleevePlace& one = s.sleeves[k];
+  const SleevePlace& one = at(s.sleeves, s.sleeves[k].head);  // all the same, to the bit
   const bool in_part = one.body != s.ground();
   const double turning =
       in_part ? velocities[index(one.body)].z() : at(world.angular_velocity, one.sleeve.body);
@@ -445,12 +398,12 @@ double slip_speed_of(const PartSystem& s, std::span<const Eigen::Vector3d> veloc
 
 void store_rubbing(const PartSystem& s, World& world) {
   for (std::size_t k = 0; k < s.sleeves.size(); ++k) {
-    const SleevePlace& one = s.sleeves[k];
-    const bool sticks =
-        one.rub >= 0 && at(s.rows, one.rub).on && at(s.rows, one.rub).slip == Slip::stick;
+    const Sleeve& sleeve = s.sleeves[k].sleeve;
+    const int rub = at(s.sleeves, s.sleeves[k].head).rub;
+    const bool sticks = rub >= 0 && at(s.rows, rub).on && at(s.rows, rub).slip == Slip::stick;
     const double speed = sticks ? 0.0 : slip_speed_of(s, s.velocity, world, k);
-    const Slip slip = one.rub >= 0 ? at(s.rows, one.rub).slip : Slip::forward;
-    set_slip(at(world.cables, one.sleeve.cable), one.sleeve, sticks ? Slip::stick : slip, speed);
+    const Slip slip = rub >= 0 ? at(s.rows, rub).slip : Slip::forward;
+    set_slip(at(world.cables, sleeve.cable), sleeve, sticks ? Slip::stick : slip, speed);
   }
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // Cables with mass that slip on bodies: a sleeve (cable/sleeve.h) is a body of the part, whose
-// centre rows hold at its disc's, and which spans pull at instead of the disc. Between sleeve and
-// disc there is friction by the capstan law with the rope's inertia.
+// centre rows hold where its body has it, and which spans pull at instead of that. Between the two
+// there is friction by the capstan law with the rope's inertia.
 //
 // An element R dth of the rope, which moves at w over the rim about a centre with the acceleration
 // a, is pressed by N dth and rubbed by mu N dth against the way that it slips. With t its
@@ -26,8 +26,9 @@
 // where v is the centre's velocity (from the momentum of the rope beyond; test
 // MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
 //
-// Along a side of a polygon, which does not bend the rope, N = max(0, -rho b.n) a metre. Polygons
-// are fixed, so that b is -g: what presses there is known.
+// On a polygon all of this goes on from corner to corner: w is the same at each, and its friction
+// is one row's. Of corners that a body carries round a is that of each centre, linear in how the
+// body accelerates, and so is what its sides press (rub_law.h).
 //
 // Where f comes out below zero, the rope does not press on the rim: then there is no friction. It
 // does not lift off.
@@ -39,6 +40,7 @@
 
 namespace pinchlab {
 
+struct Contact;
 struct Flip;
 struct Part;
 struct Parts;
@@ -51,6 +53,18 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
 
 /// Notes what flows through the spans beside sleeves do to them at these velocities.
 void note_flow(PartSystem& system, std::span<const Eigen::Vector3d> velocities);
+
+/// The place of the sleeve that the link of a cable is part of, or else `body`.
+int place_of_sleeve(const World& world, const PartSystem& system, int cable, int link, int body);
+
+/// The place of the sleeve that a contact presses, or else of the body `slips_on`: what presses a
+/// rope that slips rubs on its sleeve.
+int place_that_is_pressed(const World& world, const PartSystem& system, const Contact& contact,
+                          int body);
+
+/// What the sleeve at that place sees of friction: a polygon's moves along the side with its centre
+/// line, a disc's turns about its own centre.
+void roll_on_sleeve(const PartSystem& system, const Contact& contact, int pressed, RowBodies& row);
 
 /// Appends rows to those of segments, in which sleeves are bodies by now.
 void append_sleeve_rows(const World& world, PartSystem& system);

@@ -310,17 +310,5 @@ TEST(RandomMassSlipOnPolygons, AClearedWorkspaceChangesNoBitOfNodes) {
   }
 }
 
-TEST(MassSlipOnPolygons, RefusesWhatItCannot) {
-  const auto refusal = [](auto change) -> std::string {
-    Scene scene = rope_over_beam(4, 0.2, 0.9, 0.4, 1.0, 1.0);
-    change(scene);
-    return message_of<SceneError>([&scene] { make_world(scene, Method::pinch); });
-  };
-  EXPECT_EQ(refusal([](Scene&) {}), "");
-  EXPECT_EQ(refusal([](Scene& scene) { scene.bodies[2].cable_friction = infinity; }), "");
-  const auto turns = [](Scene& scene) { scene.bodies[2].kind = BodyKind::fixed_axle; };
-  EXPECT_NE(refusal(turns).find("'beam', which is a polygon that can move"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace pinchlab::testing

@@ -317,24 +317,13 @@ TEST(RandomMassSlip, AClearedWorkspaceChangesNoBit) {
 }
 
 TEST(MassSlip, RefusesWhatItCannot) {
-  const auto refusal = [](auto change, const Configuration& configuration) -> std::string {
-    Scene scene = slipping_tackle(4, 0.2);
-    change(scene);
+  const auto refusal = [](const Configuration& configuration) -> std::string {
+    const Scene scene = slipping_tackle(4, 0.2);
     return message_of<SceneError>([&] { make_world(scene, configuration); });
   };
-  const auto as_is = [](Scene&) {};
-  EXPECT_EQ(refusal(as_is, Method::pinch), "");
-  EXPECT_EQ(refusal(as_is, Method::cable), "");
-  EXPECT_NE(refusal(as_is, thesis_configuration()).find("direct solver"), std::string::npos);
-  EXPECT_NE(
-      refusal(
-          [](Scene& s) {
-            make_polygon(s.bodies[2], {{-0.1, -0.1}, {0.1, -0.1}, {0.1, 0.1}, {-0.1, 0.1}}, 0.02);
-            s.bodies[2].inertia = 0.1;
-          },
-          Method::pinch)
-          .find("'pulley', which is a polygon"),
-      std::string::npos);
+  EXPECT_EQ(refusal(Method::pinch), "");
+  EXPECT_EQ(refusal(Method::cable), "");
+  EXPECT_NE(refusal(thesis_configuration()).find("direct solver"), std::string::npos);
 }
 
 }  // namespace
