@@ -189,7 +189,7 @@ std::vector<Shape> draw_shapes(Random& random, double size) {
   return shapes;
 }
 
-/// Two or three discs and polygons, with axles or fixed. A rope with mass slips on discs.
+/// Two or three discs and polygons, with axles or fixed.
 void add_pulleys(Random& random, const Surfaces& surfaces, int count, ShapelyScene& drawn) {
   for (int i = 0; i < count; ++i) {
     Body pulley;
@@ -201,7 +201,6 @@ void add_pulleys(Random& random, const Surfaces& surfaces, int count, ShapelySce
     const bool polygon = random.one_in(2);
     if (polygon) make_polygon(random, pulley.radius, pulley);
     surfaces.finish(random, pulley);
-    if (polygon && drawn.has.ropes) pulley.cable_friction = infinity;
     drawn.has.polygons = drawn.has.polygons || polygon;
     drawn.scene.bodies.push_back(pulley);
   }
@@ -218,7 +217,6 @@ void add_falling(Random& random, const Surfaces& surfaces, int number, double wi
   falling.velocity = {random.uniform(-1.0, 1.0), random.uniform(-2.0, 1.0)};
   falling.angular_velocity = random.uniform(-5.0, 5.0);
   surfaces.finish(random, falling);
-  if (drawn.has.ropes) falling.cable_friction = infinity;
   const int shape = random.below(3);
   if (shape == 1) {
     make_polygon(random, falling.radius, falling);

@@ -71,12 +71,20 @@ void insert(World& world, CableState& cable, std::size_t segment, int node, doub
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
-  const Segment& old = cable.segments[segment];
+  const Segment old = cable.segments[segment];
   const double share = (material - begins) / old.rest_length;
   free_node(world, body, old.tail + share * (old.head - old.tail),
             velocity_between(flow_at(world, cable, segment, false),
                              flow_at(world, cable, segment, true), share, old.direction));
+  const std::size_t position = segment == 0 ? cable.links.size() : segment;
   insert(world, cable, segment, body, material);
+  // What comes upon either part has seen the whole span where it was when the interval began.
+  Segment &before = cable.segments[position],
+          &after = cable.segments[segment == 0 ? 0 : position + 1];
+  before.previous_tail = old.previous_tail;
+  before.previous_head = after.previous_tail =
+      old.previous_tail + share * (old.previous_head - old.previous_tail);
+  after.previous_head = old.previous_head;
 }
 
 /// Numbers of nodes, counted on round a loop.
