@@ -116,6 +116,14 @@ Scene frictionless_chain(int pulleys) {
   return scene;
 }
 
+/// Under a rope with mass, which slips on each.
+Scene heavy_chain(int pulleys) {
+  Scene scene = chain_scene(pulleys);
+  for (Body& body : scene.bodies) body.cable_friction = 1e-3;
+  scene.cables[0].mass_per_metre = 0.1;
+  return scene;
+}
+
 void step_on(const Scene& scene, const char* name, int steps) {
   Configuration configuration = *configuration_from_string(name);
   configuration.sleep = false;
@@ -143,6 +151,7 @@ const std::vector<GrowingScene>& growing_scenes() {
       {"pulleys without friction under one cable, a step",
        {11, 33, 101, 331, 1001},
        frictionless_chain},
+      {"pulleys on which a heavy rope slips, a step", {11, 33, 101, 331, 1001}, heavy_chain},
       {"hanging cables whose nodes adapt, a step", {10, 100, 1000}, hanging_cables},
       {"swinging cables, `make_world`",
        {100, 1000, 10000},

@@ -2,6 +2,7 @@
 #include "sim/cable/sleeve.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -136,14 +137,24 @@ int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable,
   const CableState& of = at(world.cables, cable);
   if (at(of.links, link).moored) link = rim_of(of, link);
   if (!lies_loose(world, at(at(world.cables, cable).links, link))) return -1;
-  for (std::size_t k = 0; k < sleeves.size(); ++k) {
-    const Sleeve& s = sleeves[k];
-    if (s.cable != cable) continue;
-    const bool within =
-        s.first <= s.last ? s.first <= link && link <= s.last : link >= s.first || link <= s.last;
-    if (within) return static_cast<int>(k);
+  const auto begin = std::lower_bound(sleeves.begin(), sleeves.end(), cable,
+                                      [](const Sleeve& s, int c) { return s.cable < c; });
+  if (begin == sleeves.end() || begin->cable != cable) return -1;
+  auto end = std::upper_bound(begin, sleeves.end(), cable,
+                              [](int c, const Sleeve& s) { return c < s.cable; });
+  const auto number = [&sleeves](auto found) { return static_cast<int>(found - sleeves.begin()); };
+  const auto holds = [link](const Sleeve& s) {
+    if (s.first > s.last) return link >= s.first || link <= s.last;
+    return s.first <= link && link <= s.last;
+  };
+  // In the order of their links, but for the last, which may go on beyond the seam of a loop.
+  for (; std::prev(end)->first < begin->first; --end) {
+    if (holds(*std::prev(end))) return number(std::prev(end));
   }
-  return -1;
+  const auto after =
+      std::upper_bound(begin, end, link, [](int l, const Sleeve& s) { return l < s.first; });
+  if (after != begin && holds(*std::prev(after))) return number(std::prev(after));
+  return holds(*std::prev(end)) ? number(std::prev(end)) : -1;
 }
 
 double turning_at(const World& world, int cable, int number) {

@@ -51,7 +51,8 @@ void list_sleeves(const World& world, int cable, std::vector<Sleeve>& to);
 int span_before(const CableState& cable, const Sleeve& sleeve);
 int span_after(const CableState& cable, const Sleeve& sleeve);
 
-/// The place in `sleeves` of the one that link `link` of the cable is part of, or -1.
+/// The place in `sleeves`, which are in the order of their cables, of the one that link `link` of
+/// the cable is part of, or -1.
 int sleeve_at(const World& world, const std::vector<Sleeve>& sleeves, int cable, int link);
 
 /// The sleeve that goes on from number k without end, and the one that begins so: itself mostly.

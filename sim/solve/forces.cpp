@@ -174,8 +174,7 @@ void measure_masses(const World& world, const Parts& parts, const Part& part, Pa
 
 /// Whether sleeves have some of the mass of the body at that place.
 bool shares_mass(const PartSystem& s, int place) {
-  return std::ranges::any_of(
-      s.sleeves, [place](const SleevePlace& one) { return one.body == place && one.share > 0.0; });
+  return !s.lent.empty() && at(s.lent, place)(0, 0) > 0.0;
 }
 
 /// Mobility and free velocity of a body that carries mass M beside its own,
@@ -189,11 +188,7 @@ void load(const BodyProperties& body, const Vec2& gravity, const Eigen::Vector3d
   Eigen::Matrix3d all = at(s.carried, place);
   Eigen::Vector3d force = all * pull + at(s.flow, place);
   all.diagonal() += own;
-  for (const SleevePlace& one : s.sleeves) {
-    if (one.body != place) continue;
-    const Vec2& c = one.sleeve.centre;
-    add_moments(all, -one.share, -one.share * left(c), -one.share * c.squaredNorm());
-  }
+  if (!s.lent.empty()) all -= at(s.lent, place);
   force += Eigen::Vector3d(body.mass * gravity.x(), body.mass * gravity.y(), body.torque);
   Eigen::Matrix3d old = all;
   Eigen::Vector3d dragged = own;  // a node is the cable that it carries
@@ -310,10 +305,7 @@ void load_bodies(const Scene& scene, const World& world, const Parts& parts, con
   for (Motor& motor : s.motors) {
     const Eigen::Matrix3d& carried = at(s.carried, motor.place);
     motor.inertia += carried(2, 2);
-    for (const SleevePlace& one : s.sleeves) {
-      const double squared = one.sleeve.centre.squaredNorm();
-      if (one.body == motor.place) motor.inertia -= one.share * squared;
-    }
+    if (!s.lent.empty()) motor.inertia -= at(s.lent, motor.place)(2, 2);
     const double torque = carried.row(2).head<2>().dot(scene.gravity) + at(s.flow, motor.place).z();
     motor.before += t.kick * torque / motor.inertia;
     find_first_state(motor);

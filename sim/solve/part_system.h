@@ -294,6 +294,8 @@ struct PartSystem {
   std::vector<SleevePlace> sleeves;            // bodies between the part's own and the world; by
                                                // find_sleeves, laws by make_sleeve_rows
   std::vector<Sleeve> listed_sleeves;          // storage of find_sleeves
+  std::vector<Eigen::Matrix3d> lent;           // masses of its bodies that sleeves have; empty
+                                               // without these. By find_sleeves
   std::vector<Term> rub_terms;                 // of rows; by make_sleeve_rows, as
   double rub_kick = 0.0;                       // s, that the rows are for,
   Vec2 rub_fall = Vec2::Zero();                // m/s, and what gravity adds in it

@@ -29,18 +29,21 @@ double radius_of(const World& world, const Sleeve& sleeve) {
 /// With m' = sum of the shares s there, what is left has an inverse, since
 ///     (sum s c)^2 <= m' sum s c^2 <= m I / 16.
 void share_masses(const World& world, PartSystem& s) {
+  s.lent.assign(index(s.sleeves.back().place) + 2, Eigen::Matrix3d::Zero());
+  for (const SleevePlace& one : s.sleeves) at(s.lent, one.body)(0, 0) += 1.0;  // to count them
   for (SleevePlace& one : s.sleeves) {
-    const int mover = mover_of(world, one.sleeve.body);
-    const BodyProperties& body = at(world.bodies, mover);
-    const auto on_it = static_cast<double>(
-        std::ranges::count_if(s.sleeves, [&world, mover](const SleevePlace& other) {
-          return mover_of(world, other.sleeve.body) == mover;
-        }));
+    const BodyProperties& body = at(world.bodies, mover_of(world, one.sleeve.body));
+    const double on_it = at(s.lent, one.body)(0, 0);
     const bool round = is_carried_round(world, one.sleeve);
     one.share = can_move(body) ? (round ? 0.25 : 0.5) * body.mass / on_it : 0.0;
     if (!round) continue;
     const double turning = 0.25 * inertia_of(body) / (on_it * one.sleeve.centre.squaredNorm());
     one.share = can_move(body) ? std::min(one.share, turning) : turning;
+  }
+  for (Eigen::Matrix3d& lent : s.lent) lent.setZero();
+  for (const SleevePlace& one : s.sleeves) {
+    const Vec2& c = one.sleeve.centre;
+    add_moments(at(s.lent, one.body), one.share, one.share * left(c), one.share * c.squaredNorm());
   }
 }
 
@@ -76,7 +79,8 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
     one.radius = radius_of(world, one.sleeve);
     one.dropped = one.frozen = false;
   }
-  share_masses(world, s);
+  s.lent.clear();
+  if (!s.sleeves.empty()) share_masses(world, s);
 }
 
 void note_flow(PartSystem& s, std::span<const Eigen::Vector3d> velocities) {
