@@ -74,10 +74,13 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
     one.body = local >= 0 ? local : ground;
     one.before = velocity_of(world, one.sleeve);
     one.body_before = motion_of_body(world, one);
-    one.head = head_of(s.listed_sleeves, static_cast<int>(k));
-    one.tail = tail_of(s.listed_sleeves, static_cast<int>(k));
+    one.head = one.tail = static_cast<int>(k);
+    if (one.sleeve.goes_on) one.head = s.sleeves[k - 1].head;
     one.radius = radius_of(world, one.sleeve);
     one.dropped = one.frozen = false;
+  }
+  for (std::size_t k = s.sleeves.size(); k-- > 1;) {
+    if (s.sleeves[k].sleeve.goes_on) s.sleeves[k - 1].tail = s.sleeves[k].tail;
   }
   s.lent.clear();
   if (!s.sleeves.empty()) share_masses(world, s);
