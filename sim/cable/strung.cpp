@@ -44,15 +44,27 @@ void set_wound(World& world, int node, bool wound) {
   properties.outlined = !wound;
 }
 
-/// Inserts a node, at that material coordinate (m).
+/// m, where what is at x beside a segment was when the interval began, as if it had moved with it.
+Vec2 place_before(const Segment& segment, const Vec2& x) {
+  const Vec2 line = segment.head - segment.tail;
+  const double squared = line.squaredNorm();
+  const double share = squared > 0.0 ? line.dot(x - segment.tail) / squared : 0.0;
+  return x + (1.0 - share) * (segment.previous_tail - segment.tail) +
+         share * (segment.previous_head - segment.head);
+}
+
+/// Inserts a node, at that material coordinate (m). What comes upon either part of the segment has
+/// seen the whole of it where it was when the interval began.
 void insert(World& world, CableState& cable, std::size_t segment, int node, double material) {
   // As in insert_link: what closes a loop gets it last.
   const bool seam = segment == 0;
   const std::size_t position = seam ? cable.links.size() : segment;
+  const Segment old = cable.segments[segment];
+  const Vec2 was = place_before(old, at(world.position, node));
   Link link;
   link.body = node;
   link.material = material;
-  Segment arriving = cable.segments[segment];
+  Segment arriving = old;
   if (seam) arriving.alpha += cable.turning;
   const auto place = static_cast<std::ptrdiff_t>(position);
   cable.links.insert(cable.links.begin() + place, link);
@@ -62,6 +74,10 @@ void insert(World& world, CableState& cable, std::size_t segment, int node, doub
     update_tangent(world, cable, part);
     begin_here(cable.segments[part]);
   }
+  cable.segments[position].previous_tail = old.previous_tail;
+  cable.segments[position].previous_head = was;
+  cable.segments[seam ? 0 : position + 1].previous_tail = was;
+  cable.segments[seam ? 0 : position + 1].previous_head = old.previous_head;
   count_changes(world, cable, 1);
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);
@@ -71,20 +87,12 @@ void insert(World& world, CableState& cable, std::size_t segment, int node, doub
 void put_in(World& world, CableState& cable, std::size_t segment, int body, double material) {
   const int tail = previous_link(cable, static_cast<int>(segment));
   const double begins = head_material(cable, index(tail), body_angle(world, at(cable.links, tail)));
-  const Segment old = cable.segments[segment];
+  const Segment& old = cable.segments[segment];
   const double share = (material - begins) / old.rest_length;
   free_node(world, body, old.tail + share * (old.head - old.tail),
             velocity_between(flow_at(world, cable, segment, false),
                              flow_at(world, cable, segment, true), share, old.direction));
-  const std::size_t position = segment == 0 ? cable.links.size() : segment;
   insert(world, cable, segment, body, material);
-  // What comes upon either part has seen the whole span where it was when the interval began.
-  Segment &before = cable.segments[position],
-          &after = cable.segments[segment == 0 ? 0 : position + 1];
-  before.previous_tail = old.previous_tail;
-  before.previous_head = after.previous_tail =
-      old.previous_tail + share * (old.previous_head - old.previous_tail);
-  after.previous_head = old.previous_head;
 }
 
 /// Numbers of nodes, counted on round a loop.
