@@ -47,7 +47,7 @@ void share_masses(const World& world, PartSystem& s) {
   }
 }
 
-/// Of a body that moves some places, and of one that stands.
+/// m/s, m/s, rad/s: of what moves the sleeve's body.
 Eigen::Vector3d motion_of_body(const World& world, const SleevePlace& one) {
   const int mover = mover_of(world, one.sleeve.body);
   const Vec2& v = at(world.velocity, mover);
