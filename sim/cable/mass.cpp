@@ -259,9 +259,9 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
   f_b.z() -= (at_b.keeps ? mean - e_b : mean) * flow_b;
   // By the direction: the flow to and from rims, and the ends' own places.
   const double weight = mass * gravity.dot(n);  // N, of what moves by dp across the span
-  const double along = span.pinched ? 0.0 : 0.5 * rho * gravity.dot(span.direction);  // N/m
-  const double spare_a = along * (span.material - laid.a * span.length);              // N
-  const double spare_b = along * (span.material - laid.b * span.length);
+  const double along = span.pinched ? 0.0 : 0.5 * rho * gravity.dot(span.direction);        // N/m
+  const double spare_a = along * (span.material - laid.a * span.length) - span.strained_a;  // N
+  const double spare_b = along * (span.material - laid.b * span.length) + span.strained_b;
   const double about = mean * (flow_b - flow_a) + e_a * flow_a - e_b * flow_b +
                        mass * v_a.z() * (span.p_a * n + span.slope_a * span.direction).dot(u_a) +
                        mass * v_b.z() * (span.p_b * n + span.slope_b * span.direction).dot(u_b) -

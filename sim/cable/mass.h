@@ -22,6 +22,11 @@
 // ends. What is left at either end is the power
 //     -K p (omega - phi'),      K = rho (M - k l) (g . e) / 2.
 //
+// Of elastic cables with l of material in a span of the length L, V = EA (L - l)^2 / 2 l, and so
+//     dV = T d(L - l) - T^2 / 2 EA dl,      T = EA (L - l) / l.
+// Rows know the first term. The second is by what comes on to a rim or goes off it there without
+// its strain: at a the power T^2 / 2 EA p (omega - phi'), at b as much less.
+//
 // A drum that fills (Layers) is as if each moment its outermost turn were its rim: p changes with
 // what is wound up, dp = s d(theta - angle), theta being the span's direction and s its slope. What
 // lies below is fixed to the drum, and the spiral's moments are integrals over it,
@@ -55,6 +60,8 @@ struct MassedSpan {
   double length = 0.0, material = 0.0;  // m
   double density = 0.0;                 // kg/m
   Laying laying_a{}, laying_b{};
+  double strained_a = 0.0, strained_b = 0.0;  // J/m, of its material, more than what either rim
+                                              // holds: 0 if that is as stretched
 };
 
 /// What lies on a rim.

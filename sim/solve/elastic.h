@@ -22,6 +22,7 @@
 // positions would let them alternate from kick to kick, more each time; they are what makes the law
 // hold at the interval's end, for C_n + h dC/dt(v+) (slip_speeds) and what curved ways make of it
 // (motion/missed.h).
+// Where what slides has mass (rubbing.h) each segment is a spring by itself.
 //
 // A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the
 // lag.

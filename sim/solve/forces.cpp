@@ -140,15 +140,52 @@ void note_spans_of_sleeves(const CableState& cable, int number, int begin, PartS
   }
 }
 
+/// A span that vanishes between rims keeps all of its stretch, as they take up none: V has no bound
+/// then, and no rope is like that. Its second term (mass.h) is left out, by this share, where a
+/// span is shorter than a part of the rim's radius (m).
+double share_of_strain(double length, double radius) {
+  constexpr double part = 0.3;
+  const double x = length / (part * radius);
+  return x < 1.0 ? x * x * (3.0 - 2.0 * x) : 1.0;
+}
+
+/// Notes how strained the spans of an elastic cable are, beside rims that carry what is not; of
+/// spans its first is `first`.
+void note_strain(const CableState& cable, double stiffness, std::size_t first,
+                 std::vector<MassedSpan>& spans) {
+  const auto holds_none = [&cable](int link) {
+    return cable.rims.empty() || at(cable.rims, link).laid.empty();
+  };
+  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
+    const Segment& segment = cable.segments[i];
+    MassedSpan& span = spans[first + i - first_segment(cable)];
+    const double material = segment.rest_length, stretch = segment.length - material;
+    // Of less material than that its tension is that of as much: elastic_material.
+    if (segment.pinched || !(stretch > 0.0) || material < elastic_material(cable, segment)) {
+      continue;
+    }
+    const double rim = std::max(std::abs(span.p_a), std::abs(span.p_b));
+    const double strain = stretch / material;
+    const double energy = 0.5 * stiffness * strain * strain * share_of_strain(segment.length, rim);
+    if (holds_none(previous_link(cable, static_cast<int>(i)))) span.strained_a = energy;
+    if (holds_none(static_cast<int>(i))) span.strained_b = energy;
+  }
+}
+
 /// Measures what the part's bodies carry of cables with mass.
-void measure_masses(const World& world, const Parts& parts, const Part& part, PartSystem& s) {
+void measure_masses(const Scene& scene, const World& world, const Parts& parts, const Part& part,
+                    PartSystem& s) {
   s.masses.spans.clear();
   s.masses.arcs.clear();
   for (const int c : cables_of(parts, part)) {
-    if (!is_massed(at(world.cables, c))) continue;
+    const CableState& cable = at(world.cables, c);
+    if (!is_massed(cable)) continue;
     const std::size_t begin = s.masses.spans.size();
     add_masses(world, c, s.listed_sleeves, s.masses);
-    note_spans_of_sleeves(at(world.cables, c), c, static_cast<int>(begin), s);
+    note_spans_of_sleeves(cable, c, static_cast<int>(begin), s);
+    if (cable.elastic) {
+      note_strain(cable, at(scene.cables, c).axial_stiffness, begin, s.masses.spans);
+    }
   }
   const auto place = [&](int& body) {
     if (body < 0) {
@@ -284,7 +321,7 @@ void turn_held_spans(const World& world, const Parts& parts, const CableState& c
 void load_bodies(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                  const TimeSpan& t, PartSystem& s) {
   const std::span<const int> bodies = bodies_of(parts, part);
-  measure_masses(world, parts, part, s);
+  measure_masses(scene, world, parts, part, s);
   list_velocities(world, bodies, s.sleeves, s.velocity);
   s.flow.resize(s.mobility.size());
   find_flow_forces(s.masses, scene.gravity, s.velocity, s.flow);
