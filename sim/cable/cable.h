@@ -215,4 +215,10 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable);
 /// Whether the cable touches a body that it may slide over.
 bool slides_somewhere(const World& world, const CableState& cable);
 
+/// Whether it does so without mass, by the capstan law alone. What has mass slides as sleeves do
+/// (sleeve.h).
+inline bool slides_without_mass(const World& world, const CableState& cable) {
+  return cable.density == 0.0 && slides_somewhere(world, cable);
+}
+
 }  // namespace pinchlab

@@ -6,7 +6,6 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/mass.h"
 #include "sim/parts.h"
 #include "sim/solve/solve_scratch.h"
 
@@ -167,7 +166,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
   for (std::size_t place = 0; place < cables.size(); ++place) {
     const int c = cables[place];
     const CableState& cable = at(world.cables, c);
-    if (is_massed(cable) || !slides_somewhere(world, cable)) continue;
+    if (!slides_without_mass(world, cable)) continue;
     const int begin = system.segment_begin[place];
     const int* row_of_segment = system.row_of_segment.data() + begin;
     const auto row_of = [row_of_segment](int segment) { return row_of_segment[segment]; };

@@ -7,7 +7,6 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
-#include "sim/cable/mass.h"
 #include "sim/parts.h"
 #include "sim/solve/rows.h"
 #include "sim/tangent.h"
@@ -215,7 +214,7 @@ void make_all_elastic(const Scene& scene, const World& world, const Parts& parts
                                     cable.segments.size());
     const int count = static_cast<int>(cable.segments.size());
     int first = static_cast<int>(first_segment(cable));
-    if (is_massed(cable) || !slides_somewhere(world, cable)) {
+    if (!slides_without_mass(world, cable)) {
       for (int i = first; i < count; ++i) {
         const Segment& segment = at(cable.segments, i);
         const int number = rows[index(i)];
