@@ -347,6 +347,13 @@ ShapelyScene dropped_shapes(std::uint64_t seed) {
       [](ShapelyScene& s) -> Scene& { return s.scene; });
 }
 
+ShapelyScene stretched_shapes(std::uint64_t seed) {
+  constexpr std::uint64_t apart = 1000000;  // from the numbers that the scene itself is drawn with
+  ShapelyScene drawn = dropped_shapes(seed);
+  drawn.scene.cables[0].axial_stiffness = Random(seed + apart).decades(3.0, 5.0);  // N
+  return drawn;
+}
+
 ShapelyScene shapes_on_hanging_rope(std::uint64_t seed) {
   constexpr double tolerance = 2e-3;  // m
   ShapelyScene drawn = first_that_fits(

@@ -284,7 +284,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   return cable;
 }
 
-// Only a disc that the cable cannot slip on carries it over as stretched as it came on.
+// Of a cable with mass, only a body that it cannot slip on carries over what is stretched.
 void Reader::check_creep(const json& cables, const Scene& scene) {
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const Cable& cable = scene.cables[i];
@@ -293,12 +293,13 @@ void Reader::check_creep(const json& cables, const Scene& scene) {
       const Body& body = at(scene.bodies, wrap.body);
       const bool fills = (cable.start.layers && wrap.body == cable.start.body) ||
                          (cable.end.layers && wrap.body == cable.end.body);
-      return !is_polygon(body) && !std::isfinite(body.cable_friction) && !fills;
+      const bool holds = !std::isfinite(body.cable_friction);
+      return !fills && (holds || cable.mass_per_metre == 0.0);
     });
     if (creeps) continue;
     problem(fmt::format("/cables/{}/creep", i),
-            "has no effect where all that the cable runs round is polygons, bodies with a "
-            "cable_friction or drums with layers; leave it out");
+            "has no effect where all that the cable runs round is drums with layers or, of one with "
+            "mass_per_metre_kg, bodies with a cable_friction; leave it out");
   }
 }
 

@@ -134,6 +134,16 @@ inline bool opposite(const Link& a, const Link& b) {
   return a.orientation * b.orientation < 0;
 }
 
+/// Whether a pinched span is between bodies whose centres are so far apart (m) that touch, have not
+/// sunk into it, and may part.
+inline bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head,
+                      double distance) {
+  constexpr double rounding = 1e-9;
+  if (!opposite(tail, head) || tail.pinch_middle || head.pinch_middle) return false;
+  if (span.contact >= 0 && at(world.contacts, span.contact).touching) return false;
+  return distance >= (1.0 - rounding) * (tail.radius + head.radius);
+}
+
 /// Whether the segment between the two only fastens the cable's end to the rim of the body that it
 /// is wound on. It has no length and exerts nothing.
 inline bool wound_end(const Link& a, const Link& b) {

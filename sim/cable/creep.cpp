@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/relax.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -144,8 +145,9 @@ double place_of_laid(const Rim& rim, double material) {
 
 bool may_carry(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  return cable.creeps && link.orientation != 0 && link.corner < 0 && link.layers.way == 0 &&
-         at(world.bodies, link.body).cable_friction == infinity;
+  const bool held = at(world.bodies, link.body).cable_friction == infinity;
+  return cable.creeps && link.orientation != 0 && link.layers.way == 0 &&
+         (held || cable.density == 0.0);
 }
 
 void begin_to_carry(const World& world, CableState& cable, std::size_t i, double slope) {
@@ -166,6 +168,7 @@ void lay_down(const World& world, CableState& cable) {
     Rim& rim = cable.rims[i];
     if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);
   }
+  if (slides_without_mass(world, cable)) relax_rims(world, cable);
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
     const std::size_t before = index(previous_link(cable, static_cast<int>(i)));
     Rim& rim = cable.rims[i];

@@ -20,15 +20,6 @@ constexpr double least_share = 1e-4;
 constexpr double elastic_share = 0.5;  // of the time left of one that stretches, or is passed in
 constexpr double most_swung = 0.5;     // rad, far less than what is not told from less than a turn
 
-/// Whether a pinched span is between bodies that touch, have not sunk into it, and may part.
-bool is_let_go(const World& world, const Segment& span, const Link& tail, const Link& head,
-               double distance) {
-  constexpr double rounding = 1e-9;
-  if (!opposite(tail, head) || tail.pinch_middle || head.pinch_middle) return false;
-  if (span.contact >= 0 && at(world.contacts, span.contact).touching) return false;
-  return distance >= (1.0 - rounding) * (tail.radius + head.radius);
-}
-
 /// The time for which a span between two links has been there, or will be (s), where that is less
 /// than `most`; else that.
 double time_left(const World& world, const Segment& span, const Link& tail, const Link& head,

@@ -7,6 +7,7 @@
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/relax.h"
 #include "sim/parts.h"
 #include "sim/solve/rows.h"
 #include "sim/tangent.h"
@@ -16,14 +17,36 @@ namespace pinchlab {
 
 namespace {
 
-/// Compliance of a segment without pinches (m/N). Its material is rounded to 2^-45 of the cable's,
-/// 128 units in the last place of what it is a difference of: where round-off alone shakes a cable,
+/// Compliance of so much material (m) of a cable (m/N). It is rounded to 2^-45 of the cable's, 128
+/// units in the last place of what it is a difference of: where round-off alone shakes a cable,
 /// rows and factors stand, unless the material is next to a boundary of that rounding. Those of the
 /// stress scene's segments are all the same, and next to one of 2^-46.
-double flexibility_of(const CableState& cable, const Cable& given, const Segment& segment) {
+double flexibility_of(const CableState& cable, const Cable& given, double material) {
   const double coarse = 128.0 * cable.length;
-  const double material = (elastic_material(cable, segment) + coarse) - coarse;
-  return material / given.axial_stiffness;
+  return ((material + coarse) - coarse) / given.axial_stiffness;
+}
+
+/// m, of a span at the end of an interval that opens between circles, if they move on as they do.
+double length_opening_to(const World& world, const Link& from, const Link& to, const TimeSpan& t) {
+  const Vec2 a = link_centre(world, from) + t.length * velocity_of(world, from);
+  const Vec2 b = link_centre(world, to) + t.length * velocity_of(world, to);
+  return common_tangent(a, from.signed_radius(), b, to.signed_radius()).length;
+}
+
+/// The same of a segment; 0 of one in a pinch. One that opens is as flexible as at the interval's
+/// end: it may begin with next to nothing, and one that closes, which the same reversed in time
+/// does, is taken as it is at its start.
+double flexibility_of(const World& world, const CableState& cable, const Cable& given,
+                      const Segment& segment, int i, const TimeSpan& t) {
+  constexpr double short_share = 0.1;  // of the sum of the radii: what is longer opens little
+  const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
+  const double material = segment.pinched ? 0.0 : elastic_material(cable, segment);
+  const bool opens = t.length > 0.0 && opposite(from, to) &&
+                     segment.length < short_share * (from.radius + to.radius);
+  if (!opens) return flexibility_of(cable, given, material);
+  const double distance = (segment.head_centre - segment.tail_centre).norm();
+  if (segment.pinched && !is_let_go(world, segment, from, to, distance)) return 0.0;
+  return flexibility_of(cable, given, std::max(material, length_opening_to(world, from, to, t)));
 }
 
 double length_of(const World& world, const TimeSpan& t) {
@@ -83,41 +106,51 @@ bool goes_straight(const World& world, const Segment& segment, const Link& from,
   return back * back * way.squaredNorm() <= least * least;
 }
 
-/// The row of a segment of such a flexibility (m/N), `damped` being its a - b.
-void make_row(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
-              double flexibility, double damped, PartSystem& s, int number) {
-  const bool both_ways = given.rod;
-  Row& row = at(s.rows, number);
-  RowBodies& bodies = at(s.bodies, number);
-  const double h = length_of(world, t);
-  const double b = 0.25 * (1.0 - damped);
+/// m/s, dC/dt(v-) of a row of segment in the mean, and by what rims carry less than they turn.
+struct Lengthening {
+  double before = 0.0, creep = 0.0;
+};
+
+Lengthening lengthening(const World& world, const Segment& segment, const TimeSpan& t,
+                        const PartSystem& s, int number) {
+  const Row& row = at(s.rows, number);
+  const RowBodies& bodies = at(s.bodies, number);
   const CableState& cable = at(world.cables, row.index);
   const Link &to = at(cable.links, row.item),
              &from = at(cable.links, previous_link(cable, row.item));
   const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
   double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                  speed_of(world, to.body, bodies.jb) + creep;  // dC/dt(v-), m/s
+                  speed_of(world, to.body, bodies.jb) + creep;
   const double back = 2.0 * t.lag;
   if (!goes_straight(world, segment, from, to, back)) {
     before -= bent_by(world, segment, from, to, back);
   }
-  double known = t.kick * row.clearance + 4.0 * b * t.lag * t.lag * before;  // -m s
-  if (t.length == 0.0) {
-    if (damped > 0.0 || flexibility == 0.0) return;
-    const double impulse = both_ways ? -known / flexibility : std::max(0.0, -known / flexibility);
-    const RowResponse& response = at(s.responses, number);
-    at(s.free_velocity, bodies.a) += impulse * response.ra;
-    at(s.free_velocity, bodies.b) += impulse * response.rb;
-    const double damper = given.damping * t.kick;  // kg
-    row.idle = damper == 0.0;
-    row.on = row.clamped = !row.idle;
-    row.bias = 0.0;
-    row.compliance = row.idle ? 0.0 : 1.0 / damper;
-    return;
-  }
+  return {before, creep};
+}
+
+/// -m s, what of k C + a h^2 dC/dt(v+) - 4 b lag^2 dC/dt(v-) is known, `damped` being a - b.
+double known_part(const TimeSpan& t, double damped, double clearance, double before) {
+  return t.kick * clearance + (1.0 - damped) * t.lag * t.lag * before;
+}
+
+/// Of a segment, or of one and half of what slides over the rims beside it.
+struct Spring {
+  double flexibility = 0.0;  // m/N
+  double clearance = 0.0;    // m, by which it is loose; below 0: stretched
+};
+
+/// The row of a segment in an interval, `damped` being its a - b.
+void make_row(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
+              const Spring& spring, double damped, PartSystem& s, int number) {
+  const bool both_ways = given.rod;
+  Row& row = at(s.rows, number);
+  const double h = length_of(world, t);
+  const double b = 0.25 * (1.0 - damped);
+  const auto [before, creep] = lengthening(world, segment, t, s, number);
+  double known = known_part(t, damped, spring.clearance, before);
   double scale = b * h * h + damped * h * t.kick;  // s^2
   if (given.damping > 0.0) {
-    const double damper = flexibility * given.damping * t.kick;  // s^2
+    const double damper = spring.flexibility * given.damping * t.kick;  // s^2
     const double taken = given.damping * t.kick * row.diagonal;
     const double after = taken > 0.0 ? Drag(taken).after / taken : 0.5;  // its share
     known -= (1.0 - after) * damper * before;
@@ -126,9 +159,30 @@ void make_row(const World& world, const Cable& given, const Segment& segment, co
   row.idle = !both_ways && row.clearance > t.reach;
   row.clamped = both_ways;
   row.on = both_ways || (!segment.slack && !row.idle);
-  row.compliance = flexibility / scale;
-  bodies.curvature = -creep;  // and what else there is of it is found at the interval's end
+  row.compliance = spring.flexibility / scale;
+  at(s.bodies, number).curvature = -creep;  // and what else there is of it is found at the end
   row.bias = known / scale - creep;
+}
+
+/// Of a segment at an instant: such an impulse (N s) has acted up to then, and a damper acts still.
+void make_row_at_instant(const Cable& given, const TimeSpan& t, double impulse, PartSystem& s,
+                         int number) {
+  Row& row = at(s.rows, number);
+  const RowBodies& bodies = at(s.bodies, number);
+  const RowResponse& response = at(s.responses, number);
+  at(s.free_velocity, bodies.a) += impulse * response.ra;
+  at(s.free_velocity, bodies.b) += impulse * response.rb;
+  const double damper = given.damping * t.kick;  // kg
+  row.idle = damper == 0.0;
+  row.on = row.clamped = !row.idle;
+  row.bias = 0.0;
+  row.compliance = row.idle ? 0.0 : 1.0 / damper;
+}
+
+/// N s, of the impulse up to an instant for such a known part (-m s); only a rod pushes.
+double impulse_of(const Cable& given, double known, double flexibility) {
+  const double impulse = -known / flexibility;
+  return given.rod ? impulse : std::max(0.0, impulse);
 }
 
 /// Segments between which cable slides at present.
@@ -151,45 +205,113 @@ void join(const PartSystem& s, int number, double flexibility, SlidingGroup& gro
   group.last = number;
 }
 
-/// Makes the rows of a cable's segments first .. last (around a closed one), between which it may
-/// slide everywhere: all with the same a and b, the most damped that one of its groups asks for.
-void make_section(const World& world, const Cable& given, const CableState& cable,
-                  std::span<const int> row_of_segment, int first, int last, const TimeSpan& t,
-                  PartSystem& s) {
+/// Whether cable slides on to a segment over the link before it.
+bool slides_on_to(const World& world, const CableState& cable, int segment) {
+  const Link& before = at(cable.links, previous_link(cable, segment));
+  return before.orientation != 0 &&
+         (before.slip != Slip::stick || at(world.bodies, before.body).cable_friction == 0.0);
+}
+
+/// Segments first .. last of a cable (around a closed one), between which it may slide everywhere,
+/// and the rows of all of its segments, or -1.
+struct Section {
+  const World& world;
+  const Cable& given;
+  const CableState& cable;
+  std::span<const int> rows;
+  int first = 0, last = 0;
+
+  /// The row of a segment that stretches or is in a pinch, or -1.
+  int row_of(const PartSystem& s, int i) const {
+    const int number = rows[index(i)];
+    return number >= 0 && at(s.rows, number).kind == RowKind::segment ? number : -1;
+  }
+  const Segment& segment(int i) const { return at(cable.segments, i); }
+  /// Of segment i, which has that row; not flexible in a pinch.
+  Spring spring(int i, const TimeSpan& t, const PartSystem& s, int number) const {
+    Spring spring{flexibility_of(world, cable, given, segment(i), i, t),
+                  at(s.rows, number).clearance};
+    if (spring.flexibility == 0.0) return spring;
+    for (const int link : {previous_link(cable, i), i}) {
+      if (!lies_relaxed(world, cable, link)) continue;
+      const double lies = wrapped_material(world, cable, index(link));
+      spring.flexibility += 0.5 * lies / given.axial_stiffness;
+      spring.clearance += 0.5 * (lies - stored_length(at(cable.links, link)));
+    }
+    return spring;
+  }
+};
+
+/// a - b of all of its rows: the most damped that one of its groups asks for.
+double damped_share(const Section& section, const TimeSpan& t, const PartSystem& s) {
   double damped = 0.0;
   SlidingGroup group;
   const auto end_group = [&] {
     if (group.flexibility > 0.0) {
-      damped = std::max(damped, damped_share(world, t, group.flexibility, group.mobility));
+      damped = std::max(damped, damped_share(section.world, t, group.flexibility, group.mobility));
     }
     group = {};
   };
-  const auto is_row = [&](int i) {
-    const int number = row_of_segment[index(i)];
-    return number >= 0 && at(s.rows, number).kind == RowKind::segment;
-  };
-  for (int i = first; i <= last; ++i) {
-    const Link& before = at(cable.links, previous_link(cable, i));
-    const bool slides =
-        before.orientation != 0 &&
-        (before.slip != Slip::stick || at(world.bodies, before.body).cable_friction == 0.0);
-    if (!slides) end_group();
-    if (!is_row(i)) continue;
-    const Segment& segment = at(cable.segments, i);
-    join(s, row_of_segment[index(i)], segment.pinched ? 0.0 : flexibility_of(cable, given, segment),
-         group);
+  for (int i = section.first; i <= section.last; ++i) {
+    if (!slides_on_to(section.world, section.cable, i)) end_group();
+    const int number = section.row_of(s, i);
+    if (number < 0) continue;
+    join(s, number, section.spring(i, t, s, number).flexibility, group);
   }
   end_group();
-  for (int i = first; i <= last; ++i) {
-    const Segment& segment = at(cable.segments, i);
-    if (!is_row(i) || segment.pinched) continue;
-    const int number = row_of_segment[index(i)];
-    const double flexibility = flexibility_of(cable, given, segment);
-    make_row(world, given, segment, t, flexibility, damped, s, number);
+  return damped;
+}
+
+/// Its rows at an instant, undamped. The impulses of a group up to then follow one another as the
+/// tensions of the kick before do, and take up the sum of what the group has stretched by: how that
+/// is shared among segments does not matter, of which one may be all but gone.
+void make_rows_at_instant(const Section& section, const TimeSpan& t, PartSystem& s) {
+  int begin = section.first;
+  double known = 0.0, flexible = 0.0, even = 0.0;  // the last two: weighted by tensions, and not
+  const auto end_group = [&](int end) {
+    const double sum = flexible > 0.0 ? flexible : even;
+    for (int i = begin; i < end && sum > 0.0; ++i) {
+      const Segment& segment = section.segment(i);
+      const int number = section.row_of(s, i);
+      if (number < 0 || segment.pinched) continue;
+      const double share = flexible > 0.0 ? segment.tension : 1.0;
+      const double impulse = impulse_of(section.given, known, sum) * share;
+      make_row_at_instant(section.given, t, impulse, s, number);
+    }
+    begin = end;
+    known = flexible = even = 0.0;
+  };
+  for (int i = section.first; i <= section.last; ++i) {
+    if (!slides_on_to(section.world, section.cable, i)) end_group(i);
+    const Segment& segment = section.segment(i);
+    const int number = section.row_of(s, i);
+    if (number < 0 || segment.pinched) continue;
+    const double before = lengthening(section.world, segment, t, s, number).before;
+    const Spring spring = section.spring(i, t, s, number);
+    known += known_part(t, 0.0, spring.clearance, before);
+    flexible += spring.flexibility * segment.tension;
+    even += spring.flexibility;
+  }
+  end_group(section.last + 1);
+}
+
+/// Its rows.
+void make_rows(const Section& section, const TimeSpan& t, PartSystem& s) {
+  const double damped = damped_share(section, t, s);
+  if (t.length == 0.0) {
+    if (damped == 0.0) make_rows_at_instant(section, t, s);
+    return;
+  }
+  for (int i = section.first; i <= section.last; ++i) {
+    const Segment& segment = section.segment(i);
+    const int number = section.row_of(s, i);
+    const Spring spring = number < 0 ? Spring() : section.spring(i, t, s, number);
+    if (spring.flexibility == 0.0) continue;
+    make_row(section.world, section.given, segment, t, spring, damped, s, number);
     if (s.elastic_ends.empty()) continue;
     ElasticEnd& end = at(s.elastic_ends, number);
-    end.compliance = flexibility / (t.kick * t.length);
-    end.bias = at(s.rows, number).clearance / t.length + at(s.bodies, number).curvature;
+    end.compliance = spring.flexibility / (t.kick * t.length);
+    end.bias = spring.clearance / t.length + at(s.bodies, number).curvature;
   }
 }
 
@@ -197,10 +319,18 @@ void make_section(const World& world, const Cable& given, const CableState& cabl
 
 void make_elastic(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
                   PartSystem& s, int number) {
-  const CableState& cable = at(world.cables, at(s.rows, number).index);
-  const double flexibility = flexibility_of(cable, given, segment);
-  const double damped = damped_share(world, t, flexibility, at(s.rows, number).diagonal);
-  make_row(world, given, segment, t, flexibility, damped, s, number);
+  const Row& row = at(s.rows, number);
+  const CableState& cable = at(world.cables, row.index);
+  const double flexibility = flexibility_of(world, cable, given, segment, row.item, t);
+  const double damped = damped_share(world, t, flexibility, row.diagonal);
+  if (flexibility == 0.0) return;
+  if (t.length > 0.0) {
+    return make_row(world, given, segment, t, {flexibility, row.clearance}, damped, s, number);
+  }
+  if (damped > 0.0) return;
+  const double before = lengthening(world, segment, t, s, number).before;
+  const double known = known_part(t, damped, row.clearance, before);
+  make_row_at_instant(given, t, impulse_of(given, known, flexibility), s, number);
 }
 
 void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
@@ -213,29 +343,26 @@ void make_all_elastic(const Scene& scene, const World& world, const Parts& parts
     const std::span<const int> rows(s.row_of_segment.data() + s.segment_begin[place],
                                     cable.segments.size());
     const int count = static_cast<int>(cable.segments.size());
-    int first = static_cast<int>(first_segment(cable));
+    Section section{world, given, cable, rows, static_cast<int>(first_segment(cable))};
     if (!slides_without_mass(world, cable)) {
-      for (int i = first; i < count; ++i) {
+      for (int i = section.first; i < count; ++i) {
         const Segment& segment = at(cable.segments, i);
         const int number = rows[index(i)];
-        if (number >= 0 && !segment.pinched) make_elastic(world, given, segment, t, s, number);
+        if (number >= 0) make_elastic(world, given, segment, t, s, number);
       }
       continue;
     }
     if (t.length > 0.0 && world.configuration.solver == Solver::direct) {
       s.elastic_ends.resize(s.rows.size());
     }
-    for (int i = first; i < count; ++i) {
+    for (int i = section.first; i < count; ++i) {
       const Link& link = at(cable.links, i);
       const bool holds = link.orientation != 0 && !link.pinch_middle &&
                          at(world.bodies, link.body).cable_friction == infinity;
-      if (!cable.closed && holds) {
-        make_section(world, given, cable, rows, first, i, t, s);
-        first = i + 1;
-      }
-    }
-    if (first < count) {
-      make_section(world, given, cable, rows, first, count - 1, t, s);
+      if (i + 1 < count && (cable.closed || !holds)) continue;
+      section.last = i;
+      make_rows(section, t, s);
+      section.first = i + 1;
     }
   }
 }

@@ -413,7 +413,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // would feed back as speed: there they only pull.
     const bool is_rod = cable.rod && (exact || cable.joint != Joint::none);
     if (is_rod || is_held(cable, index(row.item))) hold_both_ways(interval, row);
-    if (cable.elastic && !segment.pinched && !part.may_slide) {
+    if (cable.elastic && !part.may_slide) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
     if (row.kind == RowKind::pinch_middle) {

@@ -23,23 +23,22 @@ Scene atwood(double stiffness, double friction) {
   return scene;
 }
 
-/// The stretch of either span over the material that it had when the step began.
+/// Of either span.
 struct Strains {
   double left = 0.0, right = 0.0;
 };
 
 Strains step_and_measure(const Scene& scene, World& world, Workspace& work) {
-  const std::vector<Segment> before = world.cables[0].segments;
   EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
   const std::vector<Segment>& now = world.cables[0].segments;
-  return {(now[1].length - now[1].rest_length) / before[1].rest_length,
-          (now[2].length - now[2].rest_length) / before[2].rest_length};
+  return {now[1].length / now[1].rest_length - 1.0, now[2].length / now[2].rest_length - 1.0};
 }
 
-// The spans' stretches S in sum obey S'' = 2 g - k S (1 / m1 + 1 / m2), k = EA / 2.5 m.
+// The cable's stretch S obeys S'' = 2 g - k S (1 / m1 + 1 / m2), k = EA / (2.5 m + pi r): what lies
+// on the pulley stretches too.
 double height_of_left(double t, double stiffness) {
-  const double m1 = 1.0, m2 = 2.0;
-  const double omega = std::sqrt(stiffness / 2.5 * (1.0 / m1 + 1.0 / m2));
+  const double m1 = 1.0, m2 = 2.0, length = 2.5 + std::numbers::pi * 0.33;
+  const double omega = std::sqrt(stiffness / length * (1.0 / m1 + 1.0 / m2));
   const double tension = 2.0 * g * m1 * m2 / (m1 + m2);  // mean
   const double fallen =
       0.5 * g * t * t -
@@ -115,9 +114,9 @@ TEST(ElasticSlip, MakesNoEnergy) {
   }
 }
 
-// What rims carry is not stretched, for which up to 2 % of the energy at play comes from nothing in
-// some of these (sim/README.md); what alternated made a million times as much. At one step a frame
-// spans turn far: balanced as if they went straight, some made half of it.
+// What alternated made a million times the energy at play. At one step a frame spans turn far:
+// balanced as if they went straight, some made half of it. Where rims carried what was not
+// stretched up to 2 % came from nothing.
 TEST(ElasticSlip, RandomRopesDoNotRunAway) {
   std::int64_t unsettled = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -127,7 +126,7 @@ TEST(ElasticSlip, RandomRopesDoNotRunAway) {
       World world = make_world(scene, measured());
       const Extremes most = play(scene, world, 1.0);
       ASSERT_FALSE(HasFailure()) << seed;
-      EXPECT_LE(most.energy_gain, 0.02 * most.kinetic) << seed << ", " << steps;
+      EXPECT_LE(most.energy_gain, 5e-4 * most.kinetic) << seed << ", " << steps;
       unsettled += world.diagnostics.fallbacks;
     }
   }
