@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/at.h"
 #include "sim/cable/bending.h"
@@ -42,16 +43,43 @@ bool check_finite(const Scene& scene, World& world) {
   return true;
 }
 
+namespace {
+
+/// Fails where a body is so far away that numbers do not tell a thousandth of a cable's half width
+/// there: whatever has exploded goes on at ten seconds a step, for long.
+bool check_distances(const Scene& scene, World& world) {
+  constexpr double least = 1e-3, unit = std::numeric_limits<double>::epsilon();
+  for (const Cable& cable : scene.cables) {
+    const double most = least * cable.half_width / unit;  // m
+    for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+      const double distance = world.position[b].cwiseAbs().maxCoeff();
+      if (!(distance > most)) continue;
+      world.failure = fmt::format(
+          "step {} (t = {} s): body '{}' is {:.3g} m away, where numbers do not tell a thousandth "
+          "of "
+          "the half width of cable '{}'; method {}",
+          world.step, world.time(), scene.bodies[b].name, distance, cable.name,
+          to_string(world.configuration.method));
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 bool check_positions(const Scene& scene, World& world) {
-  double sum = 0.0;  // as above
+  constexpr double far = 1e9;        // m, within which no cable is so thin
+  double sum = 0.0, farthest = 0.0;  // the sum as above
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     sum += 0.0 * (world.position[b].x() + world.position[b].y() + world.angle[b]);
+    farthest = std::max(farthest, world.position[b].cwiseAbs().maxCoeff());
   }
   const bool bodies = sum == 0.0;
   std::size_t c = 0;
   while (c < world.cables.size() && world.cables[c].finite) ++c;
   const bool finite = bodies && c == world.cables.size();
-  if (finite) return true;
+  if (finite) return farthest < far || check_distances(scene, world);
   std::string what = "a position";
   for (std::size_t b = 0; !bodies && b < world.bodies.size(); ++b) {
     if (world.position[b].allFinite() && std::isfinite(world.angle[b])) continue;

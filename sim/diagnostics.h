@@ -21,7 +21,7 @@ void note_instant(const World& world, Instant& instant);
 /// Whether all velocities are finite; if not, world.failure says which body, at what step and time.
 bool check_finite(const Scene& scene, World& world);
 
-/// The same of positions, angles, and spans' lengths and tensions.
+/// The same of positions, angles, and spans' lengths and tensions, and of what is too far away.
 bool check_positions(const Scene& scene, World& world);
 
 /// The same, where links have come, of how many corners a cable bends round: not absurdly many.

@@ -145,9 +145,9 @@ double place_of_laid(const Rim& rim, double material) {
 
 bool may_carry(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  const bool held = at(world.bodies, link.body).cable_friction == infinity;
+  const double mu = at(world.bodies, link.body).cable_friction;
   return cable.creeps && link.orientation != 0 && link.layers.way == 0 &&
-         (held || cable.density == 0.0);
+         (mu == infinity || (mu == 0.0 && cable.density == 0.0));
 }
 
 void begin_to_carry(const World& world, CableState& cable, std::size_t i, double slope) {

@@ -5,8 +5,8 @@
 // taken, whatever the tension is where it goes off: the belt on a driven pulley is slower than on
 // the one that drives it,
 //     w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA).
-// On discs and corners. Where a cable slides without mass, what lies there is as stretched as what
-// is beside it (relax.h); where ropes with mass may slip rims carry as much as they turn.
+// On discs and corners that a cable does not slip on. What lies on smooth ones is as stretched as
+// what is beside it (relax.h); elsewhere rims carry as much as they turn.
 
 #include <algorithm>
 

@@ -2,7 +2,6 @@
 #include "sim/cable/relax.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -23,24 +22,11 @@ bool is_pinched_beside(const CableState& cable, int link) {
 bool lies_relaxed(const World& world, const CableState& cable, int number) {
   if (number < 0 || cable.rims.empty()) return false;
   const Link& link = at(cable.links, number);
-  if (at(cable.rims, number).laid.empty() || link.pinch_middle || !(link.wrap >= 0.0)) return false;
-  const bool smooth = at(world.bodies, link.body).cable_friction == 0.0;
-  return (smooth || link.slip != Slip::stick) && !is_pinched_beside(cable, number);
+  return !at(cable.rims, number).laid.empty() && !link.pinch_middle && link.wrap >= 0.0 &&
+         at(world.bodies, link.body).cable_friction == 0.0 && !is_pinched_beside(cable, number);
 }
 
 namespace {
-
-/// How much greater the tension is beyond a link that cable slides over than before it.
-double growth_over(const World& world, const Link& link) {
-  const double mu = at(world.bodies, link.body).cable_friction;
-  if (mu == 0.0) return 1.0;
-  return std::exp((link.slip == Slip::forward ? mu : -mu) * link.wrap);
-}
-
-double mean_growth(double growth) {
-  const double log = std::log(growth);
-  return std::abs(log) < 1e-8 ? 1.0 + 0.5 * log : (growth - 1.0) / log;
-}
 
 /// Segments and links that slide as one: from segment `first`, `count` segments and the links after
 /// all but the last; or, of a closed cable that slides all around, after the last too.
@@ -49,19 +35,14 @@ struct Sliding {
   bool around = false;
 };
 
-/// Calls span(i, factor) and rim(i, factor) for segments and rims one after another, `factor` being
-/// their tension over the first one's.
-template <class Span, class Rim>
-void each(const World& world, const CableState& cable, const Sliding& group, const Span& span,
-          const Rim& rim) {
-  double factor = 1.0;
+/// Calls span(i) and rim(i) for segments and rims one after another.
+template <class OnSpan, class OnRim>
+void each(const CableState& cable, const Sliding& group, const OnSpan& span, const OnRim& rim) {
   int i = group.first;
   for (int k = 0; k < group.count; ++k, i = next_link(cable, i)) {
-    span(i, factor);
+    span(i);
     if (k + 1 == group.count && !group.around) return;
-    const double growth = growth_over(world, at(cable.links, i));
-    rim(i, factor * mean_growth(growth));
-    factor *= growth;
+    rim(i);
   }
 }
 
@@ -69,29 +50,20 @@ double arc_of(const Link& link) {
   return link.radius * link.wrap;
 }
 
-/// tau, see the header; 0 where all is slack.
-double stretch_of(const World& world, const CableState& cable, const Sliding& group) {
-  constexpr int most_steps = 50;
-  double material = 0.0;
+/// m of material a metre of way, of a group; 1 where all is slack.
+double slope_of(const World& world, const CableState& cable, const Sliding& group) {
+  double material = 0.0, way = 0.0;
   each(
-      world, cable, group, [&](int i, double) { material += at(cable.segments, i).rest_length; },
-      [&](int i, double) { material += wrapped_material(world, cable, index(i)); });
-  double tau = 0.0;
-  for (int k = 0; k < most_steps; ++k) {
-    double sum = -material, slope = 0.0;
-    const auto add = [&](double length, double factor) {
-      const double stretched = 1.0 + factor * tau;
-      sum += length / stretched;
-      slope += factor * length / (stretched * stretched);
-    };
-    each(
-        world, cable, group, [&](int i, double f) { add(at(cable.segments, i).length, f); },
-        [&](int i, double f) { add(arc_of(at(cable.links, i)), f); });
-    const double change = sum / slope;
-    if (!(change > 1e-15)) break;
-    tau += change;
-  }
-  return tau;
+      cable, group,
+      [&](int i) {
+        material += at(cable.segments, i).rest_length;
+        way += at(cable.segments, i).length;
+      },
+      [&](int i) {
+        material += wrapped_material(world, cable, index(i));
+        way += arc_of(at(cable.links, i));
+      });
+  return material < way ? material / way : 1.0;
 }
 
 /// Gives a rim so much material (m), evenly, and moves it along the cable so that what lies where
@@ -107,17 +79,17 @@ void fill(const World& world, CableState& cable, int link, double material, doub
   at(cable.links, link).material += before + later - tail_material(cable, index(link), angle);
 }
 
-/// Lets a group come to rest that is taut.
-void relax(const World& world, CableState& cable, const Sliding& group, double tau) {
+/// Stretches a group evenly.
+void stretch(const World& world, CableState& cable, const Sliding& group, double slope) {
   double later = 0.0;
   each(
-      world, cable, group,
-      [&](int i, double factor) {
+      cable, group,
+      [&](int i) {
         const Segment& span = at(cable.segments, i);
-        later += span.length / (1.0 + factor * tau) - span.rest_length;
+        later += slope * span.length - span.rest_length;
       },
-      [&](int i, double factor) {
-        const double arc = arc_of(at(cable.links, i)), now = arc / (1.0 + factor * tau);
+      [&](int i) {
+        const double now = slope * arc_of(at(cable.links, i));
         const double had = wrapped_material(world, cable, index(i));
         fill(world, cable, i, now, later);
         later += now - had;
@@ -143,13 +115,10 @@ void loosen(const World& world, CableState& cable, const Sliding& group) {
 
 void settle(const World& world, CableState& cable, const Sliding& group) {
   if (group.count < 2 && !group.around) return;
-  const double tau = stretch_of(world, cable, group);
-  if (tau > 0.0) {
-    relax(world, cable, group, tau);
-    update_wraps_and_rest_lengths(world, cable);
-  } else {
-    loosen(world, cable, group);
-  }
+  const double slope = slope_of(world, cable, group);
+  if (slope == 1.0) return loosen(world, cable, group);
+  stretch(world, cable, group, slope);
+  update_wraps_and_rest_lengths(world, cable);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ namespace {
 // a cable is as straight as it can be and hardly gives, ways are long: so many go three radii of a
 // body. What a 64th of a way makes no better, the way is wrong for.
 constexpr int most_repairs = 64, most_halvings = 6;
+constexpr double longest_way = 0.05;  // of a body's radius, in one repair
 
 /// The most that a part's constraints are violated by (m).
 struct Violation {
@@ -116,14 +117,20 @@ void find_way(const World& world, Workspace& work, const Part& part) {
   set.smooth = false;
 }
 
+/// What is violated by more (m) is not repaired: a hundred times the way that so many repairs go.
+double farthest_repaired(const World& world, std::span<const int> bodies) {
+  double radius = 0.0;
+  for (const int b : bodies) radius = std::max(radius, at(world.bodies, b).radius);
+  return 100.0 * most_repairs * longest_way * radius;
+}
+
 /// How much of that way is gone at once. On so much of a body's radius directions turn by about as
 /// many radians, and rows err by half the square of that, a thousandth.
 double share_to_go(const World& world, std::span<const int> bodies, const PartSystem& s) {
-  constexpr double longest = 0.05;
   double share = 1.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const double radius = at(world.bodies, bodies[i]).radius, way = s.velocity[i].head<2>().norm();
-    if (way * share > longest * radius) share = longest * radius / way;
+    if (way * share > longest_way * radius) share = longest_way * radius / way;
   }
   return share;
 }
@@ -200,7 +207,7 @@ bool repair(const Scene& scene, World& world, Workspace& work, Part& part) {
     make_rows(scene, world, work.parts, part, t, s, work.solve, untimed);
     const Violation before = violation(world, s);
     met = before.most() <= s.reach;
-    if (met) break;
+    if (met || before.most() > farthest_repaired(world, bodies_of(work.parts, part))) break;
     find_way(world, work, part);
     const double share = share_to_go(world, bodies_of(work.parts, part), s);
     if (!go(world, work, part, share, before)) {

@@ -153,6 +153,25 @@ TEST(Invariants, NotFiniteStopsWithPlaceAndTime) {
   EXPECT_NE(world.failure.find("not finite"), std::string::npos) << world.failure;
 }
 
+// Nor is anything placed where numbers do not tell how far it is from a cable: what explodes came
+// there before, and took ten seconds a step.
+TEST(Invariants, BodiesOutOfReachOfNumbersStopTheRun) {
+  Scene scene;
+  scene.bodies.push_back(body("lost", BodyKind::free, 0.0, 0.0, 0.1, 1.0));
+  scene.bodies.push_back(body("peg", BodyKind::fixed, 0.0, 0.0, 0.1));
+  scene.cables.push_back(cable(at(-2.0, 0.0), {{1, -1, 0}}, at(2.0, 0.0), 0.05));
+  for (const auto& [away, expected] :
+       {std::pair{1e11, StepStatus::ok}, {1e12, StepStatus::failed}}) {
+    scene.bodies[0].position.y() = away;
+    World world = make_world(scene, Method::pinch);
+    Workspace work;
+    EXPECT_EQ(step(scene, world, work), expected) << away;
+    EXPECT_EQ(world.failure.find("step 0 (t = 0 s): body 'lost' is 1e+12 m away") == 0,
+              expected == StepStatus::failed)
+        << world.failure;
+  }
+}
+
 /// Random falls of free rollers on wrapped pulleys, under every method: nothing may break.
 class RandomScene : public ::testing::TestWithParam<int> {};
 

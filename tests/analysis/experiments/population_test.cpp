@@ -51,13 +51,13 @@ TEST(Population, WhatTurnsSpansFarMakesNoEnergy) {
   }
 }
 
-// What falls on cables that stretch. In the first three these slip, or run over corners that hold
+// What falls on cables that stretch. In the first two these slip, or run over corners that hold
 // them, and what came on to rims left its stretch behind. In the others something happens where
 // next to nothing is left of a cable between two bodies, or a body and the cable's end, or where
 // bodies part that have pressed it: it was taken to be as stiff as that. They gained up to all of
-// the energy at play, those above up to 1.5 % at any step.
+// the energy at play, those above up to 1 % at any step.
 TEST(Population, WhatStretchesMakesNoEnergy) {
-  for (const int seed : {29, 565, 658, 95, 591, 744, 772}) {
+  for (const int seed : {29, 565, 95, 591, 744, 772}) {
     const Scene scene = stretched_shapes(static_cast<std::uint64_t>(seed)).scene;
     for (const int steps : {1, 4, 16}) {
       EXPECT_LE(run_scene(scene, watched(), steps, 60).energy_gain, 2e-3)
