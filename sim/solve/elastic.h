@@ -18,12 +18,11 @@
 //
 // Where cable slides over bodies, the tensions of a group of segments follow one another (the
 // capstan law) and together they take up the sum of their stretches, which sliding does not change:
-// with one a and b for all of them the sliding speeds cancel. What lies on smooth rims in
-// between stretches with them (cable/relax.h), half of it with either segment beside. At an instant a
-// group's impulses follow one another too. Sliding speeds have no mass. Means over three
-// positions would let them alternate from kick to kick, more each time; they are what makes the law
-// hold at the interval's end, for C_n + h dC/dt(v+) (slip_speeds) and what curved ways make of it
-// (motion/missed.h).
+// with one a and b for all of them the sliding speeds cancel. Half of what lies on a smooth rim
+// stretches with either segment beside it (cable/relax.h). At an instant a group's impulses follow
+// one another too. Sliding speeds have no mass. Means over three positions would let them alternate
+// from kick to kick, more each time; they are what makes the law hold at the interval's end, for
+// C_n + h dC/dt(v+) (slip_speeds) and what curved ways make of it (motion/missed.h).
 // Where what slides has mass (rubbing.h) each segment is a spring by itself.
 //
 // A damper adds c (dC/dt(v-) + dC/dt(v+)) / 2 over the kick, to an instant c dC/dt(v+) over the
