@@ -300,8 +300,7 @@ void Reader::check_creep(const json& cables, const Scene& scene) {
     if (creeps) continue;
     problem(fmt::format("/cables/{}/creep", i),
             "has no effect where all that the cable runs round is bodies with a cable_friction "
-            "(but 0 of "
-            "one without mass_per_metre_kg) or drums with layers; leave it out");
+            "(but 0 of one without mass_per_metre_kg) or drums with layers; leave it out");
   }
 }
 
