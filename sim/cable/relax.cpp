@@ -46,10 +46,6 @@ void each(const CableState& cable, const Sliding& group, const OnSpan& span, con
   }
 }
 
-double arc_of(const Link& link) {
-  return link.radius * link.wrap;
-}
-
 /// m of material a metre of way, of a group; 1 where all is slack.
 double slope_of(const World& world, const CableState& cable, const Sliding& group) {
   double material = 0.0, way = 0.0;
@@ -61,7 +57,7 @@ double slope_of(const World& world, const CableState& cable, const Sliding& grou
       },
       [&](int i) {
         material += wrapped_material(world, cable, index(i));
-        way += arc_of(at(cable.links, i));
+        way += stored_length(at(cable.links, i));
       });
   return material < way ? material / way : 1.0;
 }
@@ -89,7 +85,7 @@ void stretch(const World& world, CableState& cable, const Sliding& group, double
         later += slope * span.length - span.rest_length;
       },
       [&](int i) {
-        const double now = slope * arc_of(at(cable.links, i));
+        const double now = slope * stored_length(at(cable.links, i));
         const double had = wrapped_material(world, cable, index(i));
         fill(world, cable, i, now, later);
         later += now - had;
@@ -103,7 +99,7 @@ void loosen(const World& world, CableState& cable, const Sliding& group) {
     if (k + 1 == group.count && !group.around) return;
     const Segment &before = at(cable.segments, i), &after = at(cable.segments, next_link(cable, i));
     const double had = wrapped_material(world, cable, index(i));
-    const double lacks = std::max(arc_of(at(cable.links, i)) - had, 0.0);
+    const double lacks = std::max(stored_length(at(cable.links, i)) - had, 0.0);
     const auto spare = [](const Segment& s) { return std::max(s.rest_length - s.length, 0.0); };
     const double from_before = std::min(lacks, spare(before));
     const double from_after = std::min(lacks - from_before, spare(after));
