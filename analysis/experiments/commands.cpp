@@ -136,8 +136,8 @@ void add_population(CLI::App& bench) {
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option("--shapes", run->shapely_scenes,
-                   "How many of polygons, compounds and cables with mass, of ropes that hang, and "
-                   "of what is thrown over edges [1000]")
+                   "How many of polygons, compounds and cables with mass, of cables that stretch, "
+                   "of ropes that hang, and of what is thrown over edges [1000]")
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")

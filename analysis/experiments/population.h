@@ -37,7 +37,7 @@ double end_distance(const Soundness& a, const Soundness& b, bool image);
 struct PopulationRun {
   Options options;
   int scenes = 2000;          ///< of dropped_discs
-  int shapely_scenes = 1000;  ///< of dropped_shapes, shapes_on_hanging_rope and thrown_off_a_table
+  int shapely_scenes = 1000;  ///< of each kind of shapes: population_scenes.h
   int first = 1;              ///< seed of the first of each
 };
 
