@@ -86,6 +86,9 @@ struct DesignCheck {
   std::string sha256, frozen_utc;
   std::vector<std::string> kept;        ///< in words, what was done as planned
   std::vector<std::string> deviations;  ///< in words; empty: the design was followed
+  /// What the look that was reached asks for, of designs that may stop early: a preference is
+  /// claimed up to this p, or from this Bayes factor on.
+  std::optional<double> p_at_most, bayes_factor;
 };
 
 /// All answers, checked and in an order that does not depend on the order of the inputs:

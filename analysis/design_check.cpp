@@ -130,6 +130,17 @@ std::string list(const std::vector<std::int64_t>& numbers) {
   return fmt::format("{}", fmt::join(numbers, ", "));
 }
 
+// What the last look that so many participants have come to asks for; before the first one, that.
+void note_bound(const Sample& sample, std::size_t analysed, DesignCheck& check) {
+  if (sample.rule == "bayes-factor") {
+    check.bayes_factor = sample.bayes_factor;
+  } else if (sample.looks.size() > 1) {
+    const auto next = std::ranges::upper_bound(sample.looks, static_cast<std::int64_t>(analysed));
+    const auto passed = static_cast<std::size_t>(next - sample.looks.begin());
+    check.p_at_most = sample.p_at_most.at(std::max<std::size_t>(passed, 1) - 1);
+  }
+}
+
 // May the study stop with so many participants?
 void check_sample(const Sample& sample, std::size_t analysed, const UsedAnalysis& used,
                   DesignCheck& check) {
@@ -242,10 +253,11 @@ DesignCheck check_design(const Design& design, const std::vector<fs::path>& inpu
       ++analysed;
     }
   }
-  DesignCheck check{design.sha256, design.frozen_utc, {}, deviations.words(files.size())};
+  DesignCheck check{design.sha256, design.frozen_utc, {}, deviations.words(files.size()), {}, {}};
   if (check.deviations.empty()) {
     check.kept.emplace_back("plan, seed, question, texts, consent and clips of all participants");
   }
+  note_bound(design.sample, analysed, check);
   check_sample(design.sample, analysed, used, check);
   check_exclusions(exclusions_by_rule(design, inputs), used, check);
   check_options(design, used, check);
@@ -268,11 +280,14 @@ std::string design_words(const std::optional<DesignCheck>& check) {
 }
 
 nlohmann::ordered_json design_json(const DesignCheck& check) {
-  return {{"sha256", check.sha256},
-          {"frozen_utc", check.frozen_utc},
-          {"followed", check.deviations.empty()},
-          {"kept", check.kept},
-          {"deviations", check.deviations}};
+  nlohmann::ordered_json document = {{"sha256", check.sha256},
+                                     {"frozen_utc", check.frozen_utc},
+                                     {"followed", check.deviations.empty()},
+                                     {"kept", check.kept},
+                                     {"deviations", check.deviations}};
+  if (check.p_at_most) document["p_at_most"] = *check.p_at_most;
+  if (check.bayes_factor) document["bayes_factor"] = *check.bayes_factor;
+  return document;
 }
 
 }  // namespace pinchlab::analysis

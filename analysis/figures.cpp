@@ -33,7 +33,7 @@ std::string row_axes(const std::vector<std::string>& labels, const std::string& 
       "set arrow from 50, graph 0 to 50, graph 1 nohead dt 2 lw 1.5 lc rgb '#333333'\nset ytics (",
       static_cast<double>(labels.size()) + 0.7, gnuplot_quote(x_label));
   for (size_t i = 0; i < labels.size(); ++i) {
-    script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_quote(labels[i]), i + 1);
+    script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_tic(labels[i]), i + 1);
   }
   return script + ") tc rgb '#333333'\n";
 }

@@ -26,6 +26,12 @@ std::string gnuplot_quote(const std::string& text) {
   return quoted + "'";
 }
 
+std::string gnuplot_tic(const std::string& text) {
+  std::string format;
+  for (const char c : text) format += c == '%' ? "%%" : std::string(1, c);
+  return gnuplot_quote(format);
+}
+
 std::string gnuplot_script(const std::string& name, int width_px, int height_px,
                            const std::string& body) {
   return fmt::format(

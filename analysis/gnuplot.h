@@ -9,6 +9,9 @@ namespace pinchlab::analysis {
 /// `text` as a gnuplot string that nothing is expanded in.
 std::string gnuplot_quote(const std::string& text);
 
+/// The same for the label of a tic, which gnuplot takes as a format.
+std::string gnuplot_tic(const std::string& text);
+
 /// A whole script that draws `body` twice, to NAME.svg and NAME.pdf in the current folder. Sizes in
 /// pixels (96 to the inch).
 std::string gnuplot_script(const std::string& name, int width_px, int height_px,

@@ -90,6 +90,11 @@ bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
   return csv.has(correct);
 }
 
+// Whether some of a series' answers are a participant's, and others are of who knows whom.
+bool mixes_names(const Cells::value_type& series) {
+  return series.second.size() > 1 && series.second.contains("");
+}
+
 void read_file(const AnswerFile& file, Cells& cells) {
   for (const Trial& trial : file.trials) {
     if (trial.kind != TrialKind::main) continue;
@@ -141,6 +146,10 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
   table.is_pilot = same_study.is_pilot();
   table.exclusions = exclusions.finish();
   if (cells.empty()) throw InputError(table.sources.front(), "no answers; a report needs some");
+  if (std::ranges::any_of(cells, mixes_names)) {
+    throw InputError(table.sources.front(),
+                     "some inputs name participants and some do not; analyse them in two runs");
+  }
   for (const auto& [series_name, people] : cells) {
     Series series{series_name, {}};
     for (const auto& [person, levels] : people) {

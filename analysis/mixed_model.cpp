@@ -192,6 +192,16 @@ class Minimiser {
     fixed_ = fixed_intercept;
     Fit best{start};
     for (double size : step_sizes) best = run(best.parameters, size);
+    // A simplex may be stuck where it has become flat: one of another size from there that comes no
+    // lower says that there is nothing lower.
+    constexpr double no_lower = 1e-7;  // of a deviance
+    constexpr double other_sizes[] = {0.2, 0.05, 0.3};
+    for (const double size : other_sizes) {
+      if (best.converged) break;
+      const double before = best.deviance;
+      best = run(best.parameters, size);
+      best.converged = best.converged || before - best.deviance < no_lower;
+    }
     best.parameters.sd_participant = std::abs(best.parameters.sd_participant);
     best.parameters.sd_demonstration = std::abs(best.parameters.sd_demonstration);
     return best;

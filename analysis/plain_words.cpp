@@ -2,6 +2,8 @@
 // The first paragraph of every report: the answer, in words that need no statistics.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "analysis/design_check.h"
 #include "analysis/document.h"
 
@@ -33,13 +35,38 @@ std::string p_in_words(const Estimate& estimate) {
   return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
 }
 
-std::string verdict(const Report& report) {
+// Whether a preference is claimed: of a design that may stop early by the bound of the look reached.
+bool is_found(const Row& all, double alpha, const std::optional<DesignCheck>& design) {
+  if (design && design->bayes_factor)
+    return all.log_bayes_factor >= std::log(*design->bayes_factor);
+  if (!all.read.p) return false;
+  if (design && design->p_at_most) return all.read.p.value <= *design->p_at_most;
+  return all.read.p.value < alpha;
+}
+
+std::string bound_in_words(const Row& all, const std::optional<DesignCheck>& design) {
+  if (design && design->bayes_factor) {
+    return fmt::format(
+        "; Bayes factor {:.3g}, and the design asks for {:g} or more; p and interval are as for a "
+        "single look",
+        std::exp(all.log_bayes_factor), *design->bayes_factor);
+  }
+  if (design && design->p_at_most) {
+    return fmt::format(
+        "; p at most {:.3g} is what the design asks for at this look, p and interval are as for a "
+        "single one",
+        *design->p_at_most);
+  }
+  return "";
+}
+
+std::string verdict(const Report& report, const std::optional<DesignCheck>& design) {
   const GroupResult& all = report.all();
   const Reading& read = all.row.read;
   const std::string& pinch = report.options.pinch_label;
   const std::string& cable = report.options.cable_label;
   const std::string found =
-      !(read.p && read.p.value < report.options.alpha)
+      !is_found(all.row, report.options.alpha, design)
           ? fmt::format("No clear preference between {} and {}", pinch, cable)
           : fmt::format("{} was preferred to {}", all.row.share > 0.5 ? pinch : cable,
                         all.row.share > 0.5 ? cable : pinch);
@@ -48,9 +75,10 @@ std::string verdict(const Report& report) {
       one ? fmt::format(" in demonstration {}", report.demonstrations[0].row.name)
           : fmt::format(" over the {} demonstrations", report.demonstrations.size());
   return fmt::format(
-      "{}: {} {}{} ({}; {}, {}).", found,
+      "{}: {} {}{} ({}; {}, {}{}).", found,
       one ? out_of(all.row.counts) + " preferred" : out_of(all.row.counts) + " answers chose",
-      pinch, where, percent(all.row.share), p_in_words(read.p), read.test);
+      pinch, where, percent(all.row.share), p_in_words(read.p), read.test,
+      bound_in_words(all.row, design));
 }
 
 std::string demonstrations_in_words(const Report& report) {
@@ -104,7 +132,7 @@ std::string groups_in_words(const Report& report) {
 }  // namespace
 
 std::string plain_words(const Report& report, const AnswersTable& table) {
-  std::string text = (table.is_pilot ? "Answers of a pilot. " : "") + verdict(report);
+  std::string text = (table.is_pilot ? "Answers of a pilot. " : "") + verdict(report, table.design);
   if (report.demonstrations.size() > 1) {
     text += demonstrations_in_words(report);
     text += groups_in_words(report);
@@ -117,8 +145,13 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
         difference.name, difference.statistic.value, difference.df.value, p_in_words(difference.p));
   }
   if (!report.graded.empty() && report.graded.back().ties > 0) {
-    text += fmt::format(" {} of {} answers were ties, and are in no count here.",
-                        report.graded.back().ties, report.graded.back().answers);
+    std::vector<std::string> only_ties;
+    for (const GradedPreference& row : report.graded) {
+      if (row.ties == row.answers) only_ties.push_back(row.name);
+    }
+    text += fmt::format(" {} of {} answers were ties, and are in no count here{}.",
+                        report.graded.back().ties, report.graded.back().answers,
+                        only_ties.empty() ? "" : ": all of those to " + list_of(only_ties));
   }
   if (!table.exclusions.empty()) {
     text += fmt::format(" {} participant{} left out (listed below with the reasons).",

@@ -38,6 +38,20 @@ double level_deviance(const Likelihood& likelihood, const std::vector<Points>& o
   return deviance;
 }
 
+// Whether hits, by the line of least squares, fall with the level.
+bool falls(const std::vector<Points>& observers) {
+  double trials = 0.0, hits = 0.0, t = 0.0, both = 0.0;
+  for (const Points& points : observers) {
+    for (const Point& point : points) {
+      trials += point.trials;
+      hits += point.hits;
+      t += point.trials * point.t;
+      both += point.hits * point.t;
+    }
+  }
+  return both * trials < hits * t;
+}
+
 // A study as the fit would have it.
 std::vector<Points> simulate(const Likelihood& likelihood, const std::vector<Points>& design,
                              const Curve& curve, double spread, gsl_rng* rng) {
@@ -219,7 +233,9 @@ PsychometricFit fit_psychometric(const PsychometricModel& model,
   Search search(model, points, random_effects);
   const Search::Result best = search.best();
   if (Search::flat(best.x[1]) || std::abs(best.x[0]) > 5.0)
-    return not_estimable("the share of hits does not rise with the level");
+    return not_estimable(falls(points) ? "the share of hits falls with the level, where it must "
+                                         "rise; number the levels the other way round"
+                                       : "the share of hits does not rise with the level");
   const Curve curve = search.curve_of(best.x);
   double spread = search.spread_of(best.x);
   if (spread < 1e-3 * curve.width) spread = 0.0;

@@ -37,10 +37,14 @@ std::string unit_of(ScaleModel model) {
   return model == ScaleModel::bradley_terry ? "log-odds" : "standard deviations of one method";
 }
 
-const Estimate& p_equal(const ScaleReport& report, Estimate& independent) {
-  if (report.equal.p_sign_flip) return report.equal.p_sign_flip;
-  independent = report.equal.p_chi_square;
-  return independent;
+const Estimate& p_equal(const ScaleReport& report) {
+  return report.equal.p_sign_flip ? report.equal.p_sign_flip : report.equal.p_chi_square;
+}
+
+const char* how_equal(const EqualScale& equal) {
+  if (!equal.p_sign_flip) return "against chi-square, answers taken as independent";
+  return equal.exact ? "with all patterns of participants' choices turned round"
+                     : "with the participants' choices turned round at random";
 }
 
 class Writer {
@@ -236,8 +240,8 @@ class Writer {
   void methods() {
     add(Paragraph{fmt::format(
         "Bradley and Terry's model{} by maximum likelihood{}; Thurstone's case V{}. {} Equal "
-        "methods: score statistic of Bradley and Terry's model, with {} participants' choices "
-        "turned round at random. Demonstrations: squared residual wins, demonstrations exchanged "
+        "methods: score statistic of Bradley and Terry's model, {}. Demonstrations: squared "
+        "residual wins, demonstrations exchanged "
         "within participants. alpha = {}, seed = {}, {} resamples, Pinchlab {}.",
         table_.ties > 0 ? " with Davidson's ties" : "",
         report_.options.model == ScaleModel::bradley_terry ? " (read)" : "",
@@ -247,8 +251,8 @@ class Writer {
                           "Student's t with {} df.",
                           report_.fit().clusters, report_.fit().clusters - 1)
             : "Intervals and tests of pairs take all answers as independent.",
-        report_.equal.exact ? "all patterns of" : "the", report_.options.alpha,
-        report_.options.seed, report_.options.resamples, PINCHLAB_VERSION)});
+        how_equal(report_.equal), report_.options.alpha, report_.options.seed,
+        report_.options.resamples, PINCHLAB_VERSION)});
   }
 
   const ScaleReport& report_;
@@ -268,8 +272,7 @@ Figure scale_figure(const ScaleReport& report, const ComparisonsTable& table) {
   std::string all, each;
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t method = report.order[i];
-    script +=
-        fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_quote(table.methods[method]), i + 1);
+    script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_tic(table.methods[method]), i + 1);
     const ScaleValueOf& value = report.all.values[method];
     all += fmt::format("{:.6f} {:.6f} {:.6f} {}\n", value.value.value, value.low.value,
                        value.high.value, i + 1);
@@ -302,12 +305,11 @@ Figure scale_figure(const ScaleReport& report, const ComparisonsTable& table) {
 
 std::string scale_words(const ScaleReport& report, const ComparisonsTable& table) {
   const ScaleFit& fit = report.fit();
-  Estimate independent;
-  const Estimate& p = p_equal(report, independent);
+  const Estimate& p = p_equal(report);
   const std::string test = report.equal.p_sign_flip
                                ? "sign flips over participants"
                                : "score test that takes all answers as independent";
-  const bool differ = p.value < report.options.alpha;
+  const bool differ = p && p.value < report.options.alpha;
   std::string text =
       (table.is_pilot ? "Answers of a pilot. " : "") +
       fmt::format("The methods {} ({}, {}). ",

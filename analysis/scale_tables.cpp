@@ -103,8 +103,8 @@ void put_pairs(const ScaleReport& report, const ComparisonsTable& table, ordered
 void put_tests(const ScaleReport& report, ordered_json& document) {
   ordered_json equal = {{"score", report.equal.score},
                         {"df", report.equal.df},
-                        {"p_chi_square", report.equal.p_chi_square},
                         {"sign_flip_exact", report.equal.exact}};
+  put(equal, "p_chi_square", report.equal.p_chi_square);
   put(equal, "p_sign_flip", report.equal.p_sign_flip);
   document["equal"] = std::move(equal);
   ordered_json difference;

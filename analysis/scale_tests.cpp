@@ -27,6 +27,21 @@ double score_of(const Matrix& inverse_laplacian, const std::vector<double>& wins
   return sum;
 }
 
+// Of each method the last that comparisons lead to from it.
+std::vector<std::size_t> last_of_part(std::size_t methods,
+                                      const std::vector<PairChoices>& choices) {
+  std::vector<std::size_t> last(methods);
+  std::iota(last.begin(), last.end(), std::size_t{0});
+  for (const PairChoices& pair : choices) {
+    const std::size_t left = last[pair.left], right = last[pair.right];
+    if (pair.left_wins + pair.right_wins == 0) continue;
+    for (std::size_t& one : last) {
+      if (one == left || one == right) one = std::max(left, right);
+    }
+  }
+  return last;
+}
+
 // Numbers that rounding may have parted are not more extreme than each other.
 bool as_extreme(double value, double observed) {
   return value >= observed - 1e-9 * std::max(1.0, std::abs(observed));
@@ -125,29 +140,37 @@ void count_stochastic_transitivity(std::size_t m, const std::vector<PairChoices>
 
 EqualScale equal_scale(std::size_t methods, const std::vector<PairChoices>& choices,
                        std::uint64_t seed, int resamples) {
-  // Wins minus losses add up to 0, so that all but the last say everything; the same rows of the
-  // Laplacian have an inverse where all methods are connected.
-  const std::size_t size = methods - 1;
+  // Among methods that are compared with each other wins minus losses add up to 0, so that all but
+  // the last say everything, and the same rows of the Laplacian have an inverse.
+  const std::vector<std::size_t> last = last_of_part(methods, choices);
+  std::vector<std::size_t> row(methods);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < methods; ++i) row[i] = last[i] == i ? methods : size++;
+  EqualScale result;
+  result.df = static_cast<double>(size);
+  if (size == 0) {
+    result.p_chi_square = result.p_sign_flip = Estimate::none("all answers are ties");
+    return result;
+  }
   Matrix laplacian(size);
   std::map<std::uint32_t, std::vector<double>> by_participant;
-  std::vector<double> sum(methods);
+  std::vector<double> sum(size);
   for (const PairChoices& pair : choices) {
     const auto n = static_cast<double>(pair.left_wins + pair.right_wins);
     const double more = static_cast<double>(pair.left_wins) - static_cast<double>(pair.right_wins);
     std::vector<double>& own = by_participant[pair.participant];
-    own.resize(methods);
+    own.resize(size);
+    const std::size_t left = row[pair.left], right = row[pair.right];
     for (auto* wins : {&own, &sum}) {
-      (*wins)[pair.left] += more;
-      (*wins)[pair.right] -= more;
+      if (left < size) (*wins)[left] += more;
+      if (right < size) (*wins)[right] -= more;
     }
-    for (const auto& [i, j] : {std::pair{pair.left, pair.right}, {pair.right, pair.left}}) {
+    for (const auto& [i, j] : {std::pair{left, right}, {right, left}}) {
       if (i < size) laplacian.at(i, i) += n;
       if (i < size && j < size) laplacian.at(i, j) -= n;
     }
   }
   const Matrix metric = inverse(laplacian);
-  EqualScale result;
-  result.df = static_cast<double>(size);
   result.score = score_of(metric, sum);
   result.p_chi_square = chi_square_p(result.score, result.df);
   const std::size_t participants = by_participant.size();
@@ -161,10 +184,10 @@ EqualScale equal_scale(std::size_t methods, const std::vector<PairChoices>& choi
   constexpr std::size_t most_exact = 16;
   result.exact = participants <= most_exact;
   const auto flipped = [&](const auto& is_flipped) {
-    std::vector<double> total(methods);
+    std::vector<double> total(size);
     for (std::size_t i = 0; i < participants; ++i) {
       const double sign = is_flipped(i) ? -1.0 : 1.0;
-      for (std::size_t j = 0; j < methods; ++j) total[j] += sign * wins[i][j];
+      for (std::size_t j = 0; j < size; ++j) total[j] += sign * wins[i][j];
     }
     return as_extreme(score_of(metric, total), result.score) ? 1.0 : 0.0;
   };

@@ -11,10 +11,11 @@
 namespace pinchlab::analysis {
 
 /// Are all methods equal? The score statistic of Bradley and Terry's model, S = D' L^+ D with D the
-/// wins minus the losses of each method and L the Laplacian of the numbers of comparisons.
+/// wins minus the losses of each method and L the Laplacian of the numbers of comparisons without
+/// ties. Each part of the methods that is not compared with the others takes one df.
 struct EqualScale {
   double score = 0.0, df = 0.0;
-  double p_chi_square = 1.0;  ///< takes all answers as independent
+  Estimate p_chi_square;  ///< takes all answers as independent; none where all are ties
   /// participants turn all their choices round or none: exact up to 16 participants, otherwise
   /// from random signs
   Estimate p_sign_flip;

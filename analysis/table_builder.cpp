@@ -140,7 +140,7 @@ void TableBuilder::add_answer(const RawAnswer& raw, size_t line) {
 
 void TableBuilder::add_graded(const GradedAnswer& answer) {
   table_.graded.push_back(answer);
-  if (answer.grade == 0) ++ties_[answer.participant];
+  if (answer.grade == 0) ++ties_[answer.participant][answer.demonstration];
 }
 
 void TableBuilder::add_counts(std::string_view demonstration, std::string_view group, Counts counts,
@@ -240,35 +240,71 @@ void TableBuilder::check_doubles() const {
   }
 }
 
-// Every participant must have answered every demonstration; who has not is an error, or is listed.
+// Whoever has answered must have answered every demonstration as often as the design says, ties
+// included; who has not is an error, or is listed.
+void TableBuilder::check_times(const std::string& participant, const std::vector<size_t>& times,
+                               const std::vector<std::string>& demonstrations,
+                               const std::string& where) {
+  const auto limit = static_cast<size_t>(table_.answers_per_demonstration);
+  const auto more = std::ranges::find_if(times, [&](size_t n) { return n > limit; });
+  if (more != times.end()) {
+    throw InputError(
+        where, fmt::format("participant `{}` answers demonstration `{}` {}, ties among it; keep "
+                           "one of the answers, or say with --repetitions how often each pair was "
+                           "shown",
+                           participant, demonstrations[static_cast<size_t>(more - times.begin())],
+                           limit == 1 ? "twice" : fmt::format("more than {} times", limit)));
+  }
+  const auto fewer = std::ranges::find_if(times, [&](size_t n) { return n < limit; });
+  if (fewer == times.end()) return;
+  if (!allow_missing_) {
+    throw InputError(
+        where, fmt::format("participant `{}` gave {} of {} answers; missing: demonstration "
+                           "`{}`. Complete the log, leave the participant out with "
+                           "--exclude, or pass --allow-missing",
+                           participant, std::accumulate(times.begin(), times.end(), size_t{0}),
+                           limit * times.size(),
+                           demonstrations[static_cast<size_t>(fewer - times.begin())]));
+  }
+  table_.incomplete.push_back(participant);
+}
+
 void TableBuilder::check_missing() {
-  const auto per_demonstration = static_cast<size_t>(table_.answers_per_demonstration);
-  const size_t complete = per_demonstration * table_.demonstrations.size();
+  // A demonstration of which all answers are ties is in no table, and was shown all the same.
+  std::vector<std::string> demonstrations = table_.demonstrations;
+  std::map<std::string, size_t> index_of;
+  for (size_t i = 0; i < demonstrations.size(); ++i) index_of.emplace(demonstrations[i], i);
+  for (const auto& [participant, tied] : ties_) {
+    for (const auto& [demonstration, count] : tied) {
+      if (index_of.emplace(demonstration, demonstrations.size()).second)
+        demonstrations.push_back(demonstration);
+    }
+  }
+  auto ties = ties_;
+  std::vector<size_t> times;
+  const auto add_ties = [&](const std::string& participant) {
+    const auto found = ties.find(participant);
+    if (found == ties.end()) return;
+    for (const auto& [demonstration, count] : found->second)
+      times[index_of[demonstration]] += count;
+    ties.erase(found);
+  };
   size_t begin = 0;
   for (std::uint32_t p = 0; p < table_.participants.size(); ++p) {
+    times.assign(demonstrations.size(), 0);
     size_t end = begin;
-    while (end < table_.answers.size() && table_.answers[end].participant == p) ++end;
-    const auto ties = ties_.find(table_.participants[p]);
-    if (end - begin + (ties == ties_.end() ? 0 : ties->second) < complete) {
-      std::uint16_t missing = 0;
-      for (size_t have = begin; missing + 1U < table_.demonstrations.size(); ++missing) {
-        size_t count = 0;
-        for (; have < end && table_.answers[have].demonstration == missing; ++have) ++count;
-        if (count < per_demonstration) break;
-      }
-      if (!allow_missing_) {
-        const std::string where =
-            end > begin ? place_of(table_.answers[begin]) : table_.sources.back();
-        throw InputError(
-            where, fmt::format("participant `{}` gave {} of {} answers; missing: demonstration "
-                               "`{}`. Complete the log, leave the participant out with "
-                               "--exclude, or pass --allow-missing",
-                               table_.participants[p], end - begin, complete,
-                               table_.demonstrations[missing]));
-      }
-      table_.incomplete.push_back(table_.participants[p]);
-    }
+    for (; end < table_.answers.size() && table_.answers[end].participant == p; ++end)
+      ++times[table_.answers[end].demonstration];
+    add_ties(table_.participants[p]);
+    check_times(table_.participants[p], times, demonstrations,
+                end > begin ? place_of(table_.answers[begin]) : table_.sources.back());
     begin = end;
+  }
+  while (!ties.empty()) {  // who gave nothing else
+    times.assign(demonstrations.size(), 0);
+    const std::string participant = ties.begin()->first;
+    add_ties(participant);
+    check_times(participant, times, demonstrations, table_.sources.back());
   }
 }
 

@@ -73,6 +73,8 @@ class TableBuilder {
   [[nodiscard]] std::string place_of(const Answer& answer) const;
   void sort_names();
   void check_doubles() const;
+  void check_times(const std::string& participant, const std::vector<std::size_t>& times,
+                   const std::vector<std::string>& demonstrations, const std::string& where);
   void check_missing();
   void check_exclusions() const;
 
@@ -81,7 +83,7 @@ class TableBuilder {
   Index demonstrations_;
   std::map<std::string, std::string> column_groups_;
   std::map<std::string, bool, std::less<>> excluded_;  // participant -> seen in an input?
-  std::map<std::string, std::size_t> ties_;            // by participant
+  std::map<std::string, std::map<std::string, std::size_t>> ties_;  // of each, by demonstration
   bool allow_missing_;
   std::string expected_from_;  // the place that set answers_per_demonstration
   std::uint32_t last_participant_ = 0;

@@ -76,6 +76,28 @@ double spread_of(const PsychometricFit& fit) {
   return fit.spread ? fit.spread.value : 0.0;
 }
 
+// What the fits and their intervals take participants for.
+std::string how_participants(const ThresholdReport& report) {
+  const auto has_spread = [](const PsychometricFit& fit) { return bool(fit.spread); };
+  const bool any = std::ranges::any_of(report.fits, has_spread);
+  const bool all = std::ranges::all_of(report.fits, has_spread);
+  std::string text;
+  if (any) {
+    text = fmt::format(
+        "Participants have their own thresholds, normally distributed{}; 11-point adaptive "
+        "Gauss–Hermite quadrature. Profile intervals with the cut-off that is exact for the mean "
+        "of as many normal values as there are participants.",
+        report.model.shape == Shape::weibull ? " on the logarithmic axis" : "");
+  }
+  if (!all) {
+    text += fmt::format(
+        "{} one threshold; profile intervals with the cut-off of chi-square, one degree of "
+        "freedom, which takes all answers as independent.",
+        any ? " A single participant, or totals, have" : "A single participant, or totals, with");
+  }
+  return text;
+}
+
 // Share of hits at the threshold, of the average participant.
 double share_at_threshold(const ThresholdReport& report, const PsychometricFit& fit) {
   return fit.curve.guess + (1.0 - fit.curve.guess - fit.curve.lapse) * report.model.threshold_at;
@@ -181,17 +203,14 @@ Document threshold_document(const ThresholdReport& report, const LevelsTable& ta
   };
   document.blocks.push_back(Paragraph{fmt::format(
       "A {} function of the {} by maximum likelihood, {} and {}; the threshold is the level at "
-      "which the function has {:g} % of its height between the two. Participants have their own "
-      "thresholds, normally distributed{}; 11-point adaptive Gauss–Hermite quadrature. Profile "
-      "intervals with the cut-off that is exact for the mean of as many normal values as there are "
-      "participants. The slope is that of the standard function's argument{}. Deviance of the "
+      "which the function has {:g} % of its height between the two. {} The slope is that of the "
+      "standard function's argument{}. Deviance of the "
       "levels' totals, against studies simulated from the fit and fitted again. alpha = {}, seed = "
       "{}, Pinchlab {}.",
       shape_name(report.model.shape),
       report.model.shape == Shape::weibull ? "logarithm of the level" : "level",
       rate(report.model.guess, "guesses"), rate(report.model.lapse, "lapses"),
-      100.0 * report.model.threshold_at,
-      report.model.shape == Shape::weibull ? " on the logarithmic axis" : "",
+      100.0 * report.model.threshold_at, how_participants(report),
       report.model.shape == Shape::weibull ? " (Weibull's exponent)" : "", report.options.alpha,
       report.options.seed, PINCHLAB_VERSION)});
   return document;

@@ -122,6 +122,35 @@ TEST(Graded, TiesAreInNoCount) {
   EXPECT_TRUE(rows[1]["p_signed_rank"].is_null()) << "only ties";
 }
 
+// A tie is an answer that was given, also where a demonstration has no other.
+TEST(Graded, TiesCountAsGiven) {
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& rows) {
+    return read_answers(
+        {folder.write("a.csv", "participant,demonstration,choice,side,preference\n" + rows)}, {});
+  };
+  const auto refusal = [&](const std::string& rows) -> std::string {
+    try {
+      read(rows);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string whole =
+      "p1,A,pinch,left,-1\np1,B,tie,left,0\np2,A,cable,left,1\np2,B,tie,left,0\n";
+  EXPECT_EQ(refusal(whole), "");
+  EXPECT_NE(plain_words(analyse_table(read(whole), {.bootstrap = 99}), read(whole))
+                .find("all of those to B"),
+            std::string::npos);
+  // Not B; A twice; nothing but a tie, of two.
+  EXPECT_NE(refusal("p1,A,pinch,left,-1\np2,A,cable,left,1\np2,B,tie,left,0\n")
+                .find("`p1` gave 1 of 2 answers; missing: demonstration `B`"),
+            std::string::npos);
+  EXPECT_NE(refusal("p1,A,pinch,left,-1\np1,A,tie,left,0\n").find("`A` twice"), std::string::npos);
+  EXPECT_NE(refusal(whole + "p3,B,tie,left,0\n").find("`p3` gave 1 of 2"), std::string::npos);
+}
+
 TEST(Graded, NothingChangesWithout) {
   const TemporaryFolder folder;
   folder.write("a.json", test::answer_document("p-1").dump());

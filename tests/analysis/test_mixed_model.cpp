@@ -55,6 +55,28 @@ TEST(Laplace, ApproachesTheIntegralAsAnswersGrow) {
   }
 }
 
+// Tosses of a coin on which a simplex got stuck. There is no spread, so that the model is a plain
+// binomial one, whose estimate and deviance are in closed form.
+TEST(MixedModel, FindsThatThereIsNoSpread) {
+  constexpr std::uint16_t tosses[] = {0x8482, 0x77a6, 0xa2f6, 0x1d23,
+                                      0x3fcc, 0xd286, 0x0990, 0xd838};
+  std::vector<std::string> rows;
+  double pinch = 0;
+  for (int i = 0; i < 128; ++i) {
+    const bool is_pinch = ((tosses[i / 16] >> (15 - i % 16)) & 1) == 1;
+    pinch += is_pinch ? 1 : 0;
+    rows.push_back(fmt::format("p{:02},{},{}\n", i / 8, i % 8, is_pinch ? "pinch" : "cable"));
+  }
+  const AnswersTable table = test::table_of(test::tidy_csv(rows));
+  const MixedModel model = fit_mixed_model(mixed_data(table, table.groups.back()), 0.05);
+  ASSERT_TRUE(model.intercept) << model.intercept.why_not;
+  EXPECT_EQ(model.sd_participant.value, 0.0);
+  EXPECT_EQ(model.sd_demonstration.value, 0.0);
+  const double odds = std::log(pinch / (128 - pinch));
+  EXPECT_NEAR(model.intercept.value, odds, 1e-4);
+  EXPECT_NEAR(model.deviance.value, minus_two_log_likelihood(128, pinch, odds), 1e-6);
+}
+
 // lme4 1.1 (glmer, nAGQ = 1) on the same data: 1.202326, 0, 0.668445, deviance 140.142656. Its
 // optimiser stops a little above the minimum.
 TEST(MixedModel, AgreesWithLme4OnTheClusteredDataSet) {

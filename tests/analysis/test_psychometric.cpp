@@ -188,6 +188,8 @@ TEST(Fit, SaysWhatItCannotTell) {
   EXPECT_NE(fit({{1, 9, 5}, {2, 9, 9}}).threshold.why_not.find("three levels"), std::string::npos);
   EXPECT_NE(fit({{1, 9, 9}, {2, 9, 9}, {3, 9, 9}}).threshold.why_not.find("same"),
             std::string::npos);
+  EXPECT_NE(fit({{1, 90, 85}, {2, 90, 70}, {3, 90, 50}}).threshold.why_not.find("falls"),
+            std::string::npos);
   const PsychometricFit chance = fit({{1, 90, 45}, {2, 90, 45}, {3, 90, 45}});
   EXPECT_FALSE(chance.threshold_low && chance.threshold_high);
   // From guessing to certainty between two levels: a threshold there, and no slope.
@@ -250,6 +252,35 @@ TEST(Levels, RefusesWhatCannotBe) {
   options.exclude_file = folder.write("x.csv", "participant,reason\nnobody,asked\n");
   EXPECT_THROW(read_levels({folder.write("ok.csv", "participant,level,correct\na,1,1\n")}, options),
                InputError);
+}
+
+TEST(Levels, NamesAndTotalsAreNotPutTogether) {
+  const TemporaryFolder folder;
+  const auto named = folder.write("named.csv", "participant,level,correct\na,1,1\nb,1,0\n");
+  const auto totals = folder.write("totals.csv", "level,correct,trials\n1,60,90\n");
+  EXPECT_NO_THROW(read_levels({named}, {}));
+  EXPECT_NO_THROW(read_levels({totals}, {}));
+  EXPECT_THROW(read_levels({named, totals}, {}), InputError);
+}
+
+TEST(ThresholdReport, SaysWhatItTookParticipantsFor) {
+  const TemporaryFolder folder;
+  const auto methods = [&](const std::string& csv) {
+    const LevelsTable table = read_levels({folder.write("a.csv", csv)}, {});
+    const ThresholdReport report = analyse_thresholds(table, {}, {.resamples = 0});
+    write_threshold_report(report, table, folder.path() / "out", false);
+    return test::read_text(folder.path() / "out" / "report.md");
+  };
+  std::string one = "level,correct,trials\n", two = "participant,level,correct,trials\n";
+  for (int level = 1; level <= 5; ++level) {
+    one += fmt::format("{},{},40\n", level, 18 + 4 * level);
+    two += fmt::format("a,{0},{1},40\nb,{0},{1},40\n", level, 18 + 4 * level);
+  }
+  const std::string own = "Participants have their own thresholds", chi = "cut-off of chi-square";
+  EXPECT_EQ(methods(one).find(own), std::string::npos);
+  EXPECT_NE(methods(one).find(chi), std::string::npos);
+  EXPECT_NE(methods(two).find(own), std::string::npos);
+  EXPECT_EQ(methods(two).find(chi), std::string::npos);
 }
 
 TEST(ThresholdReport, WritesEveryFileAndEveryReason) {

@@ -300,6 +300,7 @@ TEST(Pages, HtmlNeedsNothingFromElsewhere) {
 
 TEST(Gnuplot, QuotedTextIsInert) {
   EXPECT_EQ(gnuplot_quote("it's"), "'it''s'");
+  EXPECT_EQ(gnuplot_tic("50% slip"), "'50%% slip'");
   EXPECT_EQ(gnuplot_quote("`touch x`"), "'\"touch x\"'");
 }
 

@@ -195,6 +195,23 @@ TEST(ScaleTests, EqualScaleIsDurbinsStatistic) {
   EXPECT_FALSE(result.p_sign_flip);
 }
 
+// Two pairs that nothing connects: each is a binomial score test of its own, (190 - 10)^2 / 200 and
+// 0. Of methods that are tied with the others always, nothing is compared.
+TEST(ScaleTests, PartsOfMethodsAreEachATest) {
+  const EqualScale parts =
+      equal_scale(4, {{0, 0, 0, 1, 190, 10, 0}, {0, 0, 2, 3, 100, 100, 0}}, 1, 99);
+  EXPECT_NEAR(parts.score, 162.0, 1e-9);
+  EXPECT_EQ(parts.df, 2);
+  EXPECT_LT(parts.p_chi_square.value, 1e-30);
+  const EqualScale tied = equal_scale(
+      3, {{0, 0, 0, 1, 190, 10, 5}, {0, 0, 0, 2, 0, 0, 50}, {0, 0, 1, 2, 0, 0, 50}}, 1, 99);
+  EXPECT_NEAR(tied.score, 162.0, 1e-9);
+  EXPECT_EQ(tied.df, 1);
+  const EqualScale nothing = equal_scale(2, {{0, 0, 0, 1, 0, 0, 50}}, 1, 99);
+  EXPECT_FALSE(nothing.p_chi_square);
+  EXPECT_FALSE(nothing.p_sign_flip);
+}
+
 TEST(ScaleTests, StochasticTransitivity) {
   // a over b .6, b over c .7, a over c .65: weak and moderate hold, strong does not.
   Transitivity result = transitivity(
@@ -273,7 +290,7 @@ TEST(ScaleTests, SignFlipsKeepTheirLevel) {
         simulated(static_cast<std::uint64_t>(9000 + i), 24, 4, {0, 0, 0}, 0.8);
     const EqualScale result = equal_scale(3, choices, 1, 499);
     flips += result.p_sign_flip.value <= 0.05 ? 1 : 0;
-    chi_square += result.p_chi_square <= 0.05 ? 1 : 0;
+    chi_square += result.p_chi_square.value <= 0.05 ? 1 : 0;
     const ScaleFit fit = fit_scale(ScaleModel::bradley_terry, 3, choices);
     demonstrations +=
         scale_difference(ScaleModel::bradley_terry, fit, 3, 4, choices, 1, 199).p.value <= 0.05;

@@ -10,6 +10,7 @@
 #include "analysis/gsl_support.h"
 #include "base/design_file.h"
 #include "base/input_error.h"
+#include "tests/analysis/support.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -138,6 +139,36 @@ TEST(Sequential, ARuleThatIsWrittenIsReadBack) {
   }
   EXPECT_THROW(parse_stopping({{"format", "pinchlab-stopping 1"}, {"rule", "guess"}}, "rule.json"),
                InputError);
+}
+
+// A study that may be looked at several times claims a preference by the bound of the look that it
+// has come to, which is below alpha; or by its Bayes factor.
+TEST(Sequential, APreferenceIsClaimedAsTheLookAsks) {
+  std::string csv = "participant,demonstration,choice\n";
+  for (int i = 0; i < 40; ++i) csv += fmt::format("p{:02},1,{}\n", i, i < 27 ? "pinch" : "cable");
+  AnswersTable table = test::table_of(csv);
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  const double p = report.all().row.read.p.value;
+  ASSERT_GT(p, 0.03);
+  ASSERT_LT(p, 0.05);
+  const auto claims = [&] {
+    const std::string words = plain_words(report, table);
+    const bool is_claimed = words.starts_with("Pinch was preferred to cable");
+    EXPECT_NE(is_claimed, words.starts_with("No clear preference")) << words;
+    return is_claimed;
+  };
+  EXPECT_TRUE(claims());
+  table.design = DesignCheck{};
+  EXPECT_TRUE(claims());  // of one look
+  table.design->p_at_most = 0.0188;
+  EXPECT_FALSE(claims());
+  table.design->p_at_most = p;
+  EXPECT_TRUE(claims());
+  table.design->p_at_most.reset();
+  table.design->bayes_factor = std::exp(report.all().row.log_bayes_factor) * 1.01;
+  EXPECT_FALSE(claims());
+  table.design->bayes_factor = std::exp(report.all().row.log_bayes_factor) * 0.99;
+  EXPECT_TRUE(claims());
 }
 
 TEST(Sequential, RefusesWhatCannotBe) {
