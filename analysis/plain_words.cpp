@@ -35,7 +35,7 @@ std::string p_in_words(const Estimate& estimate) {
   return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
 }
 
-// Whether a preference is claimed: of a design that may stop early by the bound of the look reached.
+// Whether a preference is claimed: in a design that may stop early, by the bound of its look.
 bool is_found(const Row& all, double alpha, const std::optional<DesignCheck>& design) {
   if (design && design->bayes_factor)
     return all.log_bayes_factor >= std::log(*design->bayes_factor);

@@ -323,6 +323,11 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
       throw std::invalid_argument(fmt::format("the pair {},{} is asked for twice", first, second));
     }
     const Configuration one = method_of(scene, first), other = method_of(scene, second);
+    if (!usual && one == other) {
+      throw std::invalid_argument(
+          fmt::format("{},{}: the baseline of {} is {}, and a pair needs two methods", first,
+                      second, scene.name, to_string(scene.baseline)));
+    }
     const std::string both = fmt::format("{}-{}", first, second);
     const std::string swapped = fmt::format("{}-{}", second, first);
     if (options.singles) {

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
+#include "base/counted.h"
 #include "base/csv.h"
 #include "base/output_file.h"
 #include "base/partial_file.h"
@@ -244,6 +246,26 @@ void merge(const Sweep& sweep, const Stimuli& stimuli, const SweepOptions& optio
   write_crate(out, crate);
 }
 
+/// Clips of other values, which stimuli.csv and the crate do not have any more.
+void tell_of_others(const Stimuli& stimuli, const fs::path& out) {
+  if (stimuli.list.empty()) return;
+  std::set<fs::path> own;
+  for (const Stimulus& stimulus : stimuli.list) own.insert(stimulus.plan.file);
+  const fs::path ending = own.begin()->extension();
+  std::set<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out)) {
+    const fs::path name = entry.path().filename();
+    if (name.extension() == ending && !own.contains(name)) others.insert(name);
+  }
+  if (others.empty()) return;
+  fmt::print(
+      stderr,
+      "{}: note: {} of other values {} there, {} the first, and {} not in stimuli.csv nor in "
+      "the crate; sweep one table of all values, or each into a folder of its own\n",
+      out.string(), counted(others.size(), "clip"), others.size() == 1 ? "is" : "are",
+      others.begin()->string(), others.size() == 1 ? "is" : "are");
+}
+
 void tell_broken_promises(const Stimuli& stimuli, const fs::path& out) {
   for (const Stimulus& stimulus : stimuli.list) {
     const ordered_json record = record_of(stimulus, out);
@@ -283,7 +305,10 @@ int run_sweep(const SweepOptions& options) {
   tell_broken_promises(stimuli, out);
   fmt::print(stderr, "{}: {} made, {} there already, {} failed\n", out.string(), outcome.made,
              stimuli.list.size() - to_make.size(), outcome.failed);
-  if (!options.shard && outcome.failed == 0) merge(sweep, stimuli, options);
+  if (!options.shard && outcome.failed == 0) {
+    merge(sweep, stimuli, options);
+    tell_of_others(stimuli, out);
+  }
   return outcome.failed;
 }
 

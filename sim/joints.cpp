@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/joints.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/at.h"
 #include "sim/compound.h"
 #include "sim/outline.h"

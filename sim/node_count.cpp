@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -192,10 +191,6 @@ void find_hung_masses(const Scene& scene, std::span<const std::size_t> asked, He
   held.take_back(mark);
 }
 
-bool end_moves(const Scene& scene, const Attachment& end) {
-  return end.body >= 0 && can_move(at(scene.bodies, end.body));
-}
-
 Vec2 velocity_of(const Scene& scene, const Attachment& end) {
   if (end.body < 0) return Vec2::Zero();
   const Body& body = at(scene.bodies, end.body);
@@ -236,7 +231,8 @@ double swinging_tension(const Scene& scene, const Cable& cable, double hung) {
 double sagging_tension(const Scene& scene, const Cable& cable, const Vec2& chord, double slack) {
   const double along = cable.mass_per_metre * std::abs(chord.dot(scene.gravity));      // N
   const double across = cable.mass_per_metre * std::abs(cross(chord, scene.gravity));  // N
-  double tension = slack > 0.0 ? across / (8.0 * std::sqrt(0.375 * slack)) : infinity;
+  constexpr double rounding = 1e-9;  // of lengths of what is to be as long as its way
+  double tension = slack > rounding ? across / (8.0 * std::sqrt(0.375 * slack)) : infinity;
   if (cable.axial_stiffness < infinity) {
     const double taut = std::max(-slack, 0.0) * cable.axial_stiffness;
     tension = std::min(tension, taut + std::cbrt(cable.axial_stiffness * across * across / 24.0));

@@ -37,6 +37,7 @@
 #include <string>
 #include <vector>
 
+#include "base/at.h"
 #include "sim/scene.h"
 
 namespace pinchlab {
@@ -44,6 +45,11 @@ namespace pinchlab {
 /// Of a cable that leaves it open: 200 pieces cost a row each and show its sag to 1 / n^2 of it,
 /// 2.5e-5. Whoever wants more says so.
 constexpr int most_nodes_chosen = 199;
+
+/// Whether an end of a cable is on a body that can move.
+inline bool end_moves(const Scene& scene, const Attachment& end) {
+  return end.body >= 0 && can_move(at(scene.bodies, end.body));
+}
 
 /// What a cable is to expect that leaves the number of its nodes open.
 struct Expected {

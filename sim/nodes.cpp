@@ -9,6 +9,7 @@
 #include "base/at.h"
 #include "sim/compound.h"
 #include "sim/hanging.h"
+#include "sim/node_count.h"
 #include "sim/outline.h"
 #include "sim/scene_checks.h"
 #include "sim/scene_error.h"
@@ -18,10 +19,6 @@
 namespace pinchlab {
 
 namespace {
-
-bool ends_on_mobile(const Scene& scene, const Attachment& end) {
-  return end.body >= 0 && can_move(at(scene.bodies, end.body));
-}
 
 void refuse_what_has_no_nodes(const Cable& cable, const std::string& place) {
   if (!(cable.mass_per_metre < infinity) || cable.nodes < automatic_nodes) {
@@ -117,7 +114,7 @@ void keep_off_end(Scene& scene, const NodedCable& made, const Cable& whole, doub
 
 /// A body that holds an end has the end's half piece.
 void load_end(Scene& scene, const Attachment& end, double mass) {
-  if (!ends_on_mobile(scene, end)) return;
+  if (!end_moves(scene, end)) return;
   Body& body = at(scene.bodies, end.body);
   body.inertia = inertia_of(body);
   body.mass += mass;
@@ -133,8 +130,8 @@ std::vector<double> weigh_nodes(Scene& scene, const Cable& whole, int pieces, do
     load_end(scene, whole.end, half);
     return masses;
   }
-  if (ends_on_mobile(scene, whole.start)) masses.front() += half;
-  if (ends_on_mobile(scene, whole.end)) masses.back() += half;
+  if (end_moves(scene, whole.start)) masses.front() += half;
+  if (end_moves(scene, whole.end)) masses.back() += half;
   return masses;
 }
 

@@ -31,8 +31,8 @@ inline bool becomes_strung(const Cable& cable) {
 /// Replaces every cable of the scene that has a mass, and runs over no bodies, by n nodes and n + 1
 /// massless pieces of equal length l between them: node i has the mass (l_(i-1) + l_i) / 2 times
 /// that of a metre, and those next to an end on a body that can move have the end's half piece too.
-/// Nodes are discs as wide as the cable that do not turn: they lie on walls and bodies, and on one
-/// another, with friction.
+/// Nodes are discs as wide as the cable that do not turn: they lie on walls and bodies, with
+/// friction, and pass through one another.
 ///
 /// A cable with slack starts where its chain hangs at rest, exactly (without gravity as if it had
 /// one); a taut one straight. How many nodes: as many as it says, or so many that pieces are no

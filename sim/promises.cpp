@@ -73,6 +73,7 @@ Promises::Promises(const Scene& scene, const World& world) {
     if (can_move(body)) at_play_ += body.mass * scene.gravity.norm() * body.radius;
   }
   round_off_ = energy_of_round_off(scene, world);
+  kinetic_ = kinetic;
   start_energy_ = kinetic + potential_;
   at_play_ = std::max(at_play_, kinetic);
 }
@@ -191,18 +192,23 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
 }
 
 // Energy at the step's start: velocities were from before it and are half an interval after it, and
-// between the two they change evenly. Where the step was divided that half is not known, and the
-// step after it tells.
+// between the two they change evenly. Where the step was divided that half is not known: then there
+// is at least what the lesser of the velocities before and after tells, but for what these and
+// positions can have exchanged meanwhile, no more than potential energy changes by in the step.
 void Promises::note_energy(const Scene& scene, const World& world) {
   const double kinetic = kinetic_energy(world, before_, world.step_length);
   at_play_ = std::max(at_play_, kinetic);
   const bool whole = world.diagnostics.intervals - intervals_ <= 1 && !has_instants(world);
-  if (at_play_ > 0.0 && whole) {
-    const double gained = kinetic + potential_ - start_energy_ - round_off_;
+  note_instant(world, before_);
+  const double kinetic_after = kinetic_energy(world, before_, world.step_length);
+  const double after = potential_energy(scene, world);
+  if (at_play_ > 0.0) {
+    const double sure = std::min(kinetic_, kinetic_after) - std::abs(after - potential_);
+    const double gained = (whole ? kinetic : sure) + potential_ - start_energy_ - round_off_;
     note_value(Promise::energy, gained / at_play_, limits_.energy, world.step, -1, -1);
   }
-  potential_ = potential_energy(scene, world);
-  note_instant(world, before_);
+  potential_ = after;
+  kinetic_ = kinetic_after;
   intervals_ = world.diagnostics.intervals;
 }
 

@@ -71,6 +71,7 @@ class Promises {
   double at_play_ = 0.0;        // J: the largest kinetic energy so far, or what lifts each body
                                 // by its radius, whichever is more
   double potential_ = 0.0;      // J, at the last step's end
+  double kinetic_ = 0.0;        // J, by the velocities of then
   Instant before_;              // then
   std::int64_t intervals_ = 0;  // Diagnostics::intervals
 };

@@ -167,18 +167,19 @@ void refuse_crowded_nodes(const Cable& given, const CableState& cable, std::size
 
 namespace {
 
-/// Whether a link lets no cable through, and stands.
-bool holds_fast(const World& world, const Link& link) {
-  if (link.body < 0) return true;
-  const BodyProperties& body = at(world.bodies, mover_of(world, link.body));
-  return is_static(body) && (link.orientation == 0 || body.cable_friction == infinity);
-}
-
 /// Whether its circle stands.
 bool has_still_centre(const World& world, const Link& link) {
   if (link.body < 0) return true;
   const BodyProperties& body = at(world.bodies, mover_of(world, link.body));
-  return is_static(body) || (!can_move(body) && is_central(link));
+  const bool is_centre = is_central(link) && at(world.bodies, link.body).seat.isZero(0.0);
+  return is_static(body) || (!can_move(body) && is_centre);
+}
+
+/// Whether a link lets no cable through, and stands.
+bool holds_fast(const World& world, const Link& link) {
+  if (link.orientation == 0) return has_still_centre(world, link);
+  const BodyProperties& body = at(world.bodies, mover_of(world, link.body));
+  return is_static(body) && body.cable_friction == infinity;
 }
 
 /// The last link in succession on the rigid body that a link is on.
@@ -275,9 +276,10 @@ void refuse_hanging_into_others(const Scene& scene, const World& world, const Br
              -contact.gap);
     }
     for (const SpanPair& pair : broad.span_pairs) {
+      if (pair.cable != c) continue;
       const Link& head = at(cable.links, pair.segment);
       const Link& tail = at(cable.links, previous_link(cable, pair.segment));
-      if (pair.cable != c || !is_strung(cable, head) || !is_strung(cable, tail)) continue;
+      if (!is_strung(cable, head) || !is_strung(cable, tail)) continue;
       if (is_within_end(world, cable, head, pair.body)) continue;
       if (is_within_end(world, cable, tail, pair.body)) continue;
       const Segment& segment = at(cable.segments, pair.segment);

@@ -7,6 +7,7 @@
 #include "sim/at_steps.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held.h"
+#include "sim/cable/strung.h"
 #include "sim/compound.h"
 #include "sim/detect/detect.h"
 #include "sim/diagnostics.h"
@@ -75,6 +76,7 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
   }
   watch.lap(Stage::diagnose);
   work.start.position = world.position;
+  work.start.angle = world.angle;
   move_bodies(work.parts, world);
   if (world.step == 0) {  // from now on velocities are half a step behind
     std::fill(world.pace.begin(), world.pace.end(), Pace{.lag = 0.5 * world.step_length});
@@ -89,6 +91,7 @@ StepStatus advance_at_once(const Scene& scene, World& world, Workspace& work, St
 StepStatus step(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   fit(world, work);
   if (all_asleep(work.parts)) {
+    world.diagnostics.active_set_solves = 0;
     ++world.step;
     mark(world, work);
     return StepStatus::ok;
@@ -151,6 +154,7 @@ Velocities velocities_now(const Scene& scene, const World& world, Workspace& wor
     }
   }
   for (const NodeChain& chain : scene.chains) carry_velocities(world, chain, now.linear);
+  for (const int c : world.strung) carry_velocities(world, at(world.cables, c), now.linear);
   return now;
 }
 

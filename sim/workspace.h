@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 // What the stages of a step keep beside the World: lists that stand while nothing of theirs has
-// moved, and storage, so that a warm step allocates nothing. All of it follows from the World: a
-// new Workspace before each step gives the same bits, only later.
+// moved, and storage, so that a warm step allocates nothing, unless links of a cable come or go in
+// it. All of it follows from the World: a new Workspace before each step gives the same bits, only
+// later.
 
 #include <cstdint>
 #include <vector>

@@ -63,7 +63,7 @@ struct alignas(64) Link {
   double slip_speed = 0.0;  // m/s of material over the body's surface, forward positive
   Vec2 offset = Vec2::Zero();  // m, the circle's centre in the body's frame, or in the world
   // What few steps read.
-  int contact = -1;  // pinch_middle: the contact that presses it, by confirm_pinches
+  int contact = -1;  // pinch_middle: the contact that presses it, by assign_contacts
   // moored:
   double bent = 0.0;  // rad, by which the cable was bent there when the rim took hold of it,
   double held = 0.0;  // rad, at which the rim, or the cable on it, was turned
@@ -102,7 +102,7 @@ struct alignas(64) Segment {
   bool slack = false;               // by the active set
   bool pinched = false;             // between two touching bodies: zero length, never hit-tested
   bool was_pinched = false;         // at the interval's start
-  int contact = -1;                 // pressing a transitional pinch, by confirm_pinches; or -1
+  int contact = -1;                 // pressing a transitional pinch, by assign_contacts; or -1
   double alpha_before = 0.0;        // rad, alpha when the interval began, like previous_tail
   // What is read where something has moved.
   Vec2 tail_centre = Vec2::Zero(), head_centre = Vec2::Zero();  // m, of the circles that the

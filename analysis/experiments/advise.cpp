@@ -2,6 +2,7 @@
 #include "analysis/experiments/advise.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -19,6 +20,8 @@
 #include "demos/command_line.h"
 #include "demos/scenes/player.h"
 #include "demos/scenes/scene_json.h"
+#include "sim/make_world.h"
+#include "sim/scene_error.h"
 
 namespace pinchlab::experiments {
 
@@ -77,6 +80,21 @@ std::vector<Contender> tried(const Question& question) {
   adaptive.name += by_error;
   adaptive.configuration.error = question.error_m;
   all.insert(all.begin() + 1, adaptive);
+  return all;
+}
+
+/// Those by which the scene can be simulated; the others' names go to `refused`.
+std::vector<Contender> possible(const Scene& scene, std::vector<Contender> all,
+                                std::vector<std::string>& refused) {
+  std::erase_if(all, [&](const Contender& contender) {
+    try {
+      make_world(scene, contender.configuration);
+      return false;
+    } catch (const SceneError&) {
+      refused.push_back(contender.name);
+      return true;
+    }
+  });
   return all;
 }
 
@@ -258,7 +276,7 @@ Advice advise(const Question& question) {
   Advice advice;
   solve(question, file.scene, watch, advice);
   if (vouched_for(question, advice.problem)) {
-    const std::vector<Contender> all = tried(question);
+    const std::vector<Contender> all = possible(file.scene, tried(question), advice.refused);
     try_all(question, all, watch, advice);
     time_finalists(question, all, advice);
     advice.best = best_to_type(question, advice);
@@ -279,7 +297,11 @@ std::string advice_text(const Question& question, const Advice& advice) {
                       "more, or for a shorter --time.\n",
                       question.error_m, 1.06 * least_surety * problem.doubt_m);
   }
-  text += table(question, advice) + "\n";
+  text += table(question, advice);
+  if (!advice.refused.empty()) {
+    text += fmt::format("Not possible for this scene: {}.\n", fmt::join(advice.refused, ", "));
+  }
+  text += "\n";
   if (advice.best < 0) {
     return text +
            fmt::format(

@@ -29,6 +29,7 @@ struct Advice {
   int reference_steps = 0;  ///< a frame
   std::vector<Rung> rungs;  ///< empty where the reference cannot vouch for the wanted error
   int best = -1;            ///< best_to_type
+  std::vector<std::string> refused;  ///< configurations that cannot do the scene
 };
 
 /// The rung that is cheapest within the error at its steps and all finer ones, of the settings that

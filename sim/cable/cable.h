@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Links and segments: geometry and transport, insertion, removal and merging.
+// Links and segments: geometry and transport. (How links come and go: links.h.)
 
 #include <algorithm>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <tuple>
 #include <utility>
 
 #include "base/at.h"

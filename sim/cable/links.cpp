@@ -190,9 +190,10 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   const double share = free_length > 0.0 ? first.length / free_length : 0.5;
   double arrives = start + share * (end - start - stored);
   // A side keeps the strain that it comes on with. So the tension does not jump, and no stretch is
-  // left behind to the span.
+  // left behind to the span. Of what is being hung, where nothing pulls yet, it has none.
   const double slope = free_length > 0.0 ? (end - start - stored) / free_length : 1.0;
-  const double a_metre = cable.elastic ? std::clamp(slope, 0.0, 1.0) : 1.0;  // m of material
+  const bool pulls = cable.elastic && arriving.tension > 0.0;
+  const double a_metre = pulls ? std::clamp(slope, 0.0, 1.0) : 1.0;  // m of material
   const auto make_side = [](Segment& side) {  // without a row, which alone would change them
     side.tension = 0.0;
     side.slack = false;

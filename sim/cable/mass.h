@@ -176,4 +176,12 @@ struct Flow {
 };
 Flow flow_at(const World& world, const CableState& cable, std::size_t segment, bool at_head);
 
+/// Of the material at that share (0..1) of the way between two ends, where the cable has this
+/// direction (m/s).
+inline Vec2 velocity_between(const Flow& tail, const Flow& head, double share,
+                             const Vec2& direction) {
+  return (1.0 - share) * tail.carried + share * head.carried +
+         ((1.0 - share) * tail.along + share * head.along) * direction;
+}
+
 }  // namespace pinchlab

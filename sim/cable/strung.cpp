@@ -2,22 +2,17 @@
 #include "sim/cable/strung.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
 #include "sim/cable/held_spans.h"
-#include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/mass.h"
 #include "sim/cable/taking_in.h"
 #include "sim/compound.h"
-#include "sim/hanging.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
 
@@ -28,13 +23,6 @@ namespace {
 /// m given off beyond a node's place, where it comes back: the header has the reasons.
 double giving_distance(const CableState& cable) {
   return std::max(0.25 * node_spacing(cable), 2.0 * mooring_distance(cable));
-}
-
-/// Of the material at that share (0..1) of the way between two ends, where the cable has this
-/// direction (m/s).
-Vec2 velocity_between(const Flow& tail, const Flow& head, double share, const Vec2& direction) {
-  return (1.0 - share) * tail.carried + share * head.carried +
-         ((1.0 - share) * tail.along + share * head.along) * direction;
 }
 
 /// Whether a node lies on a rim, or is moored there: else it is a body that moves by itself.
@@ -132,19 +120,6 @@ Numbers nodes_on(const World& world, const CableState& cable, std::size_t segmen
   return nodes_within(cable, begins + margin, begins + span.rest_length - margin);
 }
 
-void string_all(World& world, CableState& cable, double margin) {
-  for (std::size_t segment = cable.segments.size(); segment-- > first_segment(cable);) {
-    const Numbers on = nodes_on(world, cable, segment, margin);
-    // From the last on: then each is put into what is left before it.
-    std::size_t s = segment;
-    for (long k = on.last; k >= on.first; --k) {
-      const std::size_t position = s == 0 ? cable.links.size() : s;
-      put_in(world, cable, s, body_of_node(cable, k), place_of_node(cable, k));
-      s = position;
-    }
-  }
-}
-
 /// Of what lies on a rim, from where the cable meets it: rad, counter-clockwise positive, and the
 /// signed radius there (m).
 struct PlaceOnRim {
@@ -168,159 +143,41 @@ PlaceOnRim place_on_rim(const World& world, const CableState& cable, std::size_t
           link.orientation * layers.radius(angle)};
 }
 
-/// Those that a segment holds, with it.
-void carry_held_nodes(World& world, const CableState& cable, std::size_t segment) {
-  const FinestPiece& span = held_at(cable, segment);
+/// Velocities (m/s) of those that a segment holds, for those of its ends.
+void carry_velocities(const World& world, const CableState& cable, std::size_t segment,
+                      std::vector<Vec2>& velocity) {
   const int before = cable.links[segment - 1].body;
-  const Vec2 from = at(world.velocity, before), to = at(world.velocity, cable.links[segment].body);
-  const Vec2 line = cable.segments[segment].head - cable.segments[segment].tail;
+  const Vec2 from = at(velocity, before), to = at(velocity, cable.links[segment].body);
+  const Vec2 tail = cable.segments[segment].tail, line = cable.segments[segment].head - tail;
   const double turning = cross(line, to - from) / line.squaredNorm();
-  for (int i = 1; i < span.pieces; ++i) {
-    const Vec2 place = place_of_held(cable, segment, i);
-    at(world.position, before + i) = place;
-    at(world.velocity, before + i) = from + turning * left(place - cable.segments[segment].tail);
+  for (int i = 1; i < held_at(cable, segment).pieces; ++i) {
+    at(velocity, before + i) = from + turning * left(at(world.position, before + i) - tail);
   }
 }
 
-/// What is free of a cable between two links that are no nodes: its segments.
-std::vector<std::size_t> spans_from(const CableState& cable, int link) {
-  std::vector<std::size_t> spans;
-  for (int next = next_link(cable, link); next >= 0; next = next_link(cable, next)) {
-    spans.push_back(index(next));
-    if (!is_strung(cable, at(cable.links, next))) break;
+/// Those nodes, with it.
+void carry_held_nodes(World& world, const CableState& cable, std::size_t segment) {
+  const int before = cable.links[segment - 1].body;
+  for (int i = 1; i < held_at(cable, segment).pieces; ++i) {
+    at(world.position, before + i) = place_of_held(cable, segment, i);
   }
-  return spans;
-}
-
-HangingEnd end_of(const World& world, const CableState& cable, int link, std::size_t segment) {
-  const Link& held = at(cable.links, link);
-  return {link_centre(world, held), held.signed_radius(), cable.segments[segment].direction};
-}
-
-/// m/rad, by which the radius of a drum that fills grows as the span beside it turns.
-double slope_at(const Link& link) {
-  return link.layers.way != 0 ? link.layers.growth : 0.0;
-}
-
-/// Hangs pieces of these lengths (m) between two ends, on links with these slopes. What the nodes
-/// beside these weigh follows from how much of the pieces lies on rims then, and so does what the
-/// pieces' other halves weigh on them, which drums that fill raise as the pieces turn (mass.h):
-/// found by turns.
-Hanging hang(const CableState& cable, const std::vector<double>& lengths, const HangingEnd& tail,
-             const HangingEnd& head, const std::array<double, 2>& slopes, const Vec2& gravity) {
-  std::vector<double> now = lengths;
-  Vec2 on_first = Vec2::Zero(), on_last = Vec2::Zero();  // N
-  for (double last_change = infinity;;) {
-    std::vector<Vec2> weights;
-    for (std::size_t k = 0; k + 1 < now.size(); ++k) {
-      weights.push_back(0.5 * cable.density * (now[k] + now[k + 1]) * gravity);
-    }
-    weights.front() += on_first;
-    weights.back() += on_last;
-    Hanging hanging = hang(weights, lengths, tail, head);
-    const auto raised = [&](double length, const Vec2& direction, double slope) -> Vec2 {
-      if (!(length > slope)) return Vec2::Zero();
-      const Vec2 n = left(direction);
-      return slope / (length - slope) * 0.5 * cable.density * length * gravity.dot(n) * n;
-    };
-    const Vec2 first = -raised(now.front(), hanging.directions.front(), slopes[0]);
-    const Vec2 last = -raised(now.back(), hanging.directions.back(), slopes[1]);
-    const double of_weights = (first - on_first).norm() + (last - on_last).norm();  // N
-    const double change = std::max({std::abs(hanging.lengths.front() - now.front()),
-                                    std::abs(hanging.lengths.back() - now.back()),
-                                    of_weights / (cable.density * gravity.norm())});
-    if (!(change < 0.5 * last_change)) return hanging;  // by round-off alone, or no better
-    last_change = change;
-    on_first = first;
-    on_last = last;
-    now.front() = std::max(hanging.lengths.front(), 0.0);
-    now.back() = std::max(hanging.lengths.back(), 0.0);
-  }
-}
-
-/// The next corner, along the cable or against it, of the polygon that a link lies on.
-int next_corner(const World& world, const Link& link, bool along) {
-  const int corners = static_cast<int>(at(world.bodies, link.body).corners.size());
-  return (link.corner + (along ? link.orientation : -link.orientation) + corners) % corners;
-}
-
-/// Where a piece of that length (m) and direction begins at a rolling link, with `leaves`, or else
-/// ends there: takes its node in that is to lie on the rim, or the link off that it lifts the cable
-/// from, or lays it on a polygon's next corner that it would cut. Whether it has.
-bool give_way(World& world, CableState& cable, int link, bool leaves, double length,
-              const Vec2& direction) {
-  const Link& rim = at(cable.links, link);
-  if (rim.orientation == 0) return false;
-  const int segment = leaves ? next_link(cable, link) : link;
-  const int node = leaves ? segment : previous_link(cable, link);
-  const Vec2& before = at(cable.segments, segment).direction;
-  const double turned = std::atan2(cross(before, direction), before.dot(direction));
-  if (rim.wrap + (leaves ? 1 : -1) * rim.orientation * turned < 0.0 &&
-      !needed(cable, index(link))) {
-    remove_link(world, cable, link);
-    return true;
-  }
-  double room = mooring_distance(cable);
-  if (rim.corner >= 0) {
-    const int corner = next_corner(world, rim, leaves);
-    const Vec2 side = place_of_point(world, rim.body, corner) - link_centre(world, rim);
-    if (rim.orientation * cross(side, direction) > 0.0) {  // either way round
-      if (length > side.norm() + room) {
-        insert_link(world, cable, index(segment), rim.body, corner, rim.orientation);
-        return true;
-      }
-      room = infinity;
-    }
-  }
-  if (length > room) return false;
-  take_in_node(world, cable, node);
-  return true;
-}
-
-/// Hangs what is free after a link, up to the next that is no node, with the motion that its ends
-/// give it; or does first what it asks of these ends. Whether it is to hang again, since it has
-/// done that, or a drum's layers have grown or shrunk.
-bool hang_free(World& world, CableState& cable, int link, const Vec2& gravity) {
-  const std::vector<std::size_t> spans = spans_from(cable, link);
-  if (spans.size() < 2) return false;
-  const std::size_t first = spans.front(), last = spans.back();
-  std::vector<double> lengths;
-  lengths.reserve(spans.size());
-  for (const std::size_t s : spans) lengths.push_back(cable.segments[s].rest_length);
-  const Vec2 d = cable.segments[last].head - cable.segments[first].tail;
-  const double free = std::accumulate(lengths.begin(), lengths.end(), 0.0);
-  constexpr double nothing = 1e-12;  // of the length: so little slack asks for any tension
-  if (free - d.norm() <= nothing * cable.length) return false;
-  const std::array<double, 2> slopes = {slope_at(at(cable.links, link)),
-                                        slope_at(cable.links[last])};
-  const Hanging hanging = hang(cable, lengths, end_of(world, cable, link, first),
-                               end_of(world, cable, static_cast<int>(last), last), slopes, gravity);
-  if (give_way(world, cable, link, true, hanging.lengths.front(), hanging.directions.front()))
-    return true;
-  if (give_way(world, cable, static_cast<int>(last), false, hanging.lengths.back(),
-               hanging.directions.back()))
-    return true;
-  const Flow tail = flow_at(world, cable, first, false), head = flow_at(world, cable, last, true);
-  Vec2 place = hanging.tail;
-  double passed = 0.0;
-  for (std::size_t k = 0; k + 1 < spans.size(); ++k) {
-    place += hanging.lengths[k] * hanging.directions[k];
-    passed += lengths[k];
-    const Vec2 along = (hanging.directions[k] + hanging.directions[k + 1]).normalized();
-    const int node = cable.links[spans[k]].body;
-    at(world.position, node) = place;
-    at(world.velocity, node) = velocity_between(tail, head, passed / free, along);
-  }
-  const auto radii = [&] { return Vec2(at(cable.links, link).radius, cable.links[last].radius); };
-  const Vec2 before = radii();
-  for (const std::size_t s : spans) update_tangent(world, cable, s);
-  update_wraps_and_rest_lengths(world, cable);
-  // The span beside a drum that fills says where its outermost turn ends.
-  constexpr double rounding = 1e-13;
-  return cable.fills && (radii() - before).norm() > rounding * before.norm();
+  carry_velocities(world, cable, segment, world.velocity);
 }
 
 }  // namespace
+
+void string_all(World& world, CableState& cable, double margin) {
+  for (std::size_t segment = cable.segments.size(); segment-- > first_segment(cable);) {
+    const Numbers on = nodes_on(world, cable, segment, margin);
+    // From the last on: then each is put into what is left before it.
+    std::size_t s = segment;
+    for (long k = on.last; k >= on.first; --k) {
+      const std::size_t position = s == 0 ? cable.links.size() : s;
+      put_in(world, cable, s, body_of_node(cable, k), place_of_node(cable, k));
+      s = position;
+    }
+  }
+}
 
 double node_spacing(const CableState& cable) {
   return cable.length / (cable.closed ? cable.nodes : cable.nodes + 1);
@@ -342,25 +199,6 @@ void free_node(World& world, int node, const Vec2& position, const Vec2& velocit
 void lay_down_node(World& world, int node) {
   set_wound(world, node, true);
   at(world.velocity, node) = Vec2::Zero();
-}
-
-void string_nodes(World& world, CableState& cable, const Vec2& gravity) {
-  // Without gravity it is at rest in any shape.
-  const Vec2 g = gravity.norm() > 0.0 ? gravity : Vec2(0.0, -1.0);
-  string_all(world, cable, mooring_distance(cable));
-  // What hangs lays nodes on rims and takes others off; mostly few.
-  bool changed = true;
-  for (int turn = 0; changed && turn < 4 * cable.nodes; ++turn) {
-    changed = false;
-    for (int i = 0; !changed && index(i) < cable.links.size(); ++i) {
-      if (!is_strung(cable, at(cable.links, i))) changed = hang_free(world, cable, i, g);
-    }
-    if (changed || !has_given_off(world, cable)) continue;
-    give_off_nodes(world, cable);
-    changed = true;
-  }
-  for (Segment& segment : cable.segments) begin_here(segment);
-  carry_wound_nodes(world, cable);
 }
 
 void insert_node(World& world, CableState& cable, std::size_t segment, int node,
@@ -389,8 +227,16 @@ void sort_nodes(World& world, const CableState& cable) {
   }
 }
 
+bool holds_end_inside(const World& world, const CableState& cable, int body) {
+  const auto holds = [&](const Link& end) {
+    return end.body == body && end.orientation == 0 && is_fastened_inside(world, cable, end);
+  };
+  return !cable.closed && (holds(cable.links.front()) || holds(cable.links.back()));
+}
+
 bool is_within_end(const World& world, const CableState& cable, const Link& node, int body) {
   if (cable.closed) return false;
+  if (holds_end_inside(world, cable, body)) return true;
   const BodyProperties& outline = at(world.bodies, body);
   const auto reaches = [&](const Link& end, double left) {
     if (end.body < 0 || mover_of(world, end.body) != mover_of(world, body)) return false;
@@ -419,6 +265,12 @@ bool lies_beside(const World& world, int node, int body) {
     return is_within_end(world, cable, at(cable.links, i), body);
   }
   return false;
+}
+
+void carry_velocities(const World& world, const CableState& cable, std::vector<Vec2>& velocity) {
+  for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
+    if (is_held(cable, s)) carry_velocities(world, cable, s, velocity);
+  }
 }
 
 void carry_wound_nodes(World& world, const CableState& cable) {

@@ -35,8 +35,11 @@ int node_of(const CableState& cable, const Link& link);
 void free_node(World& world, int node, const Vec2& position, const Vec2& velocity);
 void lay_down_node(World& world, int node);
 
+/// Puts on spans the nodes whose places are at least `margin` (m of material) away from their ends.
+void string_all(World& world, CableState& cable, double margin);
+
 /// Strings a cable's nodes on its spans as the cable lies at the start, and hangs those that have
-/// slack as they hang at rest (hanging.h).
+/// slack as they hang at rest (hanging.h); in string_nodes.cpp.
 void string_nodes(World& world, CableState& cable, const Vec2& gravity);
 
 /// Inserts a node into a segment between two others, there (m) and with that velocity (m/s).
@@ -51,12 +54,19 @@ void give_off_nodes(World& world, CableState& cable);
 /// where an earlier state of the cable has been put back.
 void sort_nodes(World& world, const CableState& cable);
 
+/// Velocities (m/s) of the nodes that spans hold, for those of the spans' ends among `velocity`.
+void carry_velocities(const World& world, const CableState& cable, std::vector<Vec2>& velocity);
+
 /// Places the nodes that have been taken in where their material is, on rims, for tables and
 /// pictures: nothing else asks where they are.
 void carry_wound_nodes(World& world, const CableState& cable);
 
-/// Whether a node has no more cable to an end that the body holds, other than at its rim, than the
-/// body reaches. Neither it nor the spans beside it touch that body.
+/// Whether the body holds an end of the cable further in than on its rim. A rope that hangs does
+/// not meet that body, but is in front of it: what a rim took in there would be wound on the end.
+bool holds_end_inside(const World& world, const CableState& cable, int body);
+
+/// Whether it does, or a node has no more cable to an end that the body holds, other than at its
+/// rim, than the body reaches. Neither it nor the spans beside it touch that body.
 bool is_within_end(const World& world, const CableState& cable, const Link& node, int body);
 
 /// Whether it is beside a disc along its cable, which is a tangent of it then, or within such an

@@ -57,11 +57,27 @@ class Kept {
   std::vector<Contact>::const_iterator next_, end_;
 };
 
-/// A polygon may come nearer by turning as well.
 double speed_of(const World& world, int body) {
+  return at(world.velocity, body).norm();
+}
+
+/// By which a polygon's outline may come nearer as it turns.
+double rim_speed_of(const World& world, int body) {
   const BodyProperties& b = at(world.bodies, body);
-  const double rim = is_polygon(b) ? b.radius * std::abs(at(world.angular_velocity, body)) : 0.0;
-  return at(world.velocity, body).norm() + rim;
+  return is_polygon(b) ? b.radius * std::abs(at(world.angular_velocity, body)) : 0.0;
+}
+
+/// The gaps (m) at which a pair has a contact at most. Circles about polygons come no nearer as
+/// these turn, so that what the broad phase lists, by where bodies get to, is enough.
+struct MostGap {
+  double circles, outlines;
+};
+
+/// Whether the body is where it was. A node that has only just come was not in any part.
+bool is_where_it_was(const World& world, const Parts& parts, int body) {
+  if (!is_still(parts, body)) return false;
+  return parts.list.empty() || at(parts.of_body, body) >= 0 ||
+         !may_change_gaps(at(world.bodies, body));
 }
 
 /// How far a body may get by the end of the step; by what it may get in all of it, parts were
@@ -72,13 +88,13 @@ double way_left(const Scene& scene, const World& world, const Neighbourhoods& ne
 }
 
 /// The contacts of body `a` with body `b`, or with an obstacle (b = -1), whose nearest point or
-/// centre lies by `d` (m) from that of `a`, where their circles of `radii` (m) in sum are nearer
-/// than `most` (m).
-void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double radii, double most) {
+/// centre lies by `d` (m) from that of `a`, with circles of `radii` (m) in sum.
+void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double radii,
+                  const MostGap& most) {
   const double distance = d.norm();
-  if (distance - radii > most) return;
+  if (distance - radii > most.circles) return;
   if (is_polygon(at(world.bodies, a)) || (b >= 0 && is_polygon(at(world.bodies, b)))) {
-    append_touches(world, a, b, wall, most, world.contacts);
+    append_touches(world, a, b, wall, most.outlines, world.contacts);
     return;
   }
   const Vec2 somewhere = b >= 0 ? Vec2(1.0, 0.0) : Vec2(0.0, -1.0);
@@ -104,7 +120,7 @@ std::size_t add_contacts_of_walls(const Scene& scene, World& world, const Worksp
   Kept old_of_walls(old);
   for (const WallPair& pair : work.broad_phase.wall_pairs) {
     if (!may_change_gaps(at(world.bodies, pair.body))) continue;
-    if (is_still(work.parts, pair.body)) {
+    if (is_where_it_was(world, work.parts, pair.body)) {
       kept += old_of_walls.keep(pair.body, -1, pair.wall, world.contacts);
       continue;
     }
@@ -112,7 +128,9 @@ std::size_t add_contacts_of_walls(const Scene& scene, World& world, const Worksp
     const Vec2& x = at(world.position, pair.body);
     const Vec2 d = nearest_on_line(obstacle.a, obstacle.b, x) - x;
     const double radius = at(world.bodies, pair.body).radius;
-    const double most = reach(scene, world, speed_of(world, pair.body), radius);
+    const double speed = speed_of(world, pair.body);
+    const MostGap most{reach(scene, world, speed, radius),
+                       reach(scene, world, speed + rim_speed_of(world, pair.body), radius)};
     add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
   }
   return kept;
@@ -124,26 +142,30 @@ double speed_of_piece(const World& world, const CableState& piece) {
                   velocity_of(world, piece.links[1]).norm());
 }
 
-bool is_still(const World& world, const Parts& parts, const PiecePair& pair) {
-  if (pair.body >= 0 && !is_still(parts, pair.body)) return false;
+bool is_where_it_was(const World& world, const Parts& parts, const PiecePair& pair) {
+  if (pair.body >= 0 && !is_where_it_was(world, parts, pair.body)) return false;
   const std::vector<Link>& links = at(world.cables, pair.cable).links;
-  return std::all_of(links.begin(), links.end(),
-                     [&](const Link& link) { return link.body < 0 || is_still(parts, link.body); });
+  return std::all_of(links.begin(), links.end(), [&](const Link& link) {
+    return link.body < 0 || is_where_it_was(world, parts, link.body);
+  });
 }
 
-/// The gap at which a pair has a contact at most (m).
-double most_gap(const Scene& scene, const World& world, double width, const BodyPair& pair) {
+MostGap most_gap(const Scene& scene, const World& world, double width, const BodyPair& pair) {
   const double a = at(world.bodies, pair.a).radius, b = at(world.bodies, pair.b).radius;
   // Bodies that move together have no speed between them until one is stopped within the step.
   const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
-  return width + reach(scene, world, speed, std::min(a, b));
+  const double rims = rim_speed_of(world, pair.a) + rim_speed_of(world, pair.b);
+  return {width + reach(scene, world, speed, std::min(a, b)),
+          width + reach(scene, world, speed + rims, std::min(a, b))};
 }
 
-double most_gap(const Scene& scene, const World& world, const PiecePair& pair) {
+MostGap most_gap(const Scene& scene, const World& world, const PiecePair& pair) {
   const CableState& piece = at(world.cables, pair.cable);
   const double speed =
       speed_of_piece(world, piece) + (pair.body >= 0 ? speed_of(world, pair.body) : 0.0);
-  return reach(scene, world, speed, piece.half_width);
+  const double rim = pair.body >= 0 ? rim_speed_of(world, pair.body) : 0.0;
+  return {reach(scene, world, speed, piece.half_width),
+          reach(scene, world, speed + rim, piece.half_width)};
 }
 
 /// Of a pair with a body (m).
@@ -162,11 +184,11 @@ std::size_t add_contacts_of_pieces(const Scene& scene, World& world, Workspace& 
   Kept old_of_pieces(old);
   Neighbourhoods& near = work.neighbourhoods;
   for (const PiecePair& pair : work.broad_phase.piece_pairs) {
-    if (is_still(world, work.parts, pair)) {
+    if (is_where_it_was(world, work.parts, pair)) {
       kept += old_of_pieces.keep(pair.a, pair.b, pair.wall, world.contacts, pair.cable);
       continue;
     }
-    const double most = most_gap(scene, world, pair);
+    const MostGap most = most_gap(scene, world, pair);
     const int node = node_of_piece(world, pair.cable);
     if (pair.body >= 0 && near.separate_bodies(node, pair.body)) {
       double left = way_left(scene, world, near, pair.body);
@@ -179,7 +201,9 @@ std::size_t add_contacts_of_pieces(const Scene& scene, World& world, Workspace& 
       near.crossed = near.crossed || distance_from_piece(world, pair) <= left;
       continue;
     }
-    append_at_piece(world, pair.cable, pair.body, pair.wall, most, world.contacts);
+    const bool turns = most.outlines > most.circles;
+    if (turns && distance_from_piece(world, pair) > most.circles) continue;
+    append_at_piece(world, pair.cable, pair.body, pair.wall, most.outlines, world.contacts);
   }
   return kept;
 }
@@ -203,6 +227,8 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
       contact.tangent_force = previous->tangent_force;
       contact.curvature = previous->curvature;
       contact.struck = previous->struck;
+      // Found anew at the same instant it has not parted yet.
+      contact.rebounds = previous->rebounds && contact.gap == previous->gap;
     }
   }
 }
@@ -220,11 +246,11 @@ double widest_cable(const World& world) {
 bool may_touch(const Scene& scene, const World& world, double width, const BodyPair& pair) {
   const double radii = at(world.bodies, pair.a).radius + at(world.bodies, pair.b).radius;
   const double distance = (at(world.position, pair.b) - at(world.position, pair.a)).norm();
-  return distance - radii <= most_gap(scene, world, width, pair);
+  return distance - radii <= most_gap(scene, world, width, pair).circles;
 }
 
 bool may_touch(const Scene& scene, const World& world, const PiecePair& pair) {
-  return distance_from_piece(world, pair) <= most_gap(scene, world, pair);
+  return distance_from_piece(world, pair) <= most_gap(scene, world, pair).circles;
 }
 
 void find_contacts(const Scene& scene, World& world, Workspace& work) {
@@ -249,7 +275,7 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
   Kept old_pairs(old);
   Neighbourhoods& near = work.neighbourhoods;
   for (const BodyPair& pair : broad.body_pairs) {
-    if (is_still(work.parts, pair.a) && is_still(work.parts, pair.b)) {
+    if (is_where_it_was(world, work.parts, pair.a) && is_where_it_was(world, work.parts, pair.b)) {
       kept += old_pairs.keep(pair.a, pair.b, -1, world.contacts);
       continue;
     }
@@ -261,8 +287,9 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
       near.crossed = near.crossed || d.norm() - radii <= left;
       continue;
     }
-    const double most = most_gap(scene, world, width, pair);
-    if (!world.strung.empty() && d.norm() - radii <= most && lies_beside(world, pair)) continue;
+    const MostGap most = most_gap(scene, world, width, pair);
+    if (!world.strung.empty() && d.norm() - radii <= most.circles && lies_beside(world, pair))
+      continue;
     add_contacts(world, pair.a, pair.b, -1, d, radii, most);
   }
   kept += add_contacts_of_walls(scene, world, work, old);

@@ -245,10 +245,11 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
   return first;
 }
 
-/// Whether one of its nodes is, at an end of the cable that the body holds.
+/// Whether one of its nodes is, at an end of the cable that the body holds; or it holds one inside.
 bool is_within_end(const World& world, const CableState& cable, const Link& from, const Link& to,
                    int body) {
-  return (is_strung(cable, from) && is_within_end(world, cable, from, body)) ||
+  return holds_end_inside(world, cable, body) ||
+         (is_strung(cable, from) && is_within_end(world, cable, from, body)) ||
          (is_strung(cable, to) && is_within_end(world, cable, to, body));
 }
 

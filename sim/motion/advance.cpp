@@ -460,7 +460,7 @@ int settle(const Scene& scene, World& world, Workspace& work, int changes, Stage
 StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes* times) {
   Stopwatch watch(times);
   Diagnostics& d = world.diagnostics;
-  d.active_set_solves = 0;
+  int most_solves = 0;
   const std::int64_t fallbacks = d.fallbacks;
   int changes = world.changes;
   const std::int64_t allowed =
@@ -471,9 +471,11 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
   if (world.step == 0) strike_all(scene, world, work, 0.0, true);
   Round round;
   while (is_left(near)) {
+    d.active_set_solves = 0;
     if (!move_all(scene, world, work, round, watch)) return StepStatus::failed;
     ++d.intervals;
     d.total_solves += d.active_set_solves;
+    most_solves = std::max(most_solves, d.active_set_solves);
     if (world.changes > allowed) return fail_by_changes(world);
     if (!near.crossed) changes = settle(scene, world, work, changes, times);
     watch = Stopwatch(times);
@@ -483,16 +485,14 @@ StepStatus advance(const Scene& scene, World& world, Workspace& work, StageTimes
     take_back(world, work);
     changes = world.changes;
   }
-  if (!scene.chains.empty() || !world.strung.empty()) {
-    adapt_nodes(scene, world, work, world.time() + world.step_length, times);
-  }
-  if (!world.strung.empty()) {
-    give_off(scene, world, work, world.time() + world.step_length, times);
-  }
+  const double end = world.time() + world.step_length;
+  if (!scene.chains.empty() || !world.strung.empty()) adapt_nodes(scene, world, work, end, times);
+  if (!world.strung.empty()) give_off(scene, world, work, end, times);
   const bool clusters =
       std::any_of(near.list.begin(), near.list.end(),
                   [](const Neighbourhood& course) { return course.events > most_rebounds; });
   if (clusters) ++d.clusters;
+  d.active_set_solves = most_solves;
   d.fallbacks = std::min(d.fallbacks, fallbacks + 1);
   return StepStatus::ok;
 }

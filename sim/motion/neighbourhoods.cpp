@@ -203,6 +203,10 @@ void keep_start(const World& world, Workspace& work) {
 
 void take_back(World& world, Workspace& work) {
   StepStart& kept = work.step_start;
+  world.position = kept.start.position;  // of what has been woken, too
+  world.velocity = kept.start.velocity;
+  world.angle = kept.start.angle;
+  world.angular_velocity = kept.start.angular_velocity;
   world.cables = kept.cables;
   world.changes = kept.changes;
   world.contacts = kept.contacts;

@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/diagnostics.h"
 #include "sim/solve/terms.h"
 #include "sim/world.h"
 

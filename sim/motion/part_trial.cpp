@@ -5,7 +5,6 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/motion/missed.h"
 #include "sim/motion/turning.h"

@@ -155,6 +155,9 @@ TEST(Batch, PairsOfAnyMethods) {
   refused({"--pair", "pinch,rope"}, "not pinch,rope");
   refused({"--pair", "pinch,cable,thesis"}, "not pinch,cable,thesis");
   refused({"--pair", "cable,cable"}, "cable,cable: a pair needs two methods");
+  // The short one's baseline.
+  refused({"demos/02-short.json", "--pair", "baseline,cable"},
+          "baseline,cable: the baseline of 02-short is cable");
   refused({"--pair", "cable,pinch", "--pair", "pinch,cable"},
           "the pair pinch,cable is asked for twice");
   refused({"--pair", "cable,pinch", "--method", "cable"}, "excludes");

@@ -151,9 +151,11 @@ TEST(Sweep, KeepsWhatIsThereAndMakesAnewWhatIsNotWhole) {
   run = sweep(folder, "set");
   EXPECT_TRUE(tells(run.err, "set: 2 made, 3 there already, 0 failed\n")) << run.err;
   EXPECT_EQ(files_in(folder / "set"), before);
+  EXPECT_EQ(run.err.find("of other values"), std::string::npos);
   // Other settings are other stimuli.
   run = sweep(folder, "set", {"--method", "cable"});
   EXPECT_TRUE(tells(run.err, "set: 5 made, 0 there already, 0 failed\n")) << run.err;
+  EXPECT_NE(run.err.find("5 clips of other values are there"), std::string::npos) << run.err;
 }
 
 // The last row takes so long that it is still made when the first ones are seen to be there.

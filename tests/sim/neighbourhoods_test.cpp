@@ -239,5 +239,74 @@ TEST(Neighbourhoods, AnotherWorkspaceGivesTheSameBits) {
   EXPECT_TRUE(is_all_state(balls_on_spans(30), measured(), 120));
 }
 
+/// A ball that lands, and beside it what more bodies there are.
+Scene landing(const std::vector<Body>& more) {
+  Scene scene;
+  Body ball = body("ball", BodyKind::free, 0.0, 0.1015, 0.1, 1.0);
+  ball.restitution = 0.4;
+  scene.bodies = {ball};
+  scene.bodies.insert(scene.bodies.end(), more.begin(), more.end());
+  scene.walls.push_back({Vec2(-1.0, 0.0), Vec2(1.0, 0.0), 0.0, 0.0});
+  scene.steps_per_frame = 1;
+  return scene;
+}
+
+// Discs that collide in the same round have contacts found anew, of the ball as well: it hops on
+// all the same.
+TEST(Neighbourhoods, ReboundsAreKeptWhateverIsThrownElsewhere) {
+  Body hit = body("hit", BodyKind::free, 5.0, 5.0, 0.1, 1.0);
+  Body fast = body("fast", BodyKind::free, 4.55, 5.0, 0.1, 100.0);
+  hit.restitution = fast.restitution = 1.0;
+  fast.velocity = {10.0, 0.0};
+  const Scene alone = landing({}), beside = landing({hit, fast});
+  World one = make_world(alone, measured()), both = make_world(beside, measured());
+  Workspace first, second;
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_EQ(step(alone, one, first), StepStatus::ok);
+    ASSERT_EQ(step(beside, both, second), StepStatus::ok);
+    ASSERT_EQ(one.position[0], both.position[0]) << i;
+    ASSERT_EQ(one.velocity[0], both.velocity[0]) << i;
+  }
+  EXPECT_EQ(both.diagnostics.events, one.diagnostics.events + 1);
+}
+
+/// A weight that sleeps between two cables, a ball that falls on one of them in step 49, and, with
+/// `chain`, discs far away that make each other ten times as fast in that step, and so cross.
+Scene sleeper(bool chain) {
+  Scene scene;
+  const double t = 48.0 / 60.0;
+  const double over = 0.11 * std::sqrt(5.0) / 2.0;  // m, above the span where the ball meets it
+  const double fallen = 0.5 * g * (t + 0.002) * (t + 0.002);
+  scene.bodies = {body("weight", BodyKind::free, 0.0, -1.0, 0.1, 1.0),
+                  body("ball", BodyKind::free, -1.0, -0.5 + over + fallen, 0.1, 1.0)};
+  scene.cables = {cable(at(-2.0, 0.0), {}, on(0), 0.01), cable(at(2.0, 0.0), {}, on(0), 0.01)};
+  scene.cables[1].name = "right";
+  const auto disc = [&scene](const char* name, double x, double speed, double mass) {
+    Body body = build::body(name, BodyKind::free, x, 20.0, 0.1, mass);
+    body.restitution = 1.0;
+    body.velocity = {speed, 0.0};
+    scene.bodies.push_back(body);
+  };
+  if (chain) {
+    disc("heavy", 99.8 - 20.0 * (t + 0.003), 20.0, 100.0);
+    disc("first", 100.0, 0.0, 1.0);
+    disc("light", 100.358, 0.0, 0.01);
+    disc("last", 101.758, 0.0, 1.0);
+  }
+  scene.steps_per_frame = 1;
+  return scene;
+}
+
+TEST(Neighbourhoods, AStepThatIsTakenBackPutsBackWhatWasWoken) {
+  const Scene alone = sleeper(false), beside = sleeper(true);
+  World one = make_world(alone, Method::pinch), both = make_world(beside, Method::pinch);
+  Workspace first, second;
+  for (int i = 0; i < 55; ++i) {
+    ASSERT_EQ(step(alone, one, first), StepStatus::ok);
+    ASSERT_EQ(step(beside, both, second), StepStatus::ok);
+    ASSERT_LT((one.position[0] - both.position[0]).norm(), 1e-3) << "step " << i + 1;
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::testing

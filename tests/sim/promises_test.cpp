@@ -257,6 +257,25 @@ TEST(Promises, NothingFallsUnnoticedWhateverTheMasses) {
   EXPECT_NE(thesis.broken()[0].find("(limit 5 %)"), std::string::npos) << thesis.broken()[0];
 }
 
+// A ball that flies to and fro between two walls, which divides every step. What it has gained by
+// another hand is told all the same.
+TEST(Promises, EnergyIsWatchedThroughDividedSteps) {
+  Scene scene;
+  Body ball = body("ball", BodyKind::free, 0.5, 0.0, 0.1, 1.0);
+  ball.velocity = {100.0, 0.0};
+  ball.restitution = 1.0;
+  scene.bodies.push_back(ball);
+  scene.walls = {{Vec2(0.0, -9.0), Vec2(0.0, 9.0), 1.0, 0.0},
+                 {Vec2(1.0, -9.0), Vec2(1.0, 9.0), 1.0, 0.0}};
+  scene.steps_per_frame = 1;
+  Watched watched(scene, {}, 60);
+  EXPECT_GT(watched.world.diagnostics.intervals, 120);
+  EXPECT_EQ(watched.broken(), std::vector<std::string>());
+  watched.world.velocity[0] *= 2.0;
+  for (int i = 0; i < 5; ++i) watched.go();
+  expect_one(watched.broken(), "the scene gained ");
+}
+
 // Sweeps promise little, elastic cables may stretch.
 TEST(Promises, DependOnWhatIsSimulated) {
   Scene elastic = loads();

@@ -140,6 +140,34 @@ TEST(Solver, AnUnusedFeatureIsNotOnTheStepsPath) {
   EXPECT_EQ(work.contacts.contacts_of_body.begin.size(), 0u) << "the search for pinches never ran";
 }
 
+// A disc hits a row of others: the step is divided, and each interval's solves are counted once.
+TEST(Solver, EachIntervalCountsItsOwnSolves) {
+  Scene scene;
+  scene.steps_per_frame = 1;
+  scene.walls.push_back({Vec2(-1.0, 0.0), Vec2(20.0, 0.0), 0.0, 0.0});
+  for (int i = 0; i < 12; ++i) {
+    scene.bodies.push_back(
+        body(fmt::format("disc {}", i), BodyKind::free, 0.5 + 0.2 * i, 0.1, 0.1, 1.0));
+  }
+  scene.bodies.push_back(body("striker", BodyKind::free, 0.28, 0.1, 0.1, 1.0));
+  scene.bodies.back().velocity = {2.0, 0.0};
+  World world = make_world(scene, Method::pinch);
+  Workspace work;
+  const Diagnostics& d = world.diagnostics;
+  bool divided = false;
+  for (int i = 0; i < 8; ++i) {
+    const std::int64_t solves = d.total_solves, intervals = d.intervals;
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    divided = divided || d.intervals - intervals > 1;
+    EXPECT_GE(d.total_solves - solves, d.active_set_solves + d.intervals - intervals - 1);
+    EXPECT_LE(d.total_solves - solves, d.active_set_solves * (d.intervals - intervals));
+    if (d.intervals - intervals == 3) {
+      EXPECT_LT(d.total_solves - solves, 2 * d.active_set_solves);
+    }
+  }
+  EXPECT_TRUE(divided);
+}
+
 TEST(Solver, ARestingSceneOnlyCountsItsSteps) {
   Scene scene = load_chain(3, 2.0, 2.0, 1.0);
   World world = make_world(scene, Method::pinch);
@@ -148,6 +176,7 @@ TEST(Solver, ARestingSceneOnlyCountsItsSteps) {
   const Vec2 position = world.position[0];
   run(scene, world, 240);
   EXPECT_EQ(world.diagnostics.total_solves, solves);
+  EXPECT_EQ(world.diagnostics.active_set_solves, 0);
   EXPECT_EQ(world.position[0], position);
   EXPECT_NEAR(world.time(), 2.0, 1e-12);
 }

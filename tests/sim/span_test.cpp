@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Links that come and go where bodies meet free spans.
 
+#include "sim/outline.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -141,6 +142,33 @@ TEST(Spans, BouncesByItsRestitution) {
   World world = make_world(scene, measured());
   run(scene, world, 240);
   EXPECT_NEAR(world.velocity[0].y(), 1.5, 1e-12);
+}
+
+// A bar that a motor turns into a taut cable meets it wherever events take effect.
+TEST(Spans, AreMetByCornersThatTurn) {
+  for (const double speed : {-5.0, -10.0, -20.0, -30.0}) {
+    Scene scene;
+    scene.steps_per_frame = 1;
+    Body bar = body("bar", BodyKind::fixed_axle, 0.0, 0.0, 0.1, 10.0);
+    make_polygon(bar, {{-0.05, -1.0}, {0.05, -1.0}, {0.05, 1.0}, {-0.05, 1.0}}, 0.0);
+    bar.driven_angular_velocity = speed;
+    scene.bodies = {bar, body("weight", BodyKind::free, 0.9, -2.0, 0.2, 1.0)};
+    scene.cables.push_back(cable(at(0.9, 3.0), {}, on(1), 0.01));
+    const auto step_of_link = [&scene](Events events) {
+      Configuration configuration = Method::pinch;
+      configuration.events = events;
+      World world = make_world(scene, configuration);
+      Workspace work;
+      for (int i = 1; i <= 20; ++i) {
+        EXPECT_EQ(step(scene, world, work), StepStatus::ok);
+        if (world.cables[0].links.size() > 2) return i;
+      }
+      return 0;
+    };
+    const int located = step_of_link(Events::located);
+    EXPECT_GT(located, 0) << speed;
+    EXPECT_EQ(step_of_link(Events::at_steps), located) << speed;
+  }
 }
 
 }  // namespace
