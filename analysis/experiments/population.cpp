@@ -267,17 +267,21 @@ std::string shapely_promises(const std::vector<ShapelySample>& samples) {
 
 /// What is left, with a quarter of the last step, of what energy runs gain at that.
 std::string left_with_finer(const std::vector<ShapelySample>& samples) {
-  int runs = 0;
+  std::vector<double> kept;
   double most = 0.0;
   for (const ShapelySample& sample : samples) {
     const double gain = sample.runs.back().energy_gain;
     if (gain <= least_gained) continue;
-    ++runs;
-    most = std::max(most, sample.finer_gain / gain);
+    kept.push_back(sample.finer_gain / gain);
+    most = std::max(most, sample.finer_gain);
   }
+  if (kept.empty()) return fmt::format("None gains at {} steps a frame", ladder.back());
+  const auto middle = kept.begin() + static_cast<std::ptrdiff_t>(kept.size() / 2);
+  std::nth_element(kept.begin(), middle, kept.end());
   return fmt::format(
-      "Of what the {} that gain at {} steps a frame do, at most {:.3f} is left at {}", runs,
-      ladder.back(), most, finer);
+      "Of the {} that gain at {} steps a frame half keep at most {:.2g} of that at {}, where the "
+      "worst of them gains {:.1e}",
+      kept.size(), ladder.back(), *middle, finer, most);
 }
 
 /// How many of the scenes have what.
