@@ -2,65 +2,16 @@
 #include "study/plan.h"
 
 #include <fmt/format.h>
-#include <gsl/gsl_randist.h>
-#include <gsl/gsl_rng.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <cstdlib>
-#include <memory>
-#include <new>
-#include <numeric>
+
+#include "study/plan_random.h"
+#include "study/sides.h"
 
 namespace pinchlab::study {
 namespace {
-
-// What random numbers are drawn for; each draw has a generator of its own, so that no option
-// changes what another draws.
-enum class Purpose : std::uint64_t {
-  sides = 1,
-  labels,
-  rows,
-  training,
-  check_sides,
-  check_places,
-  pair_methods,
-  pair_rows,
-  pair_order,
-  pair_sides
-};
-
-// Steele, Lea and Flood's SplitMix64 (OOPSLA 2014): neighbouring seeds give unrelated generators.
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
-
-class Random {
- public:
-  Random(std::uint64_t seed, Purpose purpose, std::uint64_t block, std::uint64_t round = 0)
-      : rng_(gsl_rng_alloc(gsl_rng_mt19937), &gsl_rng_free) {
-    if (!rng_) {
-      throw std::bad_alloc();
-    }
-    const std::uint64_t mixed =
-        mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ block) ^ round);
-    gsl_rng_set(rng_.get(), mixed & 0xFFFFFFFFU);  // mt19937 takes 32 bits
-  }
-  std::size_t below(std::size_t n) { return gsl_rng_uniform_int(rng_.get(), n); }
-  bool coin() { return below(2) == 1; }
-  std::vector<std::size_t> permutation(std::size_t n) {
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    gsl_ran_shuffle(rng_.get(), order.data(), n, sizeof(std::size_t));
-    return order;
-  }
-
- private:
-  std::unique_ptr<gsl_rng, void (*)(gsl_rng*)> rng_;
-};
 
 // Row of a Williams square: 0, n-1, 1, n-2, ... shifted by `row`. Every symbol stands once in every
 // column; for even n every symbol also follows every other in one row.
@@ -126,79 +77,12 @@ std::vector<Square> squares(std::uint64_t seed, std::uint64_t block, int rounds,
   return result;
 }
 
-// Which side of the method under test comes how often and how often running, in one session.
-class SidesSoFar {
- public:
-  // False: a fourth time running, and nothing is noted.
-  bool add(bool is_right) {
-    run_ = count_ > 0 && is_right == last_ ? run_ + 1 : 1;
-    last_ = is_right;
-    ++count_;
-    right_ += is_right ? 1 : 0;
-    return run_ <= longest_run;
-  }
-  // As near to half as the number allows.
-  [[nodiscard]] bool is_balanced() const { return std::abs(2 * right_ - count_) <= count_ % 2; }
-
- private:
-  static constexpr int longest_run = 3;
-  int run_ = 0, count_ = 0, right_ = 0;
-  bool last_ = false;
-};
-
-// Orders of one participant: orders[round][position] is a demonstration.
-using Orders = std::vector<std::vector<std::size_t>>;
-
 Orders orders_of(std::uint64_t seed, std::uint64_t number, int rounds, std::size_t n) {
   Orders orders;
   for (const Square& square : squares(seed, number / n, rounds, n)) {
     orders.push_back(square[number % n]);
   }
   return orders;
-}
-
-// Sides of a pair of participants: sides[round][demonstration], true where the first of the two
-// sees the method under test on the right; the second sees it on the other side. Coins are thrown
-// for a round (for two with both orders, the second with the sides swapped) until both have each
-// side equally often and no side more than three times running. Turned round, sides that pass pass
-// too, so that each side is a fair coin still.
-std::vector<std::vector<bool>> sides_of_pair(std::uint64_t seed, std::uint64_t pair, int rounds,
-                                             std::size_t n, bool both_orders) {
-  const Orders orders[] = {orders_of(seed, 2 * pair, rounds, n),
-                           orders_of(seed, 2 * pair + 1, rounds, n)};
-  const int step = both_orders ? 2 : 1;
-  constexpr int most_throws = 10000;  // a beginning that allows no end is begun anew
-  for (std::uint64_t attempt = 0;; ++attempt) {
-    Random coins(seed, Purpose::sides, pair, attempt);
-    std::vector<std::vector<bool>> sides;
-    SidesSoFar so_far[2];
-    for (int throws = 0; throws < most_throws && static_cast<int>(sides.size()) < rounds;
-         ++throws) {
-      std::vector<bool> round(n);
-      std::generate(round.begin(), round.end(), [&] { return coins.coin(); });
-      SidesSoFar next[] = {so_far[0], so_far[1]};
-      bool passes = true;
-      for (int i = 0; i < step; ++i) {
-        for (const int who : {0, 1}) {
-          for (const std::size_t demonstration :
-               orders[who][sides.size() + static_cast<std::size_t>(i)]) {
-            passes = next[who].add(round[demonstration] != (who != i)) && passes;
-          }
-        }
-      }
-      if (passes && next[0].is_balanced()) {
-        std::ranges::copy(next, so_far);
-        sides.push_back(round);
-        if (both_orders) {
-          round.flip();
-          sides.push_back(round);
-        }
-      }
-    }
-    if (static_cast<int>(sides.size()) == rounds) {
-      return sides;
-    }
-  }
 }
 
 Side side_of(bool is_right) {
@@ -211,10 +95,12 @@ std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
   const bool is_graded = !options.graded.empty();
   const std::size_t n = is_graded ? options.graded.size() : options.demonstrations.size();
   const int rounds = options.repetitions * (options.both_orders ? 2 : 1);
-  const Orders orders = orders_of(seed, number, rounds, n);
-  const std::vector<std::vector<bool>> sides =
-      sides_of_pair(seed, number / 2, rounds, n, options.both_orders);
+  const std::uint64_t pair = number / 2;
   const bool is_second_of_pair = number % 2 == 1;
+  const std::array<Orders, 2> orders_of_both = {orders_of(seed, 2 * pair, rounds, n),
+                                                orders_of(seed, 2 * pair + 1, rounds, n)};
+  const Orders& orders = orders_of_both[is_second_of_pair ? 1 : 0];
+  const auto sides = sides_of_pair(seed, pair, orders_of_both, options.both_orders);
   std::vector<PlannedTrial> trials;
   for (std::size_t round = 0; round < sides.size(); ++round) {
     for (const std::size_t i : orders[round]) {
@@ -233,26 +119,6 @@ std::vector<PlannedTrial> main_trials(std::uint64_t seed, std::uint64_t number,
     }
   }
   return trials;
-}
-
-// Sides of trials whose levels are chosen later: in every eight as many on both, none more than
-// three times running; the second of a pair of participants sees the opposite.
-std::vector<bool> sides_in_eights(std::uint64_t seed, std::uint64_t number, std::size_t trials) {
-  Random coins(seed, Purpose::sides, number / 2);
-  SidesSoFar so_far;
-  std::vector<bool> sides;
-  while (sides.size() < trials) {
-    std::vector<bool> some(std::min<std::size_t>(8, trials - sides.size()));
-    std::generate(some.begin(), some.end(), [&] { return coins.coin(); });
-    SidesSoFar next = so_far;
-    bool passes = true;
-    for (const bool is_right : some) passes = next.add(is_right) && passes;
-    if (!passes || !next.is_balanced()) continue;
-    so_far = next;
-    sides.insert(sides.end(), some.begin(), some.end());
-  }
-  if (number % 2 == 1) sides.flip();
-  return sides;
 }
 
 std::vector<PlannedTrial> adaptive_trials(std::uint64_t seed, std::uint64_t number,

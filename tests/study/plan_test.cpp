@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/plan.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 #include <gtest/gtest.h>
 
@@ -8,15 +9,21 @@
 #include <map>
 #include <set>
 
+#include "base/sha256.h"
+
 namespace pinchlab::study {
 namespace {
 
-PlanOptions eight() {
+PlanOptions named(int demonstrations) {
   PlanOptions options;
-  for (int i = 1; i <= 8; ++i) {
+  for (int i = 1; i <= demonstrations; ++i) {
     options.demonstrations.push_back("demo-" + std::to_string(i));
   }
   return options;
+}
+
+PlanOptions eight() {
+  return named(8);
 }
 
 std::vector<std::string> order_of(const std::vector<PlannedTrial>& plan) {
@@ -134,29 +141,104 @@ TEST(Plan, ForOddNumbersEachFollowsEveryOtherTwiceInABlockAndItsMirror) {
   }
 }
 
+void expect_balanced_sides(const std::vector<PlannedTrial>& plan) {
+  int right = 0, run = 0;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    right += plan[i].pinch == Side::right ? 1 : 0;
+    run = i > 0 && plan[i].pinch == plan[i - 1].pinch ? run + 1 : 1;
+    ASSERT_LE(run, 3) << "up to trial " << i;
+  }
+  const int trials = static_cast<int>(plan.size());
+  ASSERT_LE(std::abs(2 * right - trials), trials % 2);
+}
+
 // Nobody can learn to press one side.
 TEST(Plan, SidesAreBalancedWithinEveryParticipant) {
-  for (const std::size_t n : {1U, 2U, 3U, 5U, 8U}) {
+  for (const int n : {1, 2, 3, 5, 8}) {
     for (const int repetitions : {1, 2, 5}) {
       for (const bool both_orders : {false, true}) {
-        PlanOptions options = eight();
-        options.demonstrations.resize(n);
+        PlanOptions options = named(n);
         options.repetitions = repetitions;
         options.both_orders = both_orders;
         for (std::uint64_t number = 0; number < 100; ++number) {
-          const auto plan = make_plan(number / 10, number, options);
-          int right = 0, run = 0;
-          for (std::size_t i = 0; i < plan.size(); ++i) {
-            right += plan[i].pinch == Side::right ? 1 : 0;
-            run = i > 0 && plan[i].pinch == plan[i - 1].pinch ? run + 1 : 1;
-            ASSERT_LE(run, 3) << n << " demonstrations, participant " << number;
-          }
-          const int trials = static_cast<int>(plan.size());
-          ASSERT_LE(std::abs(2 * right - trials), trials % 2) << n << ", participant " << number;
+          SCOPED_TRACE(fmt::format("{} demonstrations, participant {}", n, number));
+          expect_balanced_sides(make_plan(number / 10, number, options));
         }
       }
     }
   }
+}
+
+struct Design {
+  int demonstrations, repetitions;
+  bool both_orders;
+};
+
+PlanOptions options_of(const Design& design) {
+  PlanOptions options = named(design.demonstrations);
+  options.repetitions = design.repetitions;
+  options.both_orders = design.both_orders;
+  return options;
+}
+
+// What no throws of coins would end: as many trials as a study may have.
+const std::vector<Design> large_designs = {
+    {38, 20, false}, {40, 20, false}, {48, 8, false}, {101, 1, false},  {333, 3, false},
+    {500, 2, false}, {999, 1, false}, {25, 20, true}, {1000, 1, false}, {500, 1, true}};
+
+TEST(Plan, LargeDesignsKeepWhatSmallOnesDo) {
+  for (const Design& design : large_designs) {
+    const PlanOptions options = options_of(design);
+    for (const std::uint64_t pair : {0U, 3U}) {
+      SCOPED_TRACE(fmt::format("{} demonstrations {} times, participants {} and the next",
+                               design.demonstrations, design.repetitions, 2 * pair));
+      std::map<std::pair<std::string, int>, std::vector<Side>> sides;  // by demonstration and round
+      for (const std::uint64_t number : {2 * pair, 2 * pair + 1}) {
+        const auto plan = make_plan(1, number, options);
+        expect_balanced_sides(plan);
+        for (const PlannedTrial& trial : plan) {
+          sides[{trial.demonstration, trial.round}].push_back(trial.pinch);
+        }
+      }
+      const int rounds = design.repetitions * (design.both_orders ? 2 : 1);
+      ASSERT_EQ(sides.size(), static_cast<std::size_t>(design.demonstrations * rounds));
+      for (const auto& [trial, of_pair] : sides) {
+        ASSERT_EQ(of_pair.size(), 2U);
+        ASSERT_EQ(of_pair[0], opposite(of_pair[1]));
+        if (design.both_orders && trial.second % 2 == 0) {
+          ASSERT_EQ(of_pair[0], opposite(sides.at({trial.first, trial.second + 1})[0]));
+        }
+      }
+    }
+  }
+}
+
+TEST(Plan, SidesOfLargeDesignsAreCoins) {
+  std::map<std::string, int> neighbours, rights;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const auto plan = make_plan(seed, 0, named(101));
+    ++neighbours[fmt::format("{} {}", to_string(plan[50].pinch), to_string(plan[70].pinch))];
+    ++rights[fmt::format("{}", std::ranges::count(plan, Side::right, &PlannedTrial::pinch))];
+  }
+  EXPECT_GT(p_uniform(neighbours, 4), 1e-4);
+  EXPECT_GT(p_uniform(rights, 2), 1e-4) << "50 or 51";
+}
+
+// Studies that have begun go on with the sides that they had, whether the first throws served for
+// all rounds or some were begun anew.
+TEST(Plan, SeedsGiveThePlansOfEarlierVersions) {
+  const auto hash = [](const Design& design) {
+    std::string text;
+    for (std::uint64_t number = 0; number < 4; ++number) {
+      for (const PlannedTrial& trial : make_plan(5, number, options_of(design))) {
+        text += fmt::format("{} {}\n", trial.demonstration, to_string(trial.pinch));
+      }
+    }
+    return sha256(text).substr(0, 16);
+  };
+  EXPECT_EQ(hash({8, 1, false}), "ebd9b96bc20b94f9");
+  EXPECT_EQ(hash({8, 5, true}), "d2737287ca52cb50");
+  EXPECT_EQ(hash({37, 20, false}), "f6326604ae1af3c7");
 }
 
 TEST(Plan, IsAFunctionOfSeedNumberAndOptions) {
