@@ -83,8 +83,8 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   }
   try {
     drop_idle();
-    if (const auto entry = who_makes_room(link, address, recruited)) {
-      drop(entry, "had answered nothing and made room", true);
+    if (const auto leaver = who_makes_room(link, address, recruited)) {
+      drop(leaver->entry, "had answered no trial and made room", leaver->signs);
     }
   } catch (const std::exception& error) {
     options_.tell(fmt::format("a place cannot be released: {}", error.what()));
@@ -177,6 +177,7 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
   note(entry->session);
+  ++places_.at(next.id).signs;
   offer(entry->session, entry->session.answers.size());
 }
 
@@ -362,6 +363,7 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
   const auto& [files, side, participant] = found->second;
   if (const auto place = places_.find(participant); place != places_.end()) {
     place->second.seen = parse_utc(options_.utc_now());
+    ++place->second.signs;
   }
   const bool is_there = encoding == Encoding::mp4 || files->webm;
   return is_there ? &files->in(encoding).at(side) : nullptr;

@@ -87,9 +87,11 @@ class Desk {
   /// that a start whose reply was lost costs nobody the link. An id is treated likewise; who leaves
   /// can come back with it.
   ///
-  /// Where places are short, the newcomer takes that of somebody who has not answered anything: the
-  /// oldest one of the address that has most of them and more than the newcomer's own will have, or
-  /// else one that was not seen for five minutes. So many starts from one address fill no study.
+  /// Where places are short, the newcomer takes that of somebody who has done nothing but start:
+  /// the oldest one of the address that has most of them and more than the newcomer's own will
+  /// have. Or else of one who has answered nothing, no question either, and was not seen for five
+  /// minutes. So many starts from one address fill no study, and nobody who takes part has to go
+  /// for others.
   std::string start(const std::string& link, const std::string& user_agent,
                     const std::string& address = "", const Recruited& recruited = {},
                     const std::string& language = "");
@@ -146,8 +148,13 @@ class Desk {
     std::string address;      // where the participant started; never on the disk
     std::uint64_t order = 0;  // of starting
     std::chrono::sys_seconds seen;
-    bool is_shown = false;  // the first clip, at least
-    bool has_answered = false;
+    std::uint64_t signs = 0;    // of somebody there: requests since the start that are noted
+    bool is_shown = false;      // the first clip, at least
+    bool has_answered = false;  // a trial, or questions
+  };
+  struct Leaver {
+    std::shared_ptr<Entry> entry;
+    std::uint64_t signs = 0;  // when chosen; who has given another one since, stays
   };
   struct Media {
     const PairFiles* files;
@@ -163,11 +170,11 @@ class Desk {
   void remove(const Entry& entry);
   void drop_idle();
   void drop(const std::shared_ptr<Entry>& entry, const std::string& why,
-            bool only_without_answers = false);
+            std::optional<std::uint64_t> signs = std::nullopt);
   void forget(const std::string& id) const;
   void sweep() const;
-  std::shared_ptr<Entry> who_makes_room(const std::string& link, const std::string& address,
-                                        const Recruited& recruited);
+  std::optional<Leaver> who_makes_room(const std::string& link, const std::string& address,
+                                       const Recruited& recruited);
   void take(const Session& session);
   void give_back(const Session& session);
   void use_up_link(const std::string& token);

@@ -97,7 +97,7 @@ void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) 
   const Session& session = entry->session;
   for (std::size_t i = 0; i < session.plan.size(); ++i) offer(session, i);
   take(session);
-  places_[session.id] = {entry, address, ++starts_, {}, false, false};
+  places_[session.id] = {entry, address, ++starts_, {}, 0, false, false};
   note(session);
 }
 
@@ -128,8 +128,8 @@ void Desk::note(const Session& session) {
   const auto place = places_.find(session.id);
   if (place != places_.end()) {
     place->second.seen = parse_utc(session.last_seen_utc);
-    place->second.has_answered = !session.answers.empty();
-    place->second.is_shown = place->second.has_answered || !session.shown_utc.empty();
+    place->second.is_shown = !session.answers.empty() || !session.shown_utc.empty();
+    place->second.has_answered = !session.answers.empty() || !session.questionnaires.empty();
   }
 }
 
@@ -154,10 +154,14 @@ void Desk::forget(const std::string& id) const {
 
 // Nothing is kept of somebody who does not come back, and the number goes to somebody else.
 void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
-                bool only_without_answers) {
+                std::optional<std::uint64_t> signs) {
   const std::scoped_lock entry_lock(entry->mutex);
-  if (entry->is_gone || (only_without_answers && !entry->session.answers.empty())) {
+  if (entry->is_gone) {
     return;
+  }
+  if (signs) {
+    const std::scoped_lock lock(mutex_);
+    if (places_.at(entry->session.id).signs != *signs) return;
   }
   forget(entry->session.id);
   entry->is_gone = true;
@@ -197,29 +201,33 @@ void Desk::release(const std::string& id) {
   drop(entry, "was released by the researcher");
 }
 
-// Who has to go for somebody that starts from `address`; nullptr: nobody has to, or nobody can.
-std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
-                                                  const std::string& address,
-                                                  const Recruited& recruited) {
+// Who has to go for somebody that starts from `address`; none: nobody has to, or nobody can.
+std::optional<Desk::Leaver> Desk::who_makes_room(const std::string& link,
+                                                 const std::string& address,
+                                                 const Recruited& recruited) {
   const auto now = parse_utc(options_.utc_now());
   const std::scoped_lock lock(mutex_);
-  std::map<std::string, std::size_t> unanswered;  // by address
+  const auto has_only_started = [](const Place& place) {
+    return place.signs == 0 && !place.is_shown && !place.has_answered;
+  };
+  const auto is_away = [&](const Place& place) {
+    return !place.has_answered && now - place.seen >= longest_unanswered;
+  };
+  std::size_t unanswered = 0;                  // of this address
+  std::map<std::string, std::size_t> started;  // by address, and nothing else
+  started[address] = 0;
   for (const auto& [id, place] : places_) {
-    if (!place.has_answered) {
-      ++unanswered[place.address];
-    }
+    unanswered += place.address == address && !place.has_answered ? 1 : 0;
+    if (has_only_started(place)) ++started[place.address];
   }
   const auto oldest = [&](const auto& may_go) {
     const Place* found = nullptr;
     for (const auto& [id, place] : places_) {
       const bool is_older = found == nullptr || place.order < found->order;
-      if (!place.has_answered && is_older && may_go(place)) {
-        found = &place;
-      }
+      if (is_older && may_go(place)) found = &place;
     }
-    return found == nullptr ? nullptr : found->entry;
+    return found == nullptr ? std::nullopt : std::optional(Leaver{found->entry, found->signs});
   };
-  const auto is_away = [&](const Place& place) { return now - place.seen >= longest_unanswered; };
   if (options_.config.one_time_links) {
     return oldest([&](const Place& place) {
       return !place.is_shown && equal_in_constant_time(link, link_of(place.entry->session.number));
@@ -230,19 +238,21 @@ std::shared_ptr<Desk::Entry> Desk::who_makes_room(const std::string& link,
       return !place.is_shown && place.entry->session.recruited.participant == recruited.participant;
     });
   }
-  if (unanswered[address] >= options_.most_unanswered) {
+  if (unanswered >= options_.most_unanswered) {
     return oldest([&](const Place& place) { return place.address == address && is_away(place); });
   }
   const auto limit = static_cast<std::size_t>(options_.config.participant_limit);
   const bool is_full =
       places_.size() >= options_.most_open || (limit > 0 && taken_.size() >= limit);
   if (!is_full) {
-    return nullptr;
+    return std::nullopt;
   }
   const auto busiest =
-      std::ranges::max_element(unanswered, {}, [](const auto& entry) { return entry.second; });
-  if (busiest->second > unanswered[address] + 1) {
-    return oldest([&](const Place& place) { return place.address == busiest->first; });
+      std::ranges::max_element(started, {}, [](const auto& entry) { return entry.second; });
+  if (busiest->second > started[address] + 1) {
+    return oldest([&](const Place& place) {
+      return place.address == busiest->first && has_only_started(place);
+    });
   }
   return oldest(is_away);
 }

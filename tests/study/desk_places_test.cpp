@@ -155,5 +155,73 @@ TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
   EXPECT_EQ(refused([&] { desk.start("", "", "crowd"); }), 0) << "those not seen for five minutes";
 }
 
+// A desk of three places, with a question before the trials, and a clock.
+struct SmallStudy {
+  explicit SmallStudy(const fs::path& folder, bool has_links = false)
+      : desk([&] {
+          DeskOptions options = desk_options(folder);
+          options.utc_now = [this] { return now; };
+          options.config.participant_limit = 3;
+          options.config.one_time_links = has_links;
+          Question age;
+          age.name = age.text = "age";
+          age.longest = 9;
+          options.config.questionnaires.before = {age};
+          return options;
+        }()) {}
+  std::string start(const std::string& address) { return desk.start("", "", address); }
+  void answer_questions(const std::string& token) {
+    desk.questionnaire(token, {{"part", "before"}, {"answers", {{"age", "44"}}}});
+  }
+  int status(const std::string& token) {
+    return refused([&] { desk.progress(token); });
+  }
+
+  std::string now = "2026-11-20T12:00:00.000Z";
+  Desk desk;
+};
+
+TEST(Desk, WhoHasAnsweredQuestionsMakesNoRoom) {
+  SmallStudy study(scratch_folder());
+  const std::string first = study.start("lab"), second = study.start("lab");
+  for (const std::string& token : {first, second, study.start("lab")}) {
+    study.answer_questions(token);
+  }
+  study.desk.show(first, 0);
+  EXPECT_EQ(refused([&] { study.start("home"); }), 409);
+  study.now = "2026-11-20T12:05:00.000Z";
+  EXPECT_EQ(refused([&] { study.start("home"); }), 409);
+  EXPECT_EQ(study.status(first), 0);
+  EXPECT_EQ(study.status(second), 0);
+}
+
+TEST(Desk, WhoFetchesClipsMakesRoomOnlyWhenAway) {
+  SmallStudy study(scratch_folder());
+  const std::string first = study.start("lab"), second = study.start("lab");
+  study.start("lab");
+  const std::string clip = study.desk.progress(first).trials[0].media;
+  EXPECT_NE(study.desk.clip(clip, Encoding::mp4), nullptr);
+  const std::string other = study.start("home");  // in the place of who has only started
+  EXPECT_EQ(study.status(second), 401);
+  EXPECT_EQ(study.status(first), 0);
+  study.now = "2026-11-20T12:05:00.000Z";
+  study.answer_questions(other);
+  study.start("home");
+  EXPECT_EQ(study.status(first), 401);
+  EXPECT_EQ(study.status(other), 0);
+}
+
+TEST(Desk, LinksBeginAnewUntilAClipIsShownAlsoAfterQuestions) {
+  SmallStudy study(scratch_folder(), true);
+  const std::string link = study.desk.links()[0];
+  const std::string first = study.desk.start(link, "");
+  study.answer_questions(first);
+  const std::string second = study.desk.start(link, "");
+  EXPECT_EQ(study.status(first), 401);
+  study.answer_questions(second);
+  study.desk.show(second, 0);
+  EXPECT_EQ(refused([&] { study.desk.start(link, ""); }), 403);
+}
+
 }  // namespace
 }  // namespace pinchlab::study
