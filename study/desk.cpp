@@ -69,6 +69,7 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);
   read_finished();
   read_running();
+  drop_idle();
 }
 
 std::string Desk::start(const std::string& link, const std::string& user_agent,
@@ -81,8 +82,8 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   if (options_.config.recruiting && recruited.participant.empty()) {
     throw Refused(403, "this study needs the id of the site that it recruits by");
   }
+  drop_idle();
   try {
-    drop_idle();
     if (const auto leaver = who_makes_room(link, address, recruited)) {
       drop(leaver->entry, "had answered no trial and made room", leaver->signs);
     }
@@ -326,6 +327,10 @@ std::string Desk::save(const std::string& token,
       !open_questionnaires(entry->session, options_.config.questionnaires).empty()) {
     throw Refused(409, "there are questions left to answer");
   }
+  {
+    const std::scoped_lock lock(mutex_);
+    see(id);  // who waits for a disk that is full is not idle
+  }
   const auto shown = [&](const PlannedTrial& trial, Encoding encoding) {
     const Clip& clip = options_.clips.at(clip_key(trial)).in(encoding).at(trial.pinch);
     return ShownFile{clip.name(), clip.sha256()};
@@ -361,10 +366,7 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
     return nullptr;
   }
   const auto& [files, side, participant] = found->second;
-  if (const auto place = places_.find(participant); place != places_.end()) {
-    place->second.seen = parse_utc(options_.utc_now());
-    ++place->second.signs;
-  }
+  see(participant);
   const bool is_there = encoding == Encoding::mp4 || files->webm;
   return is_there ? &files->in(encoding).at(side) : nullptr;
 }

@@ -68,8 +68,9 @@ struct Overview {
 
 class Desk {
  public:
-  /// Takes up the participants who were running. Throws std::runtime_error if the folder cannot be
-  /// used, is in use by another server, or belongs to a study with another seed or plan.
+  /// Takes up the participants who were running, and drops those who are idle. Throws
+  /// std::runtime_error if the folder cannot be used, is in use by another server, or belongs to a
+  /// study with another seed or plan.
   explicit Desk(DeskOptions options);
 
   [[nodiscard]] std::uint64_t seed() const { return study_.seed; }
@@ -116,6 +117,10 @@ class Desk {
   const Clip* clip(const std::string& media, Encoding encoding);
 
   Overview overview();
+
+  /// Ends the sessions of all who were not seen for longest_idle, and keeps nothing of them. What
+  /// the disk does not let go is told, and tried again the next time.
+  void drop_idle();
 
   // For the researcher.
 
@@ -166,9 +171,9 @@ class Desk {
   void read_running();
   void add(const std::shared_ptr<Entry>& entry, const std::string& address);
   void note(const Session& session);
+  void see(const std::string& id);
   void offer(const Session& session, std::size_t trial);
   void remove(const Entry& entry);
-  void drop_idle();
   void drop(const std::shared_ptr<Entry>& entry, const std::string& why,
             std::optional<std::uint64_t> signs = std::nullopt);
   void forget(const std::string& id) const;

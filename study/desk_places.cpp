@@ -133,6 +133,14 @@ void Desk::note(const Session& session) {
   }
 }
 
+// A sign of somebody that changes nothing. Under mutex_.
+void Desk::see(const std::string& id) {
+  if (const auto place = places_.find(id); place != places_.end()) {
+    place->second.seen = parse_utc(options_.utc_now());
+    ++place->second.signs;
+  }
+}
+
 void Desk::remove(const Entry& entry) {
   for (const std::string& media : entry.session.media) {
     media_.erase(media);
@@ -174,17 +182,21 @@ void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
 
 void Desk::drop_idle() {
   const auto now = parse_utc(options_.utc_now());
-  std::vector<std::shared_ptr<Entry>> idle;
+  std::vector<Leaver> idle;
   {
     const std::scoped_lock lock(mutex_);
     for (const auto& [id, place] : places_) {
       if (now - place.seen >= options_.longest_idle) {
-        idle.push_back(place.entry);
+        idle.push_back({place.entry, place.signs});
       }
     }
   }
-  for (const auto& entry : idle) {
-    drop(entry, "was not seen for too long and is dropped");
+  for (const auto& [entry, signs] : idle) {
+    try {
+      drop(entry, "was not seen for too long and is dropped", signs);
+    } catch (const std::exception& error) {
+      options_.tell(fmt::format("a place cannot be released: {}", error.what()));
+    }
   }
 }
 

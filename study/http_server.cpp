@@ -195,6 +195,15 @@ struct HttpServer::Implementation {
     }
   }
 
+  asio::awaitable<void> repeat(std::chrono::milliseconds interval, std::function<void()> task) {
+    asio::steady_timer timer(context);
+    for (error_code error; !error;) {
+      timer.expires_after(interval);
+      co_await timer.async_wait(into(error));
+      if (!error) task();
+    }
+  }
+
   // False: there are too many, and none that could be closed for it.
   bool admit(const ConnectionPtr& connection) {
     const std::scoped_lock lock(mutex);
@@ -357,6 +366,11 @@ HttpServer::~HttpServer() = default;
 
 int HttpServer::port() const {
   return implementation_->acceptor.local_endpoint().port();
+}
+
+void HttpServer::every(std::chrono::milliseconds interval, std::function<void()> task) {
+  Implementation& server = *implementation_;
+  asio::co_spawn(server.context, server.repeat(interval, std::move(task)), asio::detached);
 }
 
 void HttpServer::run() {

@@ -41,6 +41,10 @@ class HttpServer {
 
   [[nodiscard]] int port() const;
 
+  /// Calls `task` while run() serves, `interval` after the call before. To be said before run();
+  /// `task` throws nothing.
+  void every(std::chrono::milliseconds interval, std::function<void()> task);
+
   /// Serves until stop() is called, from any thread.
   void run();
   void stop();

@@ -119,6 +119,7 @@ struct Server::Implementation {
     add_page();
     add_interface();
     add_researcher();
+    http.every(options.idle_check, [this] { desk.drop_idle(); });
   }
 
   HttpReply serve(const HttpRequest& request) {

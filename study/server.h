@@ -2,6 +2,7 @@
 #pragma once
 // HTTP only: the page, its media, and a small JSON interface to the desk (README.md lists it).
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct ServerOptions {
   /// Names that participants open besides addresses and this computer's own (behind a proxy).
   std::vector<std::string> names;
   HttpLimits limits;
+  std::chrono::milliseconds idle_check{60000};  ///< from one Desk::drop_idle() to the next
 };
 
 /// A server that is bound, so that its address can be told before it runs.

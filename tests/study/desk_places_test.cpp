@@ -6,6 +6,7 @@
 
 #include <sys/stat.h>
 
+#include <atomic>
 #include <regex>
 #include <sstream>
 #include <thread>
@@ -52,6 +53,66 @@ TEST(Desk, IdleSessionsEndAfterADay) {
   desk.start("", "");
   EXPECT_EQ(desk.overview().running.size(), 2U);
   EXPECT_EQ(refused([&] { desk.progress(token); }), 401);
+}
+
+bool is_kept(const fs::path& folder, const std::string& token) {
+  return fs::exists(folder / "answers/.running" / (token.substr(0, 16) + ".json"));
+}
+
+TEST(Desk, IdleSessionsEndAlsoWhileNobodyComes) {
+  const fs::path folder = scratch_folder();
+  auto is_next_day = std::make_shared<std::atomic<bool>>(false);
+  DeskOptions options = desk_options(folder);
+  options.utc_now = [is_next_day] {
+    return *is_next_day ? "2026-11-21T12:00:00.000Z" : "2026-11-20T12:00:00.000Z";
+  };
+  ServerOptions often;
+  often.idle_check = std::chrono::milliseconds(5);
+  RunningServer running(std::move(options), often);
+  const std::string token = running.desk.start("", "");
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(is_kept(folder, token));
+  *is_next_day = true;
+  for (int i = 0; i < 1000 && is_kept(folder, token); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_FALSE(is_kept(folder, token));
+}
+
+TEST(Desk, IdleSessionsEndAtARestart) {
+  const fs::path folder = scratch_folder();
+  const auto at = [&](const char* now) {
+    DeskOptions options = desk_options(folder);
+    options.utc_now = [now] { return now; };
+    return options;
+  };
+  const std::string first = Desk(at("2026-11-20T12:00:00.000Z")).start("", "");
+  const std::string second = Desk(at("2026-11-20T18:00:00.000Z")).start("", "");
+  Desk desk(at("2026-11-21T12:00:00.000Z"));
+  EXPECT_FALSE(is_kept(folder, first));
+  EXPECT_TRUE(is_kept(folder, second));
+  EXPECT_EQ(desk.overview().left, 1U);
+}
+
+TEST(Desk, WhoWaitsForAFullDiskIsNotIdle) {
+  const fs::path folder = scratch_folder();
+  std::string now = "2026-11-20T12:00:00.000Z";
+  DeskOptions options = desk_options(folder);
+  options.utc_now = [&] { return now; };
+  options.longest_idle = std::chrono::minutes(30);
+  Desk desk(std::move(options));
+  const std::string token = desk.start("", "");
+  for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+    desk.show(token, i);
+    desk.answer(token, parse_answer(answer_body(i)));
+  }
+  now = "2026-11-20T12:20:00.000Z";
+  fs::rename(folder / "answers", folder / "away");
+  EXPECT_EQ(refused([&] { desk.save(token, {}); }), 507);
+  fs::rename(folder / "away", folder / "answers");
+  now = "2026-11-20T12:40:00.000Z";
+  desk.drop_idle();
+  EXPECT_EQ(refused([&] { desk.save(token, {}); }), 0);
 }
 
 TEST(Desk, LimitsAndLinks) {
