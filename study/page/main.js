@@ -20,10 +20,10 @@ const tell = (trouble) => {
   if (notice.textContent !== text) notice.textContent = text;
 };
 const backend = connect(tell);
-let isShared = false;  // one computer for many participants
+let isShared = false, needsLink = false;  // one computer for many participants; a link for each
 let recruiting = null, questionnaires = {}, options = {}, isPilot = false, firstLanguage = '', translations = {};
 ({ language: firstLanguage, texts, translations = {}, recruiting = null, questionnaires = {}, trial_options: options = {},
-  shared_computer: isShared = false, pilot: isPilot = false } = await backend.study());
+  shared_computer: isShared = false, needs_link: needsLink = false, pilot: isPilot = false } = await backend.study());
 const simulation = simulationOf(isPilot);
 const site = new Site(recruiting, texts);
 const languages = { [firstLanguage]: texts, ...translations };
@@ -57,14 +57,28 @@ async function inform() {
   }
 }
 
+function next() {
+  backend.forget();
+  location.reload();
+}
+const nextIfShared = isShared ? next : null;
+
+// The last page again, after a reload, so that nobody takes part twice by it. A button lets somebody else begin, where ids or
+// links do not say who is who.
+function stay(saved) {
+  thanks(stage, texts, saved, site, isShared || !(recruiting || needsLink) ? next : null);
+  return new Promise(() => {});
+}
+
 // The session to go on with: the one that was begun, if the participant says so, or a new one.
 async function begin() {
   const running = await backend.running(site.ids);
   if (!running) return inform();
   if (running.language) speak(running.language);
+  if (running.saved) return stay(running.saved);
   if (await askResume(stage, texts)) return backend.resume();
-  await backend.startAnew();
-  return inform();
+  const saved = await backend.startAnew() ?? {};
+  return saved.code ? stay(saved) : inform();  // saved already, in another window
 }
 
 function page(show) {
@@ -89,8 +103,8 @@ try {
     const saved = await backend.leave() ?? {};
     jsPsych?.abortExperiment();
     if (document.fullscreenElement) document.exitFullscreen();
-    if (saved.code) thanks(stage, texts, saved, site, isShared);  // saved already, in another window
-    else goodbye(stage, texts, site, isShared);
+    if (saved.code) thanks(stage, texts, saved, site, nextIfShared);  // saved already, in another window
+    else goodbye(stage, texts, site, nextIfShared);
   };
 
   await ask(stage, session, 'screen', leave);
@@ -129,7 +143,7 @@ try {
   timeline.push(page(async (display) => { saved = await save(display, texts, backend, freeText, leave); }));
   timeline.push(page(async (display) => {
     if (document.fullscreenElement) document.exitFullscreen();
-    thanks(display, texts, saved, site, isShared);
+    thanks(display, texts, saved, site, nextIfShared);
     return new Promise(() => {});  // the end: stays
   }));
   await (simulation ? jsPsych.simulate(timeline, simulation.mode) : jsPsych.run(timeline));

@@ -262,8 +262,8 @@ export function questions(stage, texts, onLeave) {
   });
 }
 
-const nextParticipant = (texts, isShared) => (isShared ? [make('div', { class: 'row' },
-  make('button', { type: 'button', id: 'next-participant', onclick: () => location.reload() }, texts.next_participant))] : []);
+const nextParticipant = (texts, onNext) => (onNext ? [make('div', { class: 'row' },
+  make('button', { type: 'button', id: 'next-participant', onclick: onNext }, texts.next_participant))] : []);
 
 function offerDownload(content) {
   const url = URL.createObjectURL(new Blob([JSON.stringify(content, null, 2)], { type: 'application/json' }));
@@ -302,8 +302,8 @@ export function save(stage, texts, backend, freeText, onLeave) {
   });
 }
 
-/** The end; `isShared`: another participant follows at this computer. */
-export function thanks(stage, texts, { code, completion }, site, isShared = false) {
+/** The end; `onNext`: what begins with another participant at this browser, or null. */
+export function thanks(stage, texts, { code, completion }, site, onNext = null) {
   const copy = make('button', {
     type: 'button', class: 'quiet',
     onclick: () => navigator.clipboard.writeText(code).then(() => { copy.textContent = texts.copied; }, console.warn),
@@ -311,9 +311,9 @@ export function thanks(stage, texts, { code, completion }, site, isShared = fals
   copy.hidden = !navigator.clipboard;  // as on pages without TLS
   sheet(stage, texts.saved_heading, make('p', {}, completion?.url ? texts.recruiting_saved : texts.saved_body),
     ...(code ? [make('p', {}, texts.code_body), make('div', { class: 'row' }, make('span', { class: 'code', id: 'code' }, code), copy)] : []),
-    ...site.completion(completion), ...nextParticipant(texts, isShared));
+    ...site.completion(completion), ...nextParticipant(texts, onNext));
 }
 
-export function goodbye(stage, texts, site, isShared = false) {
-  sheet(stage, texts.left_heading, make('p', {}, texts.left_body), ...site.back('declined'), ...nextParticipant(texts, isShared));
+export function goodbye(stage, texts, site, onNext = null) {
+  sheet(stage, texts.left_heading, make('p', {}, texts.left_body), ...site.back('declined'), ...nextParticipant(texts, onNext));
 }

@@ -43,28 +43,35 @@ async function request(method, path, body) {
 export function connect(onTrouble) {
   let recruited = {};  // ids of the site that sent the participant
   const withIds = () => (recruited.participant ? { recruited } : {});
+  const link = new URLSearchParams(location.search).get('link') ?? '';
   const confirmed = (method, path, body) => insist(() => request(method, path, body), onTrouble);
   return {
     study: () => confirmed('GET', 'api/study', null),
 
-    /** The session that was begun before, with the same id of the site if there is one, or null. */
+    /**
+     * The session that was begun before, with the same id of the site or the same link if there is one; { saved }, what
+     * save() resolved to, if its answers are saved; or null.
+     */
     async running(ids = {}) {
       recruited = ids;
-      const { participant } = stored.read()?.recruited ?? {};
-      if (!stored.read() || participant !== ids.participant) return null;
-      try {
-        return await confirmed('GET', 'api/session', null);
-      } catch (error) {
+      const kept = stored.read();
+      const isOther = kept?.recruited?.participant !== ids.participant || (link && kept?.link && link !== kept.link);
+      if (!kept || isOther) return null;
+      const orGone = (error) => {
         if (!(error instanceof SessionGone)) throw error;
-        stored.write(null);
         return null;
-      }
+      };
+      const session = kept.saved ? null : await confirmed('GET', 'api/session', null).catch(orGone);
+      if (session) return session;
+      const saved = await insist(() => this.save({}), onTrouble).catch(orGone);
+      if (saved) return { saved, language: kept.language };
+      stored.write(null);
+      return null;
     },
 
     async start(language) {
-      const link = new URLSearchParams(location.search).get('link') ?? '';
       const { token, ...session } = await request('POST', 'api/start', { consent: true, link, ...(language && { language }), ...withIds() });
-      stored.write({ token, answers: [], ...withIds() });
+      stored.write({ token, language: session.language, answers: [], ...(link && { link }), ...withIds() });
       return session;
     },
 
@@ -84,18 +91,23 @@ export function connect(onTrouble) {
       await confirmed('POST', 'api/questionnaire', { part, answers });
     },
 
-    /** One attempt; what can be tried again is for the page to say. */
+    /** One attempt; what can be tried again is for the page to say. Then only what gives the same reply again is kept. */
     async save(freeText) {
+      const { token } = stored.read() ?? {};
       const { code, completion = null } = await request('POST', 'api/save', { free_text: freeText });
-      stored.write(null);
+      const kept = stored.read();  // of somebody else, if that began in another window meanwhile
+      if (kept?.token === token) stored.write({ ...kept, answers: [], questionnaires: {}, saved: true });
       return { code, completion };
     },
+
+    /** For the next participant at this browser. */
+    forget: () => stored.write(null),
 
     /** What this browser knows, for a participant whose answers the server does not take. */
     download: (freeText) => ({ ...stored.read(), free_text: freeText }),
 
-    async startAnew() {
-      await this.leave();
+    startAnew() {
+      return this.leave();
     },
 
     /** Keeps nothing; what was saved before is kept, and then it resolves to what save() does. */

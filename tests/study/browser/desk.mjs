@@ -117,6 +117,8 @@ test('one computer for many participants', () => withDesk({ config: { shared_com
       await page.click('#left');
       await page.click('#next');
       await page.click('#save');
+      await page.waitForSelector('#next-participant');
+      await page.reload();
       await page.click('#next-participant');
       assert.equal(answersIn(server).length, i);
     }

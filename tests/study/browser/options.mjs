@@ -58,6 +58,13 @@ test('one-time links: who has one starts, once', () => withStudy({ one_time_link
   await save(page);
   assert.equal(answersIn(server)[0].participant_number, 1, 'the number is the link’s');
   assert.match(await refusal(links[1]), /used already/, 'after it was saved');
+  const code = await page.textContent('#code');
+  await page.reload();
+  await page.waitForSelector('#code');
+  assert.equal(await page.textContent('#code'), code);
+  assert.equal(await page.locator('#next-participant').count(), 0);
+  await page.goto(links[0]);
+  await page.waitForSelector('#start');
   assert.match(await refusal(new URL(`?link=${'0'.repeat(32)}`, server.address).href), /used already/, 'a link that nobody was given');
   assert.deepEqual(openSessions(server), []);
 }));

@@ -47,6 +47,51 @@ test('a reload asks, and goes on at the same trial', () => withBrowser(async (co
   await server.kill();
 }));
 
+test('a reload after saving shows the code again; somebody else begins by a button', () => withBrowser(async (context) => {
+  const server = await serve(scratch());
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await answerAll(page);
+  await page.click('#save');
+  await page.waitForSelector('#code');
+  assert.equal(await page.locator('#next-participant').count(), 0, 'not a computer that many share');
+  const code = await page.textContent('#code');
+  await page.reload();
+  await page.waitForSelector('#code');
+  assert.equal(await page.textContent('#code'), code);
+  assert.equal(await page.locator('#start').count(), 0);
+  assert.deepEqual(await page.evaluate(() => JSON.parse(localStorage.study).answers), [], 'no answers are left in the browser');
+  await assertAccessible(page, 'saved before');
+  await picture(page, '21-saved-before');
+  assert.equal(answersIn(server).length, 1);
+  assert.deepEqual(openSessions(server), []);
+  await page.click('#next-participant');
+  await page.waitForSelector('#start');
+  assert.equal(await page.evaluate(() => localStorage.study), undefined);
+  assert.deepEqual(page.problems, []);
+  await server.kill();
+}));
+
+test('a browser closed before saving was confirmed shows the code when it comes back', () => withBrowser(async (context) => {
+  const server = await serve(scratch());
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  await consent(page);
+  await answerAll(page);
+  await page.route('**/api/save', async (route) => {
+    await route.fetch();
+    await route.abort();
+  });
+  await page.click('#save');
+  await page.waitForSelector('#retry');
+  await page.close();
+  const again = await open(context, server.address);
+  await again.waitForSelector('#code');
+  assert.equal(answersIn(server).length, 1);
+  await server.kill();
+}));
+
 test('loading shows how much has come, and a lost server', () => withBrowser(async (context) => {
   const server = await serve(scratch());
   const page = await open(context, server.address);

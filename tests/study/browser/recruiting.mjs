@@ -56,6 +56,15 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
       await assertAccessible(page, 'thanks');
       await picture(page, `recruiting-${width}-${language}-thanks`);
       assert.deepEqual(answersIn(server)[0].recruited, { participant: 'p-1', study: 'S1', session: 'T1' });
+      const code = await page.textContent('#code');
+      await page.reload();
+      await page.waitForSelector('#back-completed');
+      assert.deepEqual([await page.textContent('#code'), await page.textContent('#completion-code')], [code, 'C1']);
+      assert.equal(await page.locator('#next-participant').count(), 0);
+      await page.goto(address(server, 'p-2'));
+      await page.waitForSelector('#start');
+      await page.goto(address(server, 'p-1'));
+      await page.waitForSelector('#back-completed');
       await page.focus('#back-completed');
       await page.keyboard.press('Enter');
       await page.waitForURL(`${site}/done?cc=C1&id=p-1`);
