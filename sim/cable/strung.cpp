@@ -240,7 +240,7 @@ bool is_within_end(const World& world, const CableState& cable, const Link& node
   const BodyProperties& outline = at(world.bodies, body);
   const auto reaches = [&](const Link& end, double left) {
     if (end.body < 0 || mover_of(world, end.body) != mover_of(world, body)) return false;
-    if (end.body == body && !is_fastened_inside(world, cable, end)) return false;
+    if (end.body == body) return false;  // it is at the rim
     return left <= end.offset.norm() + outline.radius + outline.seat.norm() + cable.half_width;
   };
   return reaches(cable.links.front(), node.material) ||
