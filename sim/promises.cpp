@@ -265,8 +265,8 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
       case Promise::straight:
         what = fmt::format(
             "cable '{}', whose spans have mass and are straight, would have hung by {} of one's "
-            "length (limit {}); with nodes it does",
-            at(scene.cables, w.item).name, percent(w.value), percent(limits_.sag));
+            "length (limit {}); {}",
+            at(scene.cables, w.item).name, percent(w.value), percent(limits_.sag), nodes_cure);
         break;
       default:
         what =

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/diagnostics.h"
@@ -25,6 +26,9 @@ struct PromiseLimits {
   double energy = 1e-2;   ///< gained since the start, of the energy at play; undriven scenes only
   double sag = 0.125;     ///< that a span of a cable with mass would have, over its length
 };
+
+/// Of a line of Promises::broken on spans that are straight: what helps there, where steps do not.
+inline constexpr std::string_view nodes_cure = "with nodes it does";
 
 enum class Promise { strain, squeeze, length, energy, straight, settled, count };
 

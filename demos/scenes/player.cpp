@@ -86,10 +86,8 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
 void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print(stderr, "{}: note: {}\n", file, line);
   if (lines.empty()) return;
-  // Straight spans need nodes, and say so.
-  const bool steps_help = std::ranges::any_of(lines, [](const std::string& line) {
-    return line.find("with nodes it does") == std::string::npos;
-  });
+  const bool steps_help = std::ranges::any_of(
+      lines, [](const std::string& line) { return line.find(nodes_cure) == std::string::npos; });
   fmt::print(stderr, "{}: note: sim/README.md says what is promised and where the limits are{}\n",
              file, steps_help ? "; more steps a frame often help" : "");
 }

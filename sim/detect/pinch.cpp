@@ -10,6 +10,7 @@
 #include "sim/cable/cable.h"
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
+#include "sim/cable/strung.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -324,6 +325,7 @@ void configure_pinches(World& world, Workspace& work) {
         if (!moved && is_kept(work.parts, contact)) continue;
         const bool is_a = contact.a == link.body;
         const int other = is_a ? contact.b : contact.a;
+        if (cable.nodes > 0 && holds_end_inside(world, cable, other)) continue;
         const Vec2 u = is_a ? contact.normal : Vec2(-contact.normal);
         if (contact.touch == Touch::circles) {
           find_pinches_on(world, cable, contact, i, other, u, found);

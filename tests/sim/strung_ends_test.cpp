@@ -24,6 +24,8 @@ const Polygon pentagon = {{0.3, 0.0},
                           {-0.2427051, 0.1763356},
                           {-0.2427051, -0.1763356},
                           {0.0927051, -0.2853170}};
+const Polygon hexagon = {{0.3, 0.0},  {0.15, 0.2598},   {-0.15, 0.2598},
+                         {-0.3, 0.0}, {-0.15, -0.2598}, {0.15, -0.2598}};
 
 Attachment on_rim(int body, double x) {
   Attachment end = on(body);
@@ -76,6 +78,34 @@ TEST(StrungEnds, NoRopeIsMadeWhereItComesDownOnItsOwnLoads) {
       last = world.diagnostics.energy;
     }
   }
+}
+
+// A disc rolls over the rope that holds its centre, which is in front of it. It was pressed off by
+// the rope's width, in one step, when it came over where the rope lies on the hexagon: 0.6 J.
+TEST(StrungEnds, RopeIsNotPinchedByWhatItIsInFrontOf) {
+  Scene scene =
+      over_beam(hexagon, body("a", BodyKind::free, -1.6105, -0.43674, 0.18903, 0.12),
+                body("b", BodyKind::free, 0.87724, -0.33069, 0.17031, 0.45424), 0.065057, 0.5);
+  scene.bodies[0].kind = BodyKind::fixed_axle;
+  scene.cables[0].nodes = 12;
+  scene.cables[0].axial_stiffness = 4443.6;
+  scene.steps_per_frame = 16;
+  spread_nodes(scene);
+  World world = make_world(scene, measured());
+  Workspace work;
+  double last = infinity;
+  bool touched = false;
+  for (int i = 0; i < 960; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    for (const Contact& contact : world.contacts) {
+      if (contact.a != 0 || contact.b < 1 || contact.b > 2) continue;
+      touched |= contact.touching;
+      EXPECT_EQ(contact.target, 0.0) << i;
+    }
+    ASSERT_LE(world.diagnostics.energy, last + 0.06) << i << ", of 4.2 J";
+    last = world.diagnostics.energy;
+  }
+  EXPECT_TRUE(touched);
 }
 
 // Sides on to which the rope sags are laid on where nothing pulls. They had the strain of the
