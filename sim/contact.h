@@ -54,6 +54,7 @@ struct Contact {
   Slip slip = Slip::stick;    // of b along left(normal), where there is friction; by the active set
   bool touching = false;      // by the active set
   bool rebounds = false;      // rebounds, or hops: bears nothing until it has parted; by impact
+  bool bare = false;          // it was there before, with no cable between; by find_contacts
   std::int64_t struck = -1;   // step in which it last did
   double normal_force = 0.0;  // N, of the last step, >= 0
   double tangent_force = 0.0;  // N, on b along left(normal)

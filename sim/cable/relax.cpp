@@ -2,6 +2,7 @@
 #include "sim/cable/relax.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
@@ -75,46 +76,57 @@ void fill(const World& world, CableState& cable, int link, double material, doub
   at(cable.links, link).material += before + later - tail_material(cable, index(link), angle);
 }
 
-/// Stretches a group evenly.
-void stretch(const World& world, CableState& cable, const Sliding& group, double slope) {
+/// Lays all of a group anew: material_of(span) (m) in each span, and on rims so much a metre.
+template <class Material>
+void lay_anew(const World& world, CableState& cable, const Sliding& group,
+              const Material& material_of, double on_rims) {
   double later = 0.0;
   each(
       cable, group,
       [&](int i) {
         const Segment& span = at(cable.segments, i);
-        later += slope * span.length - span.rest_length;
+        later += material_of(span) - span.rest_length;
       },
       [&](int i) {
-        const double now = slope * stored_length(at(cable.links, i));
         const double had = wrapped_material(world, cable, index(i));
+        const double now = on_rims * stored_length(at(cable.links, i));
         fill(world, cable, i, now, later);
         later += now - had;
       });
+  update_wraps_and_rest_lengths(world, cable);
 }
 
-/// Lets the rims of a slack one take what they lack from the spans beside them.
+/// Lets nothing of a slack one be stretched, nor pushed on to a rim: what spans and rims lack comes
+/// from the spans that have some to spare, in proportion.
 void loosen(const World& world, CableState& cable, const Sliding& group) {
-  int i = group.first;
-  for (int k = 0; k < group.count; ++k, i = next_link(cable, i)) {
-    if (k + 1 == group.count && !group.around) return;
-    const Segment &before = at(cable.segments, i), &after = at(cable.segments, next_link(cable, i));
-    const double had = wrapped_material(world, cable, index(i));
-    const double lacks = std::max(stored_length(at(cable.links, i)) - had, 0.0);
-    const auto spare = [](const Segment& s) { return std::max(s.rest_length - s.length, 0.0); };
-    const double from_before = std::min(lacks, spare(before));
-    const double from_after = std::min(lacks - from_before, spare(after));
-    if (from_before + from_after == 0.0) continue;
-    fill(world, cable, i, had + from_before + from_after, -from_before);
-    update_wraps_and_rest_lengths(world, cable);
-  }
+  constexpr double rounding = 1e-15;  // of the cable's length
+  double lacks = 0.0, spare = 0.0;    // m
+  each(
+      cable, group,
+      [&](int i) {
+        const Segment& span = at(cable.segments, i);
+        const double has = span.rest_length - span.length;
+        (has > 0.0 ? spare : lacks) += std::abs(has);
+      },
+      [&](int i) {
+        lacks += stored_length(at(cable.links, i)) - wrapped_material(world, cable, index(i));
+      });
+  if (std::abs(lacks) <= rounding * cable.length || spare == 0.0) return;
+  const double left = std::max(1.0 - lacks / spare, 0.0);
+  lay_anew(
+      world, cable, group,
+      [left](const Segment& span) {
+        return span.length + left * std::max(span.rest_length - span.length, 0.0);
+      },
+      1.0);
 }
 
 void settle(const World& world, CableState& cable, const Sliding& group) {
   if (group.count < 2 && !group.around) return;
   const double slope = slope_of(world, cable, group);
   if (slope == 1.0) return loosen(world, cable, group);
-  stretch(world, cable, group, slope);
-  update_wraps_and_rest_lengths(world, cable);
+  lay_anew(
+      world, cable, group, [slope](const Segment& span) { return slope * span.length; }, slope);
 }
 
 }  // namespace

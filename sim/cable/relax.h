@@ -12,7 +12,7 @@ namespace pinchlab {
 bool lies_relaxed(const World& world, const CableState& cable, int link);
 
 /// Stretches it so at an interval's end, wraps and rest lengths being up to date, as they are
-/// afterwards. Where all is slack rims give up their stretch as far as there is slack beside them.
+/// afterwards. Where all is slack nothing stays stretched, and rims hold no more than they turn.
 void relax_rims(const World& world, CableState& cable);
 
 }  // namespace pinchlab

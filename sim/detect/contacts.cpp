@@ -213,6 +213,18 @@ bool is_same(const Contact& p, const Contact& q) {
          p.piece == q.piece;
 }
 
+/// Whether a contact's pair had others before, in the list about `near`, with no cable between.
+bool was_bare(const std::vector<Contact>& old, std::vector<Contact>::const_iterator near,
+              const Contact& contact) {
+  const auto is_of_pair = [&contact](const Contact& one) {
+    return one.a == contact.a && one.b == contact.b && one.wall == contact.wall;
+  };
+  while (near != old.begin() && is_of_pair(*(near - 1))) --near;
+  const auto end = std::find_if_not(near, old.end(), is_of_pair);
+  return near != end &&
+         std::all_of(near, end, [](const Contact& one) { return one.cable_between < 0; });
+}
+
 /// What the last solve left of the contacts that there were.
 void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts) {
   auto previous = old.begin();
@@ -227,8 +239,11 @@ void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts)
       contact.tangent_force = previous->tangent_force;
       contact.curvature = previous->curvature;
       contact.struck = previous->struck;
+      contact.bare = previous->cable_between < 0;
       // Found anew at the same instant it has not parted yet.
       contact.rebounds = previous->rebounds && contact.gap == previous->gap;
+    } else if (contact.touch != Touch::circles) {
+      contact.bare = was_bare(old, previous, contact);
     }
   }
 }

@@ -106,13 +106,18 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
   return after_tail < -arc_tolerance || before_head < -arc_tolerance;
 }
 
-/// A drum's layers keep others out as far as the outermost reaches.
-void note_cable_between(const World& world, const CableState& cable, const Link& link,
+/// A drum's layers keep others out as far as the outermost reaches. No cable comes between bodies
+/// that have been nearer than its width: it would move them apart at once. It passes in front of
+/// what they touch with, and comes between when they have parted so far. Whether it does.
+bool note_cable_between(const World& world, const CableState& cable, const Link& link,
                         Contact& contact) {
-  if (cable.least_gap > 0.0) {
-    contact.target = std::max(contact.target, cable.least_gap + thickness_of_layers(link));
+  const double least = cable.least_gap + thickness_of_layers(link);
+  if (contact.bare && locates_events(world.configuration) && contact.gap < least * (1.0 - margin)) {
+    return false;
   }
+  if (cable.least_gap > 0.0) contact.target = std::max(contact.target, least);
   contact.cable_between = static_cast<int>(&cable - world.cables.data());
+  return true;
 }
 
 /// The same for a cable that has no link of its own for what presses it on to a polygon, or with a
@@ -122,7 +127,7 @@ void note_cable_between(const World& world, const CableState& cable, const Link&
 /// thesis' sweeps and rows press what may slip without friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
-  note_cable_between(world, cable, link, contact);
+  if (!note_cable_between(world, cable, link, contact)) return;
   const int number = static_cast<int>(&cable - world.cables.data());
   if (link.layers.way != 0) contact.layers_cable = number;
   if (at(world.bodies, link.body).cable_friction < infinity) {
@@ -208,7 +213,7 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
       note_cable_held(world, cable, link, other, contact);
       return;
     }
-    note_cable_between(world, cable, link, contact);
+    if (!note_cable_between(world, cable, link, contact)) return;
     if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }

@@ -77,19 +77,24 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
   return beside(tail, before) || beside(head, after);
 }
 
-/// How a body that has just left the cable lay on it, where the span has closed up behind it; else
-/// 0.
-int orientation_left(const World& world, const Workspace& work, const CableState& cable,
-                     const Segment& segment, int body) {
-  const bool fresh = segment.previous_tail == segment.tail && segment.previous_head == segment.head;
-  if (!fresh) return 0;
+/// Of a cable, those since update_segments.
+std::span<const Release> releases_of(const World& world, const Workspace& work,
+                                     const CableState& cable) {
   const int number = static_cast<int>(&cable - world.cables.data());
-  auto release = std::lower_bound(work.released.begin(), work.released.end(), number,
-                                  [](const Release& r, int c) { return r.cable < c; });
-  for (; release != work.released.end() && release->cable == number; ++release) {
-    if (release->body == body) return release->orientation;
-  }
-  return 0;
+  const auto [begin, end] = std::ranges::equal_range(work.released, number, {}, &Release::cable);
+  return {begin, end};
+}
+
+/// Whether a span lies as if it had closed up where one of these was.
+bool is_fresh(const Segment& segment, std::span<const Release> releases) {
+  return !releases.empty() && segment.previous_tail == segment.tail &&
+         segment.previous_head == segment.head;
+}
+
+/// How a body that has just left the cable lay on it; 0 of another.
+int orientation_left(std::span<const Release> releases, int body) {
+  const auto release = std::ranges::find(releases, body, &Release::body);
+  return release != releases.end() ? release->orientation : 0;
 }
 
 /// Such a body was on the other side of the span that closed up behind it, since the cable ran
@@ -229,17 +234,27 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
     return test_next_corner(world, work, cable, s, to, false);
   }
   const int corners = static_cast<int>(at(world.bodies, body).corners.size());
-  if (const int left = orientation_left(world, work, cable, segment, body); left != 0) {
+  const std::span<const Release> releases = releases_of(world, work, cable);
+  const bool fresh = is_fresh(segment, releases);
+  if (const int left = fresh ? orientation_left(releases, body) : 0; left != 0) {
     if (corners > 0 || pinched_beside(cable, s, body)) return {};
     return test_left(segment, s, circle_of(world, work, cable, body, -1), left);
   }
+  // A span closes up where it has been going straight: what is beside it now was on that side of
+  // the cable before, though not of this line.
+  const bool closed_up = fresh && locates_events(world.configuration);
+  const auto circle = [&](int corner) {
+    Circle c = circle_of(world, work, cable, body, corner);
+    if (closed_up) c.before = c.now;
+    return c;
+  };
   if (corners == 0) {
     if (pinched_beside(cable, s, body)) return {};
-    return test_circle(world, work, cable, s, circle_of(world, work, cable, body, -1));
+    return test_circle(world, work, cable, s, circle(-1));
   }
   Hit first;
   for (int k = 0; k < corners; ++k) {
-    const Hit hit = test_circle(world, work, cable, s, circle_of(world, work, cable, body, k));
+    const Hit hit = test_circle(world, work, cable, s, circle(k));
     if (hit.found && (!first.found || hit.time < first.time)) first = hit;
   }
   return first;

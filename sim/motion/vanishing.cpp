@@ -37,45 +37,46 @@ double time_left(const World& world, const Segment& span, const Link& tail, cons
   return square < rate * most ? square / rate : most;
 }
 
-/// The time in which a rim at either end of a span takes or gives as much as is in it (s), where
-/// that is less than `most`; else that.
-double time_to_pass(const World& world, const Segment& span, const Link& tail, const Link& head,
-                    double most) {
-  const auto speed = [&world](const Link& link) {
-    const double turning = link.body < 0 ? 0.0 : at(world.angular_velocity, link.body);
-    return std::abs(link.signed_radius() * turning);
+/// The time in which as much as is in a span slips over what is at either end of it or, where rims
+/// creep, is taken or given by that (s), where that is less than `most`; else that.
+double time_to_pass(const World& world, const CableState& cable, const Segment& span,
+                    const Link& tail, const Link& head, double most) {
+  const auto speed = [&](const Link& link) {
+    const double slip = std::abs(link.slip_speed);
+    if (cable.rims.empty() || link.body < 0) return slip;
+    return slip + std::abs(link.signed_radius() * at(world.angular_velocity, link.body));
   };
   const double fastest = std::max(speed(tail), speed(head));
   return span.length < fastest * most ? span.length / fastest : most;
 }
 
-/// Calls f(span, tail, head) for each span of a cable that is short to the circles at its ends.
+/// Calls f(span, tail, head) for each span of a cable.
 template <class F>
-void each_short_span(const CableState& cable, const F& f) {
+void each_span(const CableState& cable, const F& f) {
   const Link* tail = cable.closed ? &cable.links.back() : &cable.links.front();
   const std::span spans(cable.segments);
   const std::span links(cable.links);
   for (std::size_t i = first_segment(cable); i < spans.size(); ++i) {
     const Link& head = links[i];
-    if (spans[i].length < short_share * (tail->radius + head.radius)) f(spans[i], *tail, head);
+    f(spans[i], *tail, head);
     tail = &head;
   }
 }
 
-/// time_left of a cable's spans that do not stretch.
+/// time_left of a cable's spans that do not stretch, and are short to the circles at their ends.
 double time_left(const World& world, const CableState& cable, double most) {
-  each_short_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
-    if (!span.slack) most = time_left(world, span, tail, head, most);
+  each_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
+    if (span.slack || span.length >= short_share * (tail.radius + head.radius)) return;
+    most = time_left(world, span, tail, head, most);
   });
   return most;
 }
 
 /// The same of those that do, where rims creep also the time in which they are passed.
 double time_left_of_elastic(const World& world, const CableState& cable, double most) {
-  each_short_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
+  each_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
     most = time_left(world, span, tail, head, most);
-    if (cable.rims.empty() || span.pinched) return;
-    most = time_to_pass(world, span, tail, head, most);
+    if (!span.pinched) most = time_to_pass(world, cable, span, tail, head, most);
   });
   return most;
 }
