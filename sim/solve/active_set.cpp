@@ -23,10 +23,6 @@ namespace {
 /// apart while it holds and let them together while it does not: infinite friction times no force.
 /// Then it holds.
 void bound_friction(PartSystem& s, const SolveScratch& set) {
-  const auto bears_nothing = [&](int r) {
-    const Row& row = at(s.rows, r);
-    return !row.on || (set.solves > 0 && row.impulse == 0.0);
-  };
   for (Friction& friction : s.frictions) {
     if (friction.repeats >= 0) continue;
     Row& row = at(s.rows, friction.row);
@@ -37,7 +33,7 @@ void bound_friction(PartSystem& s, const SolveScratch& set) {
     bool slack = false;
     if (friction.run >= 0) {
       const Run& run = at(set.capstan.runs, friction.run);
-      slack = bears_nothing(run.row_in) && bears_nothing(run.row_out);
+      slack = !at(s.rows, run.row_in).on && !at(s.rows, run.row_out).on;
     }
     friction.bound = bound_in_force(friction, slack);
     if (friction.bound == 0.0 || friction.dropped) row.on = false;
@@ -118,7 +114,7 @@ void check(const PartSystem& s, SolveScratch& set) {
     if (is_friction(row)) {
       // A middle body's is what it missed while it stuck; a contact's is part of how it slides.
       const double made_up = row.kind == RowKind::tangent ? 0.0 : row.bias;
-      const double sliding = row.speed - made_up + run_speed(s, set.capstan, row);
+      const double sliding = row.speed - made_up + sliding_of_run(s, set.capstan, row);
       check_friction(s, row, number, sliding, tolerance, set);
     } else if (row.diagonal > 0.0 && !row.clamped && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {

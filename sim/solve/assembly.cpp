@@ -97,9 +97,11 @@ bool Assembly::is_out_of_reach(const Row& row, bool beside_run) const {
 bool Assembly::takes_part(int number, bool beside_run) const {
   const Row& row = at(s_.rows, number);
   if (is_out_of_reach(row, beside_run)) return false;
-  const bool gives = row.diagonal + row.compliance > 0.0;
+  bool gives = row.diagonal + row.compliance > 0.0;
   if (is_friction(row)) {
     const Friction& friction = at(s_.frictions, row.friction);
+    // What slides beneath it it moves by what is beyond (system.cpp).
+    gives = gives || (friction.run >= 0 && may_slide(at(set_.capstan.runs, friction.run)));
     if (is_bounded(friction)) return gives && column_of(friction.normal) >= 0;
     return gives && row.on && friction.repeats < 0;
   }

@@ -276,6 +276,7 @@ void make_groups(const PartSystem& system, SolveScratch& scratch) {
   s.members.clear();
   s.member_runs.clear();
   s.group_of_row.assign(system.rows.size(), -1);
+  for (Run& run : s.runs) run.joins = false;
   for (std::size_t c = 0; c + 1 < s.cable_begin.size(); ++c) {
     const int begin = s.cable_begin[c], count = s.cable_begin[c + 1] - begin;
     const int start = find_start(scratch, begin, count);
@@ -297,6 +298,7 @@ void make_groups(const PartSystem& system, SolveScratch& scratch) {
       if (slack) group.slack = member;
       s.members.push_back(row);
       s.member_runs.push_back(member == group.begin ? -1 : run);
+      if (member > group.begin) s.runs[index(run)].joins = true;
       s.group_of_row[index(row)] = static_cast<int>(s.groups.size()) - 1;
       group.end = member + 1;
     }
@@ -395,6 +397,8 @@ Shortage shortage_of(const Group& group, const PartSystem& system, const Capstan
   } else {
     for (int m = group.begin; m < group.end; ++m) add(at(s.members, m), 1.0);
   }
+  if (group.run_before >= 0) shortage.speed -= at(s.runs, group.run_before).speed;
+  if (group.run_after >= 0) shortage.speed += at(s.runs, group.run_after).speed;
   return shortage;
 }
 

@@ -31,6 +31,8 @@ struct Run {
   int flipped = 0;          // solve of this step at which `slip` last changed
   Slip slid = Slip::stick;  // the way in which it was last let slide in this step, if it was
   bool frozen = false;      // sticks for this step, whatever its bounds
+  bool joins = false;       // slides between two segments of one group, by make_groups
+  bool follows = false;     // slack, with a middle body that holds it better, by slip_speeds
   int passages_begin = 0, passages_end = 0;
 };
 
@@ -77,6 +79,14 @@ inline double run_speed(const PartSystem& system, const CapstanScratch& capstan,
   return run >= 0 ? at(capstan.runs, run).speed : 0.0;
 }
 
+/// By how much that makes the friction of the middle body's row slide: not at all where the cable
+/// goes with that body and slides over the wrapped one.
+inline double sliding_of_run(const PartSystem& system, const CapstanScratch& capstan,
+                             const Row& row) {
+  const int run = at(system.frictions, row.friction).run;
+  return run >= 0 && at(capstan.runs, run).follows ? 0.0 : run_speed(system, capstan, row);
+}
+
 inline int sign(Slip slip) {
   return static_cast<int>(slip);
 }
@@ -109,7 +119,8 @@ void add_group_equations(PartSystem& system, SolveScratch& scratch);
 Shortage shortage_of(const Group& group, const PartSystem& system, const CapstanScratch& capstan);
 
 /// Sliding speeds of all runs for the rows' present speeds: those of elastic cables such that their
-/// tensions at the interval's end follow from one another as the impulses do.
+/// tensions at the interval's end follow from one another as the impulses do. Slack cable in a
+/// pinch goes with the body that holds it more; its friction on the other is both bodies'.
 void slip_speeds(const PartSystem& system, SolveScratch& scratch);
 
 /// Appends a flip for every run or group whose state the present solution contradicts.

@@ -81,9 +81,30 @@ void balance(const PartSystem& system, SolveScratch& set, const Group& group) {
 
 }  // namespace
 
+namespace {
+
+/// Lets slack cable go with the middle body of a pinch that holds it more than the wrapped one.
+void follow_middles(const PartSystem& system, CapstanScratch& s) {
+  for (const Friction& friction : system.frictions) {
+    if (friction.run < 0 || friction.coefficient <= friction.wrapped) continue;
+    const Row& row = at(system.rows, friction.row);
+    if (row.kind != RowKind::pinch_middle) continue;
+    if (friction.normal >= 0 && !at(system.rows, friction.normal).on) continue;
+    Run& run = at(s.runs, friction.run);
+    if (at(system.rows, run.row_in).on || at(system.rows, run.row_out).on || run.follows) continue;
+    run.follows = true;
+    run.speed = row.bias - row.speed;
+  }
+}
+
+}  // namespace
+
 void slip_speeds(const PartSystem& system, SolveScratch& set) {
   CapstanScratch& s = set.capstan;
-  for (Run& run : s.runs) run.speed = 0.0;
+  for (Run& run : s.runs) {
+    run.speed = 0.0;
+    run.follows = false;
+  }
   s.speeds.resize(s.members.size());
   s.end_impulse.clear();
   const bool elastic = !system.elastic_ends.empty();
@@ -121,6 +142,7 @@ void slip_speeds(const PartSystem& system, SolveScratch& set) {
       sum += w - left_over;
     }
   }
+  follow_middles(system, s);
 }
 
 }  // namespace pinchlab

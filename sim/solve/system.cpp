@@ -14,14 +14,30 @@ namespace pinchlab {
 
 namespace {
 
+/// Whether a row's friction may be part of a group's equation: it presses what may slide.
+bool is_in_pinch(const PartSystem& s, const Row& row) {
+  return row.kind == RowKind::pinch_middle ||
+         (row.kind == RowKind::tangent && at(s.frictions, row.friction).run >= 0);
+}
+
+/// Whether friction holds cable that slides over the other body: then it moves what is beyond, even
+/// if neither of the two bodies gives way.
+bool holds_sliding(const PartSystem& s, const Row& row, const CapstanScratch& capstan) {
+  if (!is_in_pinch(s, row)) return false;
+  const int run = at(s.frictions, row.friction).run;
+  return run >= 0 && at(capstan.runs, run).joins;
+}
+
 /// A row has an unknown of its own unless it bears nothing, slips, or follows from its group's.
-bool has_unknown(const Row& row, std::size_t r, bool slides, const CapstanScratch& capstan) {
+bool has_unknown(const PartSystem& s, std::size_t r, bool slides, const CapstanScratch& capstan) {
+  const Row& row = s.rows[r];
   if (!row.on) return false;
   if (slides && row.kind == RowKind::segment && capstan.group_of_row[r] >= 0) {
     const Group& group = at(capstan.groups, capstan.group_of_row[r]);
     return group.slack < 0 && at(capstan.members, group.begin) == static_cast<int>(r);
   }
-  return row.slip == Slip::stick && row.diagonal > 0.0;
+  if (row.slip != Slip::stick) return false;
+  return row.diagonal > 0.0 || (slides && holds_sliding(s, row, capstan));
 }
 
 /// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
@@ -34,17 +50,11 @@ void number_unknowns(const PartSystem& s, SolveScratch& set) {
   for (const int r : s.order) {
     const Row& row = at(s.rows, r);
     if (row.on && row.slip != Slip::stick) set.symmetric = false;
-    const bool unknown = has_unknown(row, index(r), slides, set.capstan);
+    const bool unknown = has_unknown(s, index(r), slides, set.capstan);
     at(set.unknown_of_row, r) = unknown ? count : -1;
     if (unknown) at(set.row_of_unknown, count++) = r;
   }
   set.row_of_unknown.resize(index(count));
-}
-
-/// Whether a row's friction may be part of a group's equation: it presses what may slide.
-bool is_in_pinch(const PartSystem& s, const Row& row) {
-  return row.kind == RowKind::pinch_middle ||
-         (row.kind == RowKind::tangent && at(s.frictions, row.friction).run >= 0);
 }
 
 /// p = F z and the equations G, row by row; groups of sliding cables add theirs.
