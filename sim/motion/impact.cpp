@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/motion/impact.h"
 
+#include <algorithm>
+
 #include "base/at.h"
 #include "sim/solve/motors.h"
 #include "sim/solve/passive.h"
@@ -12,20 +14,19 @@ namespace pinchlab {
 
 namespace {
 
-/// Of the contacts that may rebound the row of the one that closes fastest; or -1, if none closes
-/// faster than `least` (m/s).
-int fastest_approach(const World& world, const PartSystem& s, double least) {
-  int fastest = -1;
-  double speed = -least;
+/// Whether a row is of a contact that may rebound.
+bool may_rebound(const World& world, const PartSystem& s, const Row& row) {
+  return row.kind == RowKind::normal && row.clearance <= s.reach &&
+         restitution_of(world, at(world.contacts, row.index)) > 0.0;
+}
+
+/// The speed at which the fastest of them closes (m/s); 0 if none is faster than `least`.
+double fastest_approach(const World& world, const PartSystem& s, double least) {
+  double fastest = 0.0;
   for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
-    const Row& row = at(s.rows, r);
-    if (row.kind != RowKind::normal || row.clearance > s.reach) continue;
-    if (restitution_of(world, at(world.contacts, row.index)) == 0.0) continue;
-    const double approach = row_speed(s, index(r));
-    if (approach < speed) {
-      speed = approach;
-      fastest = r;
-    }
+    if (!may_rebound(world, s, at(s.rows, r))) continue;
+    const double approach = -row_speed(s, index(r));
+    if (approach > std::max(fastest, least)) fastest = approach;
   }
   return fastest;
 }
@@ -36,40 +37,44 @@ double least_approach(const PartSystem& s) {
   return rounding * greatest_speed(s.free_velocity);
 }
 
-/// Throws the rows' contacts back, the one that closes fastest first, each by its restitution;
-/// whether any was. Velocities after it are the system's free ones.
+/// Throws the rows' contacts back, those that close fastest first, each by its restitution; whether
+/// any was. Velocities after it are the system's free ones.
 bool throw_back(World& world, const Parts& parts, const Part& part, PartSystem& s,
                 SolveScratch& set) {
+  // What closes as fast but for round-off is thrown back at once, as both corners of a box that
+  // falls flat: one after another the first would turn it, to a side of which nothing tells.
+  constexpr double as_fast = 1.0 - 1e-9;
   // One blow a contact and neighbour is plenty; what is left then is stopped.
   const int most_blows = 4 * (static_cast<int>(s.rows.size()) - s.first_contact_row);
   const double least = least_approach(s);
   bool any = false;
   for (int blow = 0; blow < most_blows; ++blow) {
-    const int struck = fastest_approach(world, s, least);
-    if (struck < 0) break;
+    const double fastest = fastest_approach(world, s, least);
+    if (fastest == 0.0) break;
     for (int r = s.first_contact_row; index(r) < s.rows.size(); ++r) {
       Row& row = at(s.rows, r);
       if (row.kind != RowKind::normal) continue;
-      row.on = r == struck;
+      const double speed = row_speed(s, index(r));
+      row.on = may_rebound(world, s, row) && -speed >= as_fast * fastest;
       row.idle = !row.on;
+      if (!row.on) continue;
+      Contact& contact = at(world.contacts, row.index);
+      row.bias = restitution_of(world, contact) * speed;
+      contact.rebounds = any = true;
+      contact.struck = world.step;
     }
-    Row& row = at(s.rows, struck);
-    row.bias = 0.0;
-    const double e = restitution_of(world, at(world.contacts, row.index));
-    row.bias = e * row_speed(s, index(struck));
     forget_flips(s);
     solve_passively(world, parts, part, s, set);
     // Where others must not come nearer, a rebound may cost more than there is.
-    if (makes_energy(s, set)) {
-      row.bias = 0.0;
+    const bool made = makes_energy(s, set);
+    for (Row& row : s.rows) {
+      if (row.kind == RowKind::normal) row.bias = 0.0;
+    }
+    if (made) {
       forget_flips(s);
       solve_passively(world, parts, part, s, set);
     }
-    at(s.rows, struck).bias = 0.0;
     s.free_velocity = s.velocity;
-    Contact& contact = at(world.contacts, at(s.rows, struck).index);
-    contact.rebounds = any = true;
-    contact.struck = world.step;
   }
   return any;
 }
