@@ -13,6 +13,7 @@
 #include "sim/pieces.h"
 #include "sim/seams.h"
 #include "sim/tangent.h"
+#include "sim/tips.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -421,6 +422,7 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     contact.gap = meeting.gap;
     contact.normal = meeting.normal;
     contact.side = static_cast<std::int8_t>(meeting.side);
+    if (goes_past(world, one_place(world, a, b), contact)) return;
     // Within round-off of its end it has come off it.
     if (contact.side >= 0 &&
         on_straight(world, contact, world.position, world.angle) <= one_place(world, a, b)) {
