@@ -98,9 +98,10 @@ class Pen {
     const Vec2 a = fit_.point(stroke.a), b = fit_.point(stroke.b);
     const double outer = fit_.scale * stroke.half_width;
     const double inner = std::max(0.0, outer - fit_.scale * stroke.edge_width);
+    const Colour edge = outer > inner ? stroke.edge : Colour{0, 0, 0, 0};
     if (a != b) {
       cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_ROUND);
-      for (const auto& [half, colour] : {std::pair(outer, stroke.edge), {inner, stroke.fill}}) {
+      for (const auto& [half, colour] : {std::pair(outer, edge), {inner, stroke.fill}}) {
         if (colour.alpha == 0 || half <= 0.0) continue;
         set(colour);
         cairo_set_line_width(cairo_, 2.0 * half);
@@ -116,8 +117,8 @@ class Pen {
       cairo_arc(cairo_, a.x(), a.y(), inner, 0.0, turn);
       cairo_fill(cairo_);
     }
-    if (stroke.edge.alpha > 0 && outer > inner) {
-      set(stroke.edge);
+    if (edge.alpha > 0) {
+      set(edge);
       cairo_set_line_width(cairo_, outer - inner);
       cairo_arc(cairo_, a.x(), a.y(), 0.5 * (outer + inner), 0.0, turn);
       cairo_stroke(cairo_);
@@ -146,6 +147,43 @@ class Pen {
                                                    first, last);
   }
 
+  /// Where each run of a strip begins and the last one ends: pieces that do not cover one another,
+  /// drawn at once, as their directions stay within a right angle.
+  static std::vector<std::size_t> runs_of(const std::vector<Piece>& pieces) {
+    constexpr double widest = 0.5 * std::numbers::pi;  // rad
+    std::vector<std::size_t> begins = {0};
+    double heading = 0.0, low = 0.0, high = 0.0;  // rad, from where the run begins
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      heading += pieces[i].turn;
+      low = std::min(low, heading);
+      high = std::max(high, heading);
+      if (high - low <= widest || i == 0) continue;
+      begins.push_back(i);
+      heading = pieces[i].turn;
+      low = std::min(0.0, heading);
+      high = std::max(0.0, heading);
+    }
+    begins.push_back(pieces.size());
+    return begins;
+  }
+
+  struct Start {
+    std::size_t piece;
+    double share;  // of it, that is left out
+  };
+
+  /// So far (px) before a run: between the two, viewers would show a line. What is on top begins
+  /// first, to cover the half-covered pixels where the other begins.
+  static Start before(const std::vector<Piece>& pieces, std::size_t run, double distance) {
+    Start start{run, 0.0};
+    while (distance > 0.0 && start.piece > 0) {
+      const double length = pieces[--start.piece].length;
+      start.share = length > distance ? 1.0 - distance / length : 0.0;
+      distance -= length;
+    }
+    return start;
+  }
+
   void draw(const Strip& strip, const std::vector<StripPoint>& points) {
     if (strip.count < 2) return;
     const StripPoint* const first = points.data() + strip.first;
@@ -156,33 +194,45 @@ class Pen {
     }
     const double outer = fit_.scale * strip.half_width;
     const double inner = std::max(0.0, outer - fit_.scale * strip.edge_width);
+    const Colour edge = outer > inner ? strip.edge : Colour{0, 0, 0, 0};
     cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_BUTT);
     cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
-    for (const auto& [half, colour] : {std::pair(outer, strip.edge), {inner, strip.fill}}) {
-      if (colour.alpha == 0 || half <= 0.0) continue;
-      set(colour);
-      cairo_set_line_width(cairo_, 2.0 * half);
-      cairo_new_path(cairo_);
-      for (const Piece& piece : pieces) add_piece(piece, 0.0, 1.0);
-      cairo_stroke(cairo_);
+    const std::vector<std::size_t> begins = runs_of(pieces);
+    for (std::size_t run = 0; run + 1 < begins.size(); ++run) {
+      double overlap = 0.0;  // px
+      for (const auto& [half, colour] : {std::pair(outer, edge), {inner, strip.fill}}) {
+        if (colour.alpha == 0 || half <= 0.0) continue;
+        set(colour);
+        cairo_set_line_width(cairo_, 2.0 * half);
+        cairo_new_path(cairo_);
+        const Start start = before(pieces, begins[run], overlap += 1.0);
+        for (std::size_t i = start.piece; i < begins[run + 1]; ++i)
+          add_piece(pieces[i], i == start.piece ? start.share : 0.0, 1.0);
+        cairo_stroke(cairo_);
+      }
+      if (strip.mark_length > 0.0)
+        draw_marks(strip, first, pieces, before(pieces, begins[run], overlap + 1.0),
+                   begins[run + 1]);
     }
-    if (strip.mark_length > 0.0) draw_marks(strip, first, pieces);
   }
 
-  /// A mark on several pieces is one path: between two, viewers would show a line.
-  void draw_marks(const Strip& strip, const StripPoint* points, const std::vector<Piece>& pieces) {
+  /// A mark on several pieces of a run is one path.
+  void draw_marks(const Strip& strip, const StripPoint* points, const std::vector<Piece>& pieces,
+                  const Start& start, std::size_t end) {
     set(strip.mark);
     const double inner = fit_.scale * std::max(0.0, strip.half_width - strip.edge_width);
     cairo_set_line_width(cairo_, 2.0 * inner);
     const double spacing = strip.mark_spacing, half = 0.5 * strip.mark_length;
     bool goes_on = false;  // a mark, on to the next piece
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (std::size_t i = start.piece; i < end; ++i) {
       const double low = points[i].material, high = points[i + 1].material;
       if (high <= low || pieces[i].length == 0.0) continue;
-      for (double mark = std::ceil((low - half) / spacing) * spacing; mark - half < high;
+      const double begin = i == start.piece ? start.share : 0.0;
+      const double seen = low + begin * (high - low);
+      for (double mark = std::ceil((seen - half) / spacing) * spacing; mark - half < high;
            mark += spacing) {
-        const double from = std::clamp((mark - half - low) / (high - low), 0.0, 1.0);
-        const double to = std::clamp((mark + half - low) / (high - low), 0.0, 1.0);
+        const double from = std::clamp((mark - half - low) / (high - low), begin, 1.0);
+        const double to = std::clamp((mark + half - low) / (high - low), begin, 1.0);
         if (goes_on && from > 0.0) cairo_stroke(cairo_);
         if (!goes_on || from > 0.0) cairo_new_path(cairo_);
         add_piece(pieces[i], from, to);

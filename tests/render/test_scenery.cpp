@@ -7,17 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <regex>
 
 #include "render/picture/compose.h"
-#include "render/vector_canvas.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
 
 namespace pinchlab {
 namespace {
 
-using test::TemporaryFolder;
 using testing::atwood;
 using testing::body;
 
@@ -160,61 +157,6 @@ TEST(Scenery, ThemeAndLooksReachThePicture) {
   EXPECT_EQ(plain.strokes.size(), picture.strokes.size() + 4) << "three spokes and a dot";
   const auto green = [](const Stroke& s) { return s.fill == Colour{10, 200, 10, 255}; };
   EXPECT_EQ(std::count_if(picture.strokes.begin(), picture.strokes.end(), green), 1);
-}
-
-// A mark that lies on two pieces of a cable is one shape: between two, viewers show a light line.
-TEST(Vector, AMarkIsOnePath) {
-  const TemporaryFolder folder;
-  Picture picture;
-  picture.view = {{-1.0, -1.0}, {3.0, 3.0}};
-  Strip strip;
-  strip.half_width = 0.1;
-  strip.fill = {200, 200, 200, 255};
-  strip.mark = {255, 0, 0, 255};
-  strip.mark_spacing = 1.0;  // marks about 0, 1 and 2: the pieces meet at 1
-  strip.mark_length = 0.5;
-  for (const double x : {0.0, 1.0, 2.0}) picture.points.push_back({{x, 0.0}, {1.0, 0.0}, x});
-  strip.count = picture.points.size();
-  picture.add(strip);
-  write_vector(folder.file("marks.svg"), VectorFormat::svg, 100, 100, {{picture, ""}});
-  const auto raw = testing::bytes_of(folder.file("marks.svg"));
-  const std::string svg(raw.begin(), raw.end()), red = "stroke:rgb(100%,0%,0%)";
-  int marks = 0;
-  for (std::size_t at = svg.find(red); at != std::string::npos; at = svg.find(red, at + 1)) ++marks;
-  EXPECT_EQ(marks, 3);
-}
-
-TEST(Vector, SvgAndPdfAreTheSameTwice) {
-  const Scene scene = short_atwood();
-  Picture picture;
-  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
-  const TemporaryFolder folder;
-  for (const auto& [format, ending, begin] :
-       {std::tuple(VectorFormat::svg, ".svg", "<?xml"), {VectorFormat::pdf, ".pdf", "%PDF"}}) {
-    const std::string a = folder.file(std::string("a") + ending);
-    const std::string b = folder.file(std::string("b") + ending);
-    write_vector(a, format, 200, 200, {{picture, ""}});
-    write_vector(b, format, 200, 200, {{picture, ""}});
-    // Cairo numbers the surfaces of a process.
-    const auto numbered_anew = [](const std::string& path) {
-      const auto bytes = testing::bytes_of(path);
-      return std::regex_replace(std::string(bytes.begin(), bytes.end()),
-                                std::regex("surface[0-9]+"), "surface");
-    };
-    const std::string raw = numbered_anew(a);
-    EXPECT_TRUE(raw == numbered_anew(b));
-    EXPECT_TRUE(std::string(raw.begin(), raw.end()).starts_with(begin));
-  }
-  const auto raw = testing::bytes_of(folder.file("a.svg"));
-  const std::string svg(raw.begin(), raw.end());
-  EXPECT_NE(svg.find("width=\"200"), std::string::npos);
-  EXPECT_EQ(svg.find("<image"), std::string::npos) << "shapes, not pixels";
-  write_vector(folder.file("sheet.svg"), VectorFormat::svg, 100, 100,
-               {{picture, "A, 0.00 s"}, {picture, "B, 0.00 s"}}, 2);
-  EXPECT_THROW(write_vector(folder.file("no/a.svg"), VectorFormat::svg, 10, 10, {{picture, ""}}),
-               std::runtime_error);
-  EXPECT_THROW(write_vector(folder.file("none.svg"), VectorFormat::svg, 10, 10, {}),
-               std::invalid_argument);
 }
 
 }  // namespace
