@@ -144,7 +144,8 @@ Made write_poster(const ClipPlan& plan, const std::string& path, const std::func
     sheet.push_back(
         {{rgba, rgba + bytes}, fmt::format("{}, {:.2f} s", in_words(method), player.time())});
   }
-  contact_sheet(path, width, plan.video.height, sheet, static_cast<int>(plan.methods.size()));
+  contact_sheet(path, width, plan.video.height, sheet, static_cast<int>(plan.methods.size()),
+                plan.theme.theme);
   tick();
   made.frames_hash = frames.hex();
   return made;

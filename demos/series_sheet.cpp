@@ -93,7 +93,7 @@ void write_series(const Sweep& sweep, const std::string& method, const StillOpti
   const int columns = static_cast<int>(sweep.table.rows.size());
   if (ending != ".png") {
     write_vector(options.out.string(), ending == ".svg" ? VectorFormat::svg : VectorFormat::pdf,
-                 options.width, options.height, sheet, columns);
+                 options.width, options.height, sheet, columns, options.theme.theme);
     return;
   }
   Canvas canvas(options.width, options.height);
@@ -104,7 +104,8 @@ void write_series(const Sweep& sweep, const std::string& method, const StillOpti
     const std::uint8_t* rgba = canvas.draw(frame.picture);
     frames.push_back({{rgba, rgba + bytes}, frame.label});
   }
-  contact_sheet(options.out.string(), options.width, options.height, frames, columns);
+  contact_sheet(options.out.string(), options.width, options.height, frames, columns,
+                options.theme.theme);
 }
 
 }  // namespace pinchlab

@@ -99,7 +99,7 @@ void write_png_still(const SceneFile& file, const StillOptions& options,
     return;
   }
   contact_sheet(options.out.string(), options.width, options.height, sheet,
-                sheet_columns(options, frames));
+                sheet_columns(options, frames), options.theme.theme);
 }
 
 void write_vector_still(const SceneFile& file, const StillOptions& options, VectorFormat format,
@@ -112,7 +112,7 @@ void write_vector_still(const SceneFile& file, const StillOptions& options, Vect
          });
   }
   write_vector(options.out.string(), format, options.width, options.height, sheet,
-               sheet_columns(options, frames));
+               sheet_columns(options, frames), options.theme.theme);
 }
 
 /// Every frame a file of its own, its number in the place of the #, in a folder that is made.

@@ -5,6 +5,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -21,14 +22,29 @@ struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+using Pixel = std::array<std::uint8_t, 4>;  // RGBA, premultiplied
+
+/// `share` of 255 of a colour, over a pixel.
+Pixel over(const Colour& colour, int share, const Pixel& below) {
+  const int alpha = colour.alpha * share / 255;
+  const auto mixed = [&](int top, int under) {
+    return static_cast<std::uint8_t>((top * alpha + under * (255 - alpha) + 127) / 255);
+  };
+  return {mixed(colour.red, below[0]), mixed(colour.green, below[1]), mixed(colour.blue, below[2]),
+          mixed(255, below[3])};
+}
+
 /// An RGBA image that things are pasted into.
 struct Image {
   int width, height;
   std::vector<std::uint8_t> rgba;
-  Image(int width_, int height_)
+  Image(int width_, int height_, const Colour& paper)
       : width(width_),
         height(height_),
-        rgba(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4, 255) {}
+        rgba(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4) {
+    const Pixel pixel = over(paper, 255, {});
+    for (std::size_t i = 0; i < rgba.size(); ++i) rgba[i] = pixel[i % pixel.size()];
+  }
 
   std::uint8_t* at(int x, int y) {
     return rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -43,13 +59,14 @@ struct Image {
     }
   }
 
-  void paste(const TextBitmap& text, int centre_x, int centre_y) {
+  void paste(const TextBitmap& text, int centre_x, int centre_y, const Colour& ink) {
     const int left = centre_x - static_cast<int>(text.centre_x),
               top = centre_y - static_cast<int>(text.centre_y);
     for (int y = std::max(0, -top); y < std::min(text.height, height - top); ++y) {
       for (int x = std::max(0, -left); x < std::min(text.width, width - left); ++x) {
         std::uint8_t* const pixel = at(left + x, top + y);
-        std::fill_n(pixel, 3, static_cast<std::uint8_t>(255 - text.at(x, y) * 225 / 255));
+        const Pixel mixed = over(ink, text.at(x, y), {pixel[0], pixel[1], pixel[2], pixel[3]});
+        std::ranges::copy(mixed, pixel);
       }
     }
   }
@@ -92,7 +109,7 @@ void write_png(const std::string& path, int width, int height, const std::uint8_
 }
 
 void contact_sheet(const std::string& path, int width, int height,
-                   const std::vector<SheetFrame>& frames, int columns) {
+                   const std::vector<SheetFrame>& frames, int columns, const Theme& theme) {
   if (frames.empty())
     throw std::invalid_argument(path + ": a contact sheet needs at least one frame");
   const std::size_t bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4;
@@ -110,12 +127,13 @@ void contact_sheet(const std::string& path, int width, int height,
 
   const Font font;
   const int gap = std::max(4, width / 60), text = std::max(12, width / 24), strip = 2 * text;
-  Image sheet(gap + columns * (width + gap), gap + rows * (height + strip));
+  Image sheet(gap + columns * (width + gap), gap + rows * (height + strip), theme.background);
   for (int i = 0; i < count; ++i) {
     const int left = gap + i % columns * (width + gap), top = gap + i / columns * (height + strip);
     const SheetFrame& frame = frames[static_cast<std::size_t>(i)];
     sheet.paste(frame, width, height, left, top);
-    sheet.paste(font.draw(frame.label, text), left + width / 2, top + height + strip / 2);
+    sheet.paste(font.draw(frame.label, text), left + width / 2, top + height + strip / 2,
+                theme.ink);
   }
   write_png(path, sheet.width, sheet.height, sheet.rgba.data());
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "render/picture/look.h"
+
 namespace pinchlab {
 
 /// Writes a PNG from RGBA pixels (8 bits each, alpha premultiplied, top row first): RGB where all
@@ -20,10 +22,10 @@ struct SheetFrame {
   std::string label;               // shown under it, e.g. "t = 1.25 s"
 };
 
-/// Writes frames of one size as a grid, in reading order, each over its label. `columns` 0: as many
-/// as make the sheet about square. Throws as write_png, and std::invalid_argument if there are no
-/// frames or one has another size.
+/// Writes frames of one size as a grid, in reading order, each over its label, on the theme's
+/// background in its ink. `columns` 0: as many as make the sheet about square. Throws as write_png,
+/// and std::invalid_argument if there are no frames or one has another size.
 void contact_sheet(const std::string& path, int width, int height,
-                   const std::vector<SheetFrame>& frames, int columns = 0);
+                   const std::vector<SheetFrame>& frames, int columns = 0, const Theme& theme = {});
 
 }  // namespace pinchlab

@@ -288,7 +288,7 @@ struct Layout {
 }  // namespace
 
 void write_vector(const std::string& path, VectorFormat format, int width, int height,
-                  const std::vector<VectorFrame>& frames, int columns) {
+                  const std::vector<VectorFrame>& frames, int columns, const Theme& theme) {
   if (frames.empty()) throw std::invalid_argument(path + ": a picture needs at least one frame");
   const int count = static_cast<int>(frames.size());
   const Layout page(width, height, count, columns);
@@ -311,8 +311,7 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
                           paper.alpha / 255.0);
     cairo_paint(cairo.get());
   };
-  const Colour& behind = frames.front().picture.background;
-  if (count > 1 && behind.alpha == 255) paint(behind);  // under the labels
+  if (count > 1 && theme.background.alpha == 255) paint(theme.background);  // under the labels
   for (int i = 0; i < count; ++i) {
     const VectorFrame& frame = at(frames, i);
     const int column = i % page.columns, row = i / page.columns;
@@ -329,7 +328,7 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
     if (count > 1) {
       Pen(cairo.get(), fit)
           .text({left + 0.5 * width, top + height + 0.5 * page.strip}, page.text, frame.label,
-                {30, 30, 30, 255});
+                theme.ink);
     }
   }
   cairo.reset();

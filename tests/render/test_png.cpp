@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
+
 #include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
@@ -91,6 +93,26 @@ TEST(Png, ContactSheetShowsEveryFrameOverItsLabel) {
     }
     EXPECT_GT(dark, 30) << "label of frame " << i;
   }
+}
+
+TEST(Png, ContactSheetsHaveTheThemesColours) {
+  const TemporaryFolder folder;
+  Theme theme;
+  theme.background = {10, 20, 30, 255};
+  theme.ink = {250, 240, 230, 255};
+  const std::vector<std::uint8_t> rgba(4 * 120 * 80, 255);
+  contact_sheet(folder.file("sheet.png"), 120, 80, {{rgba, "t = 1.25 s"}, {rgba, "t = 2 s"}}, 2,
+                theme);
+  const Image sheet = read(folder.file("sheet.png"));
+  EXPECT_EQ(std::vector<int>(sheet.rgb.begin(), sheet.rgb.begin() + 3),
+            (std::vector<int>{10, 20, 30}));
+  const std::size_t below = static_cast<std::size_t>(3 * sheet.width * (4 + 80));
+  const auto brightest =
+      std::max_element(sheet.rgb.begin() + static_cast<std::ptrdiff_t>(below), sheet.rgb.end());
+  EXPECT_EQ(*brightest, 250) << "the labels' ink";
+  theme.background.alpha = 0;
+  contact_sheet(folder.file("clear.png"), 120, 80, {{rgba, "A"}, {rgba, "B"}}, 2, theme);
+  EXPECT_FALSE(read(folder.file("clear.png")).opaque);
 }
 
 TEST(Png, ErrorsNameTheFileAndLeaveNothing) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <regex>
+#include <set>
 
 #include "render/picture/compose.h"
 #include "render/vector_canvas.h"
@@ -20,9 +21,9 @@ using testing::atwood;
 
 constexpr Colour grey{200, 200, 200, 255}, blue{0, 0, 255, 255}, red{255, 0, 0, 255};
 
-std::string svg_of(const std::vector<VectorFrame>& frames) {
+std::string svg_of(const std::vector<VectorFrame>& frames, const Theme& theme = {}) {
   const TemporaryFolder folder;
-  write_vector(folder.file("a.svg"), VectorFormat::svg, 100, 100, frames);
+  write_vector(folder.file("a.svg"), VectorFormat::svg, 100, 100, frames, 2, theme);
   const auto raw = testing::bytes_of(folder.file("a.svg"));
   return {raw.begin(), raw.end()};
 }
@@ -103,6 +104,20 @@ TEST(Vector, WhatHasNoEdgeHasNoneUnderIt) {
   stroke.edge = blue;
   picture.add(stroke);
   EXPECT_EQ(lines_of(picture), "fill fill");
+}
+
+TEST(Vector, SheetsHaveTheThemesColours) {
+  Theme theme;
+  theme.background = {0, 0, 255, 255};
+  theme.ink = {255, 0, 0, 255};
+  Picture picture = empty_picture();
+  picture.background.alpha = 0;
+  const std::string svg = svg_of({{picture, "A"}, {picture, "B"}}, theme);
+  const std::regex fill("fill[:=]\"?rgb\\(([^)]*)\\)");
+  std::set<std::string> colours;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), fill), end; it != end; ++it)
+    colours.insert((*it)[1]);
+  EXPECT_EQ(colours, (std::set<std::string>{"0%,0%,100%", "100%,0%,0%"}));
 }
 
 TEST(Vector, SvgAndPdfAreTheSameTwice) {
