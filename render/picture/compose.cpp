@@ -107,16 +107,12 @@ class Composer {
     add_hatched(foot + half, foot - half, 0.2 * r);
   }
 
-  /// Where the body's centre goes in the clips, with a bracket at each end.
+  /// Where the body's centre goes in the clips. What ends its way is drawn as a stop, and nothing
+  /// else there: a bracket would look like one.
   void add_rail(std::size_t i) {
-    const Body& body = scene_.bodies[i];
-    if (body.kind != BodyKind::rail || !scenery_.travel[i].own) return;
-    const Vec2 low = body.position + (scenery_.travel[i].low - body.radius) * body.rail_axis;
-    const Vec2 high = body.position + (scenery_.travel[i].high + body.radius) * body.rail_axis;
+    if (scene_.bodies[i].kind != BodyKind::rail || !scenery_.travel[i].own) return;
+    const auto [low, high] = rail_ends(scene_, scenery_, i);
     picture_.add(line(low, high, 1.5 * scenery_.line(), theme_.rail));
-    const Vec2 across = 0.9 * scenery_.unit() * left(body.rail_axis);
-    add_hatched(low + across, low - across, 0.7 * scenery_.unit());
-    add_hatched(high - across, high + across, 0.7 * scenery_.unit());
   }
 
   void add_anchor_plate(const Anchor& anchor) {

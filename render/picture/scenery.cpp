@@ -158,8 +158,7 @@ void Rehearsal::see_rails() {
   for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
     const Body& body = scene_.bodies[i];
     if (body.kind != BodyKind::rail || !scenery_.travel[i].own) continue;
-    const Vec2 low = body.position + (scenery_.travel[i].low - body.radius) * body.rail_axis;
-    const Vec2 high = body.position + (scenery_.travel[i].high + body.radius) * body.rail_axis;
+    const auto [low, high] = rail_ends(scene_, scenery_, i);
     for (Snapshot& snapshot : snapshots_) {
       snapshot.lines.push_back({low, high, 1.5 * scenery_.line()});
     }
@@ -371,7 +370,8 @@ void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
         ++j;
         continue;
       }
-      travel[i] = {std::min(travel[i].low, low), std::max(travel[i].high, high), true};
+      travel[i] = {std::min(travel[i].low, low), std::max(travel[i].high, high),
+                   std::max(travel[i].reach, travel[j].reach), true};
       travel[j].own = false;
       j = 0;  // the longer way may meet others
     }
@@ -379,6 +379,14 @@ void share_rails(const Scene& scene, std::vector<Travel>& travel, double near) {
 }
 
 }  // namespace
+
+std::pair<Vec2, Vec2> rail_ends(const Scene& scene, const Scenery& scenery, std::size_t body) {
+  const Body& b = scene.bodies[body];
+  const Travel& travel = scenery.travel[body];
+  const double beyond = 1.5 * travel.reach;
+  return {b.position + (travel.low - beyond) * b.rail_axis,
+          b.position + (travel.high + beyond) * b.rail_axis};
+}
 
 double anchor_radius(const Scenery& scenery, double half_width) {
   return std::max(1.7 * half_width, 0.6 * scenery.unit());
@@ -395,7 +403,7 @@ Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& them
   scenery.theme = theme;
   scenery.look = look;
   scenery.view = scene.view;
-  scenery.travel.resize(scene.bodies.size());
+  for (const Body& body : scene.bodies) scenery.travel.push_back({0.0, 0.0, body.radius, true});
   scenery.fullest.resize(scene.bodies.size());
   scenery.arrow_middle.assign(scene.bodies.size(), 0.5 * std::numbers::pi);
   scenery.labels = find_labels(scene, look);

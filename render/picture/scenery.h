@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/picture/look.h"
@@ -25,7 +26,8 @@ struct SceneryLabel {
 /// How far a body on a rail comes, m along its axis from where it starts.
 struct Travel {
   double low = 0.0, high = 0.0;
-  bool own = true;  // not: another body's rail is this one's too, and longer
+  double reach = 0.0;  // m, the largest radius of the bodies on the rail
+  bool own = true;     // not: another body's rail is this one's too, and longer
 };
 
 /// A cable's end in the world.
@@ -59,6 +61,10 @@ using OnStep = std::function<void(const World& world)>;
 /// as make_world and on_step.
 Scenery set_scenery(const Scene& scene, const SceneLook& look, const Theme& theme,
                     std::span<const Configuration> configurations, const OnStep& on_step = {});
+
+/// The ends of a body's rail, m: as much further than anything on it comes in any clip that nothing
+/// seems to be stopped there.
+std::pair<Vec2, Vec2> rail_ends(const Scene& scene, const Scenery& scenery, std::size_t body);
 
 /// m, of the ring that holds a cable's end in the world.
 double anchor_radius(const Scenery& scenery, double half_width);

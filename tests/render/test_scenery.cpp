@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/picture/compose.h"
@@ -39,6 +40,22 @@ TEST(Scenery, RailsReachAsFarAsTheBodyGoes) {
   EXPECT_NEAR(scenery.travel[0].high, 0.0, 1e-12);
   const double last = 29.0 / 60.0;  // s
   EXPECT_NEAR(scenery.travel[0].low, -0.5 * 9.81 * last * last, 0.01);
+}
+
+// A bracket where a body turns or halts would look like what stops it.
+TEST(Scenery, RailsEndBeyondAllMotionWithoutBrackets) {
+  const Scene scene = falling();
+  const Scenery scenery = set_scenery(scene);
+  Picture picture;
+  compose(scene, scenery, make_world(scene, Method::pinch), picture);
+  const auto is_rail = [&scenery](const Stroke& s) { return s.fill == scenery.theme.rail; };
+  const auto rail = std::ranges::find_if(picture.strokes, is_rail);
+  ASSERT_NE(rail, picture.strokes.end());
+  const double lowest = 3.0 + scenery.travel[0].low;
+  EXPECT_NEAR(std::max(rail->a.y(), rail->b.y()), 3.0 + 1.5 * 0.2, 1e-12);
+  EXPECT_NEAR(std::min(rail->a.y(), rail->b.y()), lowest - 1.5 * 0.2, 1e-12);
+  const auto is_support = [&scenery](const Stroke& s) { return s.fill == scenery.theme.support; };
+  EXPECT_EQ(std::ranges::count_if(picture.strokes, is_support), 0);
 }
 
 TEST(Scenery, BodiesOnOneLineWhoseWaysMeetShareARail) {
