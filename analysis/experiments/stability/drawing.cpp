@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "analysis/experiments/stability/stability.h"
 #include "analysis/gnuplot.h"
@@ -15,7 +16,9 @@ namespace pinchlab::experiments::stability {
 namespace {
 
 constexpr double lowest = 1e-9, highest = 1e5;  // of severities that are drawn
+constexpr double top = 1e7;                     // of the axis: above all curves 'failed' is written
 constexpr int panel_px = 330;
+constexpr int legend_labels = 10;  // the number of its first one
 
 /// A single panel is wider, for the legend above it, px.
 int figure_width(int panels) {
@@ -54,7 +57,7 @@ std::string panel_margins(int panel, int panels, double apart_px, int keys_px, i
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\n"
       "set bmargin at screen {:.4f}\nset tmargin at screen {:.4f}\n",
-      x / width, (x + inner) / width, 58.0 / height_px, 1.0 - (30.0 + keys_px) / height_px);
+      x / width, (x + inner) / width, 66.0 / height_px, 1.0 - (30.0 + keys_px) / height_px);
 }
 
 /// The methods of an item in their colours, in a row on top.
@@ -66,7 +69,8 @@ std::string legend(const Item& item, int width_px, int height_px) {
     text += fmt::format(
         "set label {} '{}' at screen {:.4f}, screen {:.4f} left noenhanced point ls {} offset "
         "0.8,0\n",
-        m + 10, title, x / width_px, 1.0 - 14.0 / height_px, line_style(item.methods[m]));
+        m + legend_labels, title, x / width_px, 1.0 - 14.0 / height_px,
+        line_style(item.methods[m]));
     x += 36.0 + 8.0 * static_cast<double>(title.size());
   }
   return text;
@@ -104,9 +108,26 @@ std::string speeds_panel(const ItemResults& done, const std::string& table) {
   return text + "\n";
 }
 
+/// gnuplot finds a series in the table by its name, and would cut that at a comma or a quote.
+void check_panel(const ItemResults& done, const std::string& series) {
+  if (series.find_first_of(",\"") != std::string::npos) {
+    throw std::logic_error(
+        fmt::format("stability-{}: series \"{}\" cannot be drawn: gnuplot cuts "
+                    "its name; leave out commas and quotes",
+                    done.item.id, series));
+  }
+  if (std::ranges::none_of(done.results, [&series](const Result& r) {
+        return r.series == series && !std::isnan(r.verdict.severity);
+      })) {
+    throw std::logic_error(
+        fmt::format("stability-{}: nothing to draw of series \"{}\"", done.item.id, series));
+  }
+}
+
 Drawing draw_curves(const ItemResults& done) {
   const Item& item = done.item;
   const std::vector<std::string> series = series_of(item);
+  for (const std::string& name : series) check_panel(done, name);
   const std::string table = "stability-" + item.id;
   const int panels = static_cast<int>(series.size()) + (item.shows_speeds ? 1 : 0);
   const int height_px = 340;
@@ -123,11 +144,11 @@ Drawing draw_curves(const ItemResults& done) {
       "set format y '10^{{%L}}'\n"
       "set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid "
       "noborder behind\n"
-      "set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'\n",
-      lowest, highest, low, high, lowest / 3.0, highest * 3.0);
+      "set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'\n",
+      lowest, highest, low, high, lowest / 3.0, top);
   if (item.log_x) {
     text += fmt::format("set logscale x\nset xrange [{}:{}]\n", low / 1.3, high * 1.3);
-    text += high / low > 1e4 ? "set format x '10^{%L}'\n" : "set format x '%g'\n";
+    text += high / low >= 1e3 ? "set format x '10^{%L}'\n" : "set format x '%g'\n";
     if (high / low > 1e6) text += "set xtics 100\n";
   } else {
     text +=
@@ -151,6 +172,9 @@ Drawing draw_curves(const ItemResults& done) {
           table, method, analysis::gnuplot_quote(series[s]), line_style(method));
     }
     text += "\n";
+    if (s > 0) continue;  // all panels would draw the legend, on top of one another
+    for (int m = 0; m < static_cast<int>(item.methods.size()); ++m)
+      text += fmt::format("unset label {}\n", legend_labels + m);
   }
   if (item.shows_speeds) {
     text += panel_margins(panels - 1, panels, apart_px, 24, height_px) + speeds_panel(done, table);

@@ -160,7 +160,7 @@ Item long_swing(bool quick) {
     Scene heavy = unwinding_pendulum();
     heavy.cables[0].mass_per_metre = 0.2;
     item.cases.push_back(
-        swings("unwinding from a drum, heavy rope", steps, std::move(heavy), steps / 240.0, 1.0));
+        swings("unwinding a heavy rope from a drum", steps, std::move(heavy), steps / 240.0, 1.0));
     item.cases.push_back(swings("roller in a bight", steps, roller_in_bight(), steps / 240.0, 1.0));
   }
   return item;

@@ -36,6 +36,7 @@ struct Drawing {
   int width_px = 0, height_px = 0;
   std::string commands;
 };
+/// Throws std::logic_error where a panel of curves would be empty.
 Drawing draw(const ItemResults& item);
 
 /// The speeds of a stack under each method of an item, against time (stability-ID-speeds.csv).

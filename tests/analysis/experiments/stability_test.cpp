@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "analysis/experiments/stability/border.h"
 #include "analysis/experiments/stability/scenes.h"
@@ -197,6 +198,48 @@ TEST(StabilityPage, TablesAreTheSameInEveryRunAndThePageNamesAllItems) {
             std::string::npos)
       << page;
   EXPECT_NE(page.find("![Stacks](stability-stack.svg)"), std::string::npos);
+}
+
+/// An item as if each of its cases held.
+ItemResults all_held(const Item& item) {
+  ItemResults done{item, {}};
+  for (const std::string& method : item.methods) {
+    for (const Case& test : item.cases) {
+      Result result;
+      result.method = method;
+      result.series = test.series;
+      result.x = test.x;
+      result.y = test.y;
+      result.verdict.severity = 0.5;
+      done.results.push_back(result);
+    }
+  }
+  return done;
+}
+
+int times_in(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t i = text.find(part); i != std::string::npos; i = text.find(part, i + 1)) ++count;
+  return count;
+}
+
+// gnuplot cut "from a drum, heavy rope" at its comma, and drew an empty panel.
+TEST(StabilityFigures, EachPanelHasPointsAndTheLegendIsDrawnOnce) {
+  for (const Item& item : stability_items(true)) {
+    const Drawing drawing = draw(all_held(item));
+    if (!item.y_name.empty()) continue;
+    const auto methods = static_cast<int>(item.methods.size());
+    EXPECT_EQ(times_in(drawing.commands, "\nset label 1"), 1 + methods) << item.id;
+    EXPECT_EQ(times_in(drawing.commands, "\nunset label 1"), methods) << item.id;
+    const std::size_t first = drawing.commands.find("set title");
+    EXPECT_LT(drawing.commands.find("unset label 1"),
+              drawing.commands.find("set title", first + 1));
+  }
+  ItemResults done = all_held(long_swing(true));
+  done.item.cases.front().series = "a drum, a heavy rope";
+  EXPECT_THROW(draw(done), std::logic_error) << "a comma";
+  done.item.cases.front().series = "one that never ran";
+  EXPECT_THROW(draw(done), std::logic_error) << "no points";
 }
 
 TEST(StabilityPage, MapTakesTheWorstSeries) {
