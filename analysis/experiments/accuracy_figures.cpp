@@ -45,6 +45,11 @@ std::string lines_of(const ProblemResult& result, const std::vector<Peer>& peers
                                 analysis::gnuplot_quote(peers[p].name + ", its best (dots: all)")));
   }
   for (const Series& s : series) {
+    if (std::ranges::none_of(result.rungs, [&s](const Rung& rung) {
+          return rung.setting == s.setting && rung.trial.finite;
+        })) {
+      continue;
+    }
     plots.push_back(fmt::format("'accuracy.csv' {} with linespoints ls {} dt {} ps {} title {}",
                                 accuracy_points(scene, "setting", s.setting), s.style, s.dash, size,
                                 analysis::gnuplot_quote(s.setting)));
@@ -61,7 +66,8 @@ void figure_of(Output& output, const ProblemResult& result, const std::vector<Pe
               "set title {} tc rgb '#333333'\n"
               "set xlabel 'processor time a simulated second (µs)'\n"
               "set ylabel {}\n"
-              "set yrange [{}:{}]\nset key outside right center invert reverse Left spacing 1.3\n",
+              "set yrange [{}:{}]\nset key outside right center invert reverse Left spacing 1.3 "
+              "title \"where lines are the same\\nthe first named is on top\"\n",
               analysis::gnuplot_quote(result.problem.title),
               analysis::gnuplot_quote("error / " + result.problem.length), low, high) +
           lines_of(result, peers, 0.7));

@@ -66,8 +66,39 @@ void add_range(const Panel& panel, Range& x, Range& y) {
   }
 }
 
-std::string panel_commands(const Panel& panel, std::size_t number, int height_px, const Range& x,
-                           Range y) {
+/// The tics of a range: powers of ten, or 1, 2 and 5 times these in less than two decades.
+std::string y_tics(const Range& y) {
+  if (y.high / y.low >= 100.0) return "set ytics autofreq\n";
+  std::string tics;
+  const int first = static_cast<int>(std::floor(std::log10(y.low)));
+  for (int decade = first; std::pow(10.0, decade) <= y.high; ++decade) {
+    for (const int digit : {1, 2, 5}) {
+      const double value = digit * std::pow(10.0, decade);
+      if (value < y.low || value > y.high) continue;
+      tics += fmt::format("{}{:.0e}", tics.empty() ? "" : ",", value);
+    }
+  }
+  return fmt::format("set ytics ({})\n", tics);
+}
+
+/// Where a title is to be broken so that it does not reach beyond its panel; 0: nowhere.
+std::size_t break_of(const std::string& title) {
+  constexpr std::size_t longest = 44;  // characters
+  if (title.size() <= longest) return 0;
+  const std::size_t space = title.find(' ', title.size() / 2);
+  return space == std::string::npos ? 0 : space;
+}
+
+/// A title in one line or two; `lines` of the row's panels, so that their plots are as high.
+std::string title_text(const std::string& title, int lines) {
+  const std::size_t end = break_of(title);
+  if (end == 0) return (lines > 1 ? "\"\\n\" . " : "") + analysis::gnuplot_quote(title);
+  return analysis::gnuplot_quote(title.substr(0, end)) + " . \"\\n\" . " +
+         analysis::gnuplot_quote(title.substr(end + 1));
+}
+
+std::string panel_commands(const Panel& panel, std::size_t number, int height_px, int title_lines,
+                           const Range& x, Range y) {
   std::string data, bands, lines;
   std::vector<Label> labels;
   for (std::size_t c = 0; c < panel.curves.size(); ++c) {
@@ -94,14 +125,19 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
   const double decades = std::log10(y.high / y.low) + 0.2;
   const double line_share = 19.0 / (height_px - 110.0);  // of the plot's height
   spread_labels(labels, decades * line_share);
-  for (const Label& label : labels) y.add(label.y);
+  const double half_label = std::pow(10.0, 0.6 * decades * line_share);
+  for (const Label& label : labels) {
+    y.add(label.y / half_label);  // not on the axis
+    y.add(label.y * half_label);
+  }
+  y = {y.low * std::pow(10.0, -0.1), y.high * std::pow(10.0, 0.1)};
   std::string text = data;
   text += fmt::format(
       "unset label\nset title {} offset 0,-0.5\nset xlabel {}\nset ylabel {}\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xtics 1,10,{}\n",
-      analysis::gnuplot_quote(panel.title), analysis::gnuplot_quote(panel.x_label),
-      analysis::gnuplot_quote(panel.y_label), x.low / 1.25, x.high * panel.label_room,
-      y.low * std::pow(10.0, -0.1), y.high * std::pow(10.0, 0.1), x.high);
+      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xtics 1,10,{}\n{}",
+      title_text(panel.title, title_lines), analysis::gnuplot_quote(panel.x_label),
+      analysis::gnuplot_quote(panel.y_label), x.low / 1.25, x.high * panel.label_room, y.low,
+      y.high, x.high, y_tics(y));
   for (const Label& label : labels) {
     text += fmt::format("set label {} at first {}, first {} left tc ls {}\n",
                         analysis::gnuplot_quote(label.text), label.x * 1.25, label.y, label.style);
@@ -114,12 +150,14 @@ std::string panel_commands(const Panel& panel, std::size_t number, int height_px
 std::string charts(const std::vector<Panel>& panels, int height_px, Scale scale) {
   Range all_x, all_y;
   for (const Panel& panel : panels) add_range(panel, all_x, all_y);
+  const int lines =
+      std::ranges::any_of(panels, [](const Panel& p) { return break_of(p.title) > 0; }) ? 2 : 1;
   std::string text = "set logscale xy\nset format '%g'\nset key off\nset mxtics 1\nset mytics 1\n";
   if (panels.size() > 1) text += fmt::format("set multiplot layout 1,{}\n", panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) {
     Range x, y = scale == Scale::common ? all_y : Range{};
     add_range(panels[i], x, y);
-    text += panel_commands(panels[i], i, height_px, x, y);
+    text += panel_commands(panels[i], i, height_px, lines, x, y);
   }
   return text + (panels.size() > 1 ? "unset multiplot\n" : "");
 }
