@@ -15,6 +15,7 @@
 #include "render/canvas.h"
 #include "render/frame_hash.h"
 #include "render/picture/compose.h"
+#include "render/picture/frame_marks.h"
 #include "render/png.h"
 
 namespace pinchlab {
@@ -100,6 +101,7 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
     for (std::size_t i = 0; i < players.size(); ++i) {
       players[i].advance_to_step(step * factors[i]);
       compose(plan.scene, scenery, players[i].world(), pictures[i]);
+      if (i > 0) pictures[i].add(divider(scenery, aspect));
       if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time(), aspect));
     }
     const std::uint8_t* rgba = canvas.draw(panels);

@@ -14,6 +14,7 @@
 #include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
+#include "render/picture/frame_marks.h"
 #include "render/png.h"
 #include "render/vector_canvas.h"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/picture/compose.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -478,16 +476,6 @@ class Composer {
 
 void compose(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture) {
   Composer(scene, scenery, world, picture).run();
-}
-
-Label time_label(const Scenery& scenery, double time, double aspect) {
-  // The view is fitted into the frame, with room at two sides.
-  const Vec2 middle = 0.5 * (scenery.view.low + scenery.view.high);
-  const Vec2 view = 0.5 * (scenery.view.high - scenery.view.low);
-  const Vec2 half(std::max(view.x(), aspect * view.y()), std::max(view.y(), view.x() / aspect));
-  const double text = scenery.text();
-  const Vec2 corner = middle + Vec2(-half.x(), half.y());
-  return {corner + text * Vec2(2.6, -1.2), text, fmt::format("{:6.3f} s", time), scenery.theme.ink};
 }
 
 }  // namespace pinchlab

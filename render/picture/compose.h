@@ -16,8 +16,4 @@ namespace pinchlab {
 /// into a cable shows the overlap instead of hiding it.
 void compose(const Scene& scene, const Scenery& scenery, const World& world, Picture& picture);
 
-/// A clip's time in the upper left corner of a frame whose width is `aspect` times its height: what
-/// hangs and what holds it mostly is at the other three.
-Label time_label(const Scenery& scenery, double time, double aspect);
-
 }  // namespace pinchlab

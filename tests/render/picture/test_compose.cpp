@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "render/picture/compose.h"
+#include "render/picture/frame_marks.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -414,6 +415,15 @@ TEST(Compose, TheTimeStandsInTheFramesCorner) {
   EXPECT_NEAR((time_label(scenery, 1.5, 2.0).centre - offset - Vec2(-3.0, 2.0)).norm(), 0.0, 1e-12)
       << "landscape: room at the left";
   EXPECT_EQ(time_label(scenery, 1.5, 1.0).text, " 1.500 s");
+}
+
+TEST(Compose, ADividerRunsAlongTheFramesLeftSide) {
+  Scenery scenery;
+  scenery.view = {{-1.0, -2.0}, {3.0, 2.0}};
+  const Stroke line = divider(scenery, 2.0);
+  EXPECT_NEAR((line.a - Vec2(-3.0, -2.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((line.b - Vec2(-3.0, 2.0)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(line.fill, scenery.theme.support);
 }
 
 // One band for all pieces, with marks along all of it, and nothing for the nodes.
