@@ -20,6 +20,7 @@ namespace {
 constexpr int most_snapshots = 40;       // a configuration
 constexpr std::size_t most_labels = 40;  // that are kept out of the way; more stand below
 constexpr double unreadable = 3.0;       // off the view or on another; 1: on a body or line
+constexpr double widening = 0.3;         // off a view that is fitted to the labels afterwards
 
 bool is_driven(const Body& body) {
   return strongest_drive(body) != 0.0;
@@ -104,7 +105,7 @@ class Rehearsal {
 
  private:
   void look(const World& world, bool keep);
-  double overlap(const Box& box, const Vec2& offset, std::size_t body, double own_radius) const;
+  double overlap(const Box& box, const Vec2& offset, std::size_t body, bool is_label) const;
   Box label_box(const SceneryLabel& label) const;
   Vec2 arrow_centre(std::size_t body) const;
   std::vector<Vec2> label_places(std::size_t body, const Box& box, bool choose) const;
@@ -197,21 +198,22 @@ void Rehearsal::fit_labels() {
 }
 
 /// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail
-/// or another body; out of the view counts as `unreadable`.
+/// or another body, or a label on its own; out of the view counts as `unreadable`.
 double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
-                          double own_radius) const {
+                          bool is_label) const {
   const Box frame{scenery_.view.low, scenery_.view.high};
+  const double outside = is_label && scenery_.look.fit_view ? widening : unreadable;
   double sum = 0.0;
   for (const Snapshot& snapshot : snapshots_) {
     const Vec2 centre = snapshot.position[body] + offset;
     const Box there{centre + box.low, centre + box.high};
-    if (!there.within(frame)) sum += unreadable;
+    if (!there.within(frame)) sum += outside;
     sum += static_cast<double>(
         std::any_of(snapshot.lines.begin(), snapshot.lines.end(),
                     [&](const Snapshot::Line& line) { return there.touches_line(line); }));
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
       if (i != body && !scene_.bodies[i].outlined) continue;  // but its shapes
-      const double radius = i == body ? own_radius : scene_.bodies[i].radius;
+      const double radius = i == body && !is_label ? 0.0 : scene_.bodies[i].radius;
       sum += static_cast<double>(there.touches_disc(snapshot.position[i], radius));
     }
   }
@@ -241,7 +243,7 @@ void Rehearsal::place_arrows() {
         const double angle = middle + 0.28 * j;
         const double r = arrow_radius(scene_, scenery_, i);
         const Vec2 half = Vec2::Constant(1.2 * scenery_.unit());
-        sum += overlap({-half, half}, r * Vec2(std::cos(angle), std::sin(angle)), i, 0.0);
+        sum += overlap({-half, half}, r * Vec2(std::cos(angle), std::sin(angle)), i, false);
       }
       if (sum < least - 1e-9) {
         least = sum;
@@ -292,8 +294,7 @@ void Rehearsal::place_labels() {
     const Box box = label_box(label);
     double least = infinity;
     for (const Vec2& offset : label_places(label.body, box, choose)) {
-      double sum =
-          choose ? overlap(box, offset, label.body, scene_.bodies[label.body].radius) : 0.0;
+      double sum = choose ? overlap(box, offset, label.body, true) : 0.0;
       const Box here{offset + box.low, offset + box.high};
       if (is_driven(scene_.bodies[label.body]) &&
           here.touches_disc(arrow_centre(label.body), 5.2 * scenery_.unit())) {

@@ -109,6 +109,26 @@ TEST(Scenery, AFittedViewShowsEverythingAllTheTime) {
   EXPECT_LT((scenery.view.high - scenery.view.low).maxCoeff(), 3.5);
 }
 
+// Labels widen a fitted view, so that there is room below what hangs, and none on the rope.
+TEST(Scenery, LabelsOfAFittedViewAreBesideWhatMoves) {
+  Scene scene;
+  scene.name = "hanging";
+  scene.bodies = {body("stone", BodyKind::free, {0.0, 2.0}, 0.3)};
+  scene.bodies[0].mass = 1234.0;  // wider than what moves
+  Cable cable;
+  cable.name = "rope";
+  cable.start.body = 0;
+  cable.end.point = {0.0, 4.0};
+  scene.cables = {cable};
+  scene.frame_count = 2;
+  SceneLook look;
+  look.fit_view = true;
+  const Scenery scenery = set_scenery(scene, look);
+  ASSERT_EQ(scenery.labels.size(), 1U);
+  EXPECT_LT(scenery.labels[0].offset.y(), -0.3);
+  EXPECT_GT(2.0 + scenery.labels[0].offset.y() - scenery.view.low.y(), 0.5 * scenery.text());
+}
+
 TEST(Scenery, LabelsCanBeSetHiddenAndPlaced) {
   const Scene scene = short_atwood();
   SceneLook look;
