@@ -7,9 +7,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "base/at.h"
 #include "render/picture/cable_path.h"
+#include "sim/compound.h"
+#include "sim/outline.h"
 #include "sim/step.h"
 #include "sim/tangent.h"
 
@@ -29,6 +32,7 @@ bool is_driven(const Body& body) {
 /// A moment of the rehearsal.
 struct Snapshot {
   std::vector<Vec2> position;  // m, one a body
+  std::vector<double> angle;   // rad
   struct Line {
     Vec2 a, b;          // m
     double half_width;  // m
@@ -106,6 +110,8 @@ class Rehearsal {
  private:
   void look(const World& world, bool keep);
   double overlap(const Box& box, const Vec2& offset, std::size_t body, bool is_label) const;
+  bool is_on_body(const Box& box, std::size_t body, const Snapshot& snapshot) const;
+  double reach(std::size_t body, const Vec2& way) const;
   Box label_box(const SceneryLabel& label) const;
   Vec2 arrow_centre(std::size_t body) const;
   std::vector<Vec2> label_places(std::size_t body, const Box& box, bool choose) const;
@@ -136,6 +142,7 @@ void Rehearsal::look(const World& world, bool keep) {
   if (!keep) return;
   Snapshot snapshot;
   snapshot.position = world.position;
+  snapshot.angle = world.angle;
   for (const Wall& wall : scene_.walls) {
     snapshot.lines.push_back({wall.a, wall.b, 2.5 * scenery_.line()});
   }
@@ -197,6 +204,38 @@ void Rehearsal::fit_labels() {
   scenery_.view = {frame.low, frame.high};
 }
 
+/// Whether a box lies on a body's own outline.
+bool Rehearsal::is_on_body(const Box& box, std::size_t body, const Snapshot& snapshot) const {
+  const Body& b = scene_.bodies[body];
+  const Vec2& centre = snapshot.position[body];
+  if (!is_polygon(b)) return box.touches_disc(centre, b.radius);
+  if (box.touches_disc(centre, inner_radius(b))) return true;
+  const auto corner = [&](std::size_t k) {
+    return Vec2(centre + turned(b.corners[k % b.corners.size()], snapshot.angle[body]));
+  };
+  for (std::size_t k = 0; k < b.corners.size(); ++k) {
+    if (box.touches_line({corner(k), corner(k + 1), b.corner_radius})) return true;
+  }
+  return false;
+}
+
+/// m, how far a body's outlines ever come from its centre to one side, a unit vector.
+double Rehearsal::reach(std::size_t body, const Vec2& way) const {
+  double most = 0.0;
+  for (const int i : outlines_of(scene_, static_cast<int>(body))) {
+    const Body& outline = at(scene_.bodies, i);
+    for (const Snapshot& snapshot : snapshots_) {
+      const double middle = way.dot(at(snapshot.position, i) - snapshot.position[body]);
+      if (!is_polygon(outline)) most = std::max(most, middle + outline.radius);
+      for (const Vec2& corner : outline.corners) {
+        const Vec2 here = turned(corner, at(snapshot.angle, i));
+        most = std::max(most, middle + way.dot(here) + outline.corner_radius);
+      }
+    }
+  }
+  return most;
+}
+
 /// Share of the snapshots in which a box that goes with a body would lie on a cable, a wall, a rail
 /// or another body, or a label on its own; out of the view counts as `unreadable`.
 double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
@@ -212,9 +251,8 @@ double Rehearsal::overlap(const Box& box, const Vec2& offset, std::size_t body,
         std::any_of(snapshot.lines.begin(), snapshot.lines.end(),
                     [&](const Snapshot::Line& line) { return there.touches_line(line); }));
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      if (i != body && !scene_.bodies[i].outlined) continue;  // but its shapes
-      const double radius = i == body && !is_label ? 0.0 : scene_.bodies[i].radius;
-      sum += static_cast<double>(there.touches_disc(snapshot.position[i], radius));
+      if (!scene_.bodies[i].outlined || (i == body && !is_label)) continue;  // but its shapes
+      sum += static_cast<double>(is_on_body(there, i, snapshot));
     }
   }
   return sum / static_cast<double>(std::max<std::size_t>(1, snapshots_.size()));
@@ -259,29 +297,28 @@ Vec2 Rehearsal::arrow_centre(std::size_t body) const {
   return arrow_radius(scene_, scenery_, body) * Vec2(std::cos(angle), std::sin(angle));
 }
 
-/// Where a label may stand beside its body, the best place first: near its rim, then beyond the
+/// Where a label may stand beside its body, the best place first: near its outline, then beyond the
 /// cable that may run round it.
 std::vector<Vec2> Rehearsal::label_places(std::size_t i, const Box& box, bool choose) const {
   using enum LabelSide;
-  const Body& body = scene_.bodies[i];
   const LabelSide wanted = scenery_.look.bodies.empty() ? automatic : scenery_.look.bodies[i].side;
   const double gap = 0.5 * scenery_.text();
   std::vector<Vec2> places;
   for (const double beyond : {0.0, widest_cable(scene_)}) {
-    const double reach = body.radius + beyond;
-    const double down = reach + gap + box.high.y(), across = reach + gap + box.high.x();
-    const Vec2 diagonal = box.high + Vec2::Constant(0.72 * reach + 0.5 * gap);
-    const std::array<std::pair<LabelSide, Vec2>, 8> sides = {
-        {{below, {0.0, -down}},
-         {right, {across, 0.0}},
-         {left, {-across, 0.0}},
-         {above, {0.0, down}},
-         {automatic, {diagonal.x(), -diagonal.y()}},
-         {automatic, {-diagonal.x(), -diagonal.y()}},
-         {automatic, diagonal},
-         {automatic, {-diagonal.x(), diagonal.y()}}}};
-    for (const auto& [side, offset] : sides) {
-      if (wanted != automatic ? side == wanted : choose || side == below) places.push_back(offset);
+    constexpr std::array<std::tuple<LabelSide, int, int>, 8> sides = {{{below, 0, -1},
+                                                                       {right, 1, 0},
+                                                                       {left, -1, 0},
+                                                                       {above, 0, 1},
+                                                                       {automatic, 1, -1},
+                                                                       {automatic, -1, -1},
+                                                                       {automatic, 1, 1},
+                                                                       {automatic, -1, 1}}};
+    for (const auto& [side, x, y] : sides) {
+      if (wanted != automatic ? side != wanted : !choose && side != below) continue;
+      const bool diagonal = x != 0 && y != 0;
+      const double off = reach(i, Vec2(x, y).normalized()) + beyond;
+      const Vec2 away = box.high + Vec2::Constant(diagonal ? 0.72 * off + 0.5 * gap : off + gap);
+      places.emplace_back(x * away.x(), y * away.y());
     }
   }
   return places;

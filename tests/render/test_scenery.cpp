@@ -8,8 +8,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "render/picture/compose.h"
+#include "sim/outline.h"
 #include "sim/step.h"
 #include "tests/render/scenes.h"
 
@@ -127,6 +129,21 @@ TEST(Scenery, LabelsOfAFittedViewAreBesideWhatMoves) {
   ASSERT_EQ(scenery.labels.size(), 1U);
   EXPECT_LT(scenery.labels[0].offset.y(), -0.3);
   EXPECT_GT(2.0 + scenery.labels[0].offset.y() - scenery.view.low.y(), 0.5 * scenery.text());
+}
+
+// A lever's label stands by the lever, and not by the circle round it.
+TEST(Scenery, LabelsOfLongBodiesAreBesideTheirOutline) {
+  Scene scene;
+  scene.name = "lever";
+  scene.bodies = {body("lever", BodyKind::free, {0.0, 0.0}, 0.6)};
+  make_polygon(scene.bodies[0], {{-0.6, -0.06}, {0.6, -0.06}, {0.6, 0.06}, {-0.6, 0.06}}, 0.0);
+  scene.gravity = Vec2::Zero();
+  scene.frame_count = 2;
+  const double off =
+      0.06 + 1.1 * set_scenery(scene).text();  // half of the lever, a gap, half of it
+  EXPECT_NEAR(set_scenery(scene).labels[0].offset.y(), -off, 1e-9);
+  scene.bodies[0].angle = 0.5 * std::numbers::pi;
+  EXPECT_NEAR(set_scenery(scene).labels[0].offset.y(), -off - 0.54, 1e-9);
 }
 
 TEST(Scenery, LabelsCanBeSetHiddenAndPlaced) {
