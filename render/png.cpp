@@ -128,12 +128,14 @@ void contact_sheet(const std::string& path, int width, int height,
   const Font font;
   const int gap = std::max(4, width / 60), text = std::max(12, width / 24), strip = 2 * text;
   Image sheet(gap + columns * (width + gap), gap + rows * (height + strip), theme.background);
+  std::vector<std::string> labels;
+  for (const SheetFrame& frame : frames) labels.push_back(frame.label);
+  const double em = font.fitting(labels, text, width);
   for (int i = 0; i < count; ++i) {
     const int left = gap + i % columns * (width + gap), top = gap + i / columns * (height + strip);
     const SheetFrame& frame = frames[static_cast<std::size_t>(i)];
     sheet.paste(frame, width, height, left, top);
-    sheet.paste(font.draw(frame.label, text), left + width / 2, top + height + strip / 2,
-                theme.ink);
+    sheet.paste(font.draw(frame.label, em), left + width / 2, top + height + strip / 2, theme.ink);
   }
   write_png(path, sheet.width, sheet.height, sheet.rgba.data());
 }

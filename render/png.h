@@ -23,8 +23,9 @@ struct SheetFrame {
 };
 
 /// Writes frames of one size as a grid, in reading order, each over its label, on the theme's
-/// background in its ink. `columns` 0: as many as make the sheet about square. Throws as write_png,
-/// and std::invalid_argument if there are no frames or one has another size.
+/// background in its ink; labels are as small as it takes for each to be under its frame alone.
+/// `columns` 0: as many as make the sheet about square. Throws as write_png, and
+/// std::invalid_argument if there are no frames or one has another size.
 void contact_sheet(const std::string& path, int width, int height,
                    const std::vector<SheetFrame>& frames, int columns = 0, const Theme& theme = {});
 

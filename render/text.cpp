@@ -120,4 +120,22 @@ TextBitmap Font::draw(const std::string& text, double height) const {
   return bitmap;
 }
 
+double Font::fitting(const std::vector<std::string>& texts, double height, double width) const {
+  double em = height;
+  for (const std::string& text : texts)
+    em = std::min(em, height * width / draw(text, height).width);
+  return em;
+}
+
+std::string Font::lacking(const std::string& text) const {
+  std::string characters;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t begin = i;
+    const char32_t character = next_character(text, i);
+    if (FT_Get_Char_Index(state_->face, character) == 0)
+      characters += text.substr(begin, i - begin);
+  }
+  return characters;
+}
+
 }  // namespace pinchlab

@@ -44,6 +44,12 @@ class Font {
   /// question mark.
   TextBitmap draw(const std::string& text, double height) const;
 
+  /// The em, px, at which none of the texts is wider than `width` px; `height` at most.
+  double fitting(const std::vector<std::string>& texts, double height, double width) const;
+
+  /// The characters of a text that the font has no letter for: in their place it shows a box.
+  std::string lacking(const std::string& text) const;
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -312,6 +312,9 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
     cairo_paint(cairo.get());
   };
   if (count > 1 && theme.background.alpha == 255) paint(theme.background);  // under the labels
+  std::vector<std::string> labels;
+  for (const VectorFrame& frame : frames) labels.push_back(frame.label);
+  const double em = count > 1 ? Font().fitting(labels, page.text, width) : 0.0;  // of the labels
   for (int i = 0; i < count; ++i) {
     const VectorFrame& frame = at(frames, i);
     const int column = i % page.columns, row = i / page.columns;
@@ -327,8 +330,7 @@ void write_vector(const std::string& path, VectorFormat format, int width, int h
     cairo_restore(cairo.get());
     if (count > 1) {
       Pen(cairo.get(), fit)
-          .text({left + 0.5 * width, top + height + 0.5 * page.strip}, page.text, frame.label,
-                theme.ink);
+          .text({left + 0.5 * width, top + height + 0.5 * page.strip}, em, frame.label, theme.ink);
     }
   }
   cairo.reset();

@@ -115,6 +115,21 @@ TEST(Png, ContactSheetsHaveTheThemesColours) {
   EXPECT_FALSE(read(folder.file("clear.png")).opaque);
 }
 
+TEST(Png, LabelsOfSmallPicturesAreSmaller) {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> rgba(4 * 80 * 40, 255);
+  const SheetFrame frame{rgba, "pinch joints, no contact, 1.25 s"};
+  contact_sheet(folder.file("sheet.png"), 80, 40, {frame, frame}, 2);
+  const Image sheet = read(folder.file("sheet.png"));
+  const std::uint8_t paper = Theme().background.red;
+  for (int y = 0; y < sheet.height; ++y) {
+    for (const int x : {0, 4 + 80 + 2, sheet.width - 1}) {  // what is beside them
+      EXPECT_EQ(sheet.rgb[static_cast<std::size_t>(y * sheet.width + x) * 3], paper)
+          << x << ' ' << y;
+    }
+  }
+}
+
 TEST(Png, ErrorsNameTheFileAndLeaveNothing) {
   const TemporaryFolder folder;
   const auto rgba = gradient(8, 8);
