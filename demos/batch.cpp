@@ -16,6 +16,7 @@
 #include "base/partial_file.h"
 #include "base/progress.h"
 #include "base/sha256.h"
+#include "demos/legibility.h"
 #include "demos/manifest.h"
 #include "demos/report_page.h"
 #include "demos/scenes/find_scenes.h"
@@ -211,11 +212,12 @@ void check_size(const BatchOptions& options) {
 }
 
 // Of a clip that was made just now, or kept.
-void tell_broken_promises(const fs::path& folder, const std::string& file,
-                          const Manifest& manifest) {
+void tell_notes(const fs::path& folder, const std::string& file, const Manifest& manifest) {
+  const std::string path = (folder / file).string();
   for (const ordered_json& entry : manifest.entries) {
-    if (entry["file"] != file || !entry.contains("broken_promises")) continue;
-    pinchlab::tell_broken_promises((folder / file).string(), entry["broken_promises"]);
+    if (entry["file"] != file) continue;
+    if (entry.contains("hard_to_see")) tell_hard_to_see(path, entry["hard_to_see"]);
+    if (entry.contains("broken_promises")) tell_broken_promises(path, entry["broken_promises"]);
   }
 }
 
@@ -396,7 +398,7 @@ int render_batch(const BatchOptions& options) {
   }
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();  // s
-  for (const ClipPlan& plan : plans) tell_broken_promises(options.out, plan.file, manifest);
+  for (const ClipPlan& plan : plans) tell_notes(options.out, plan.file, manifest);
   fmt::print(stderr, "{}: {} made, {} up to date already, {} failed", options.out.string(),
              outcome.made, plans.size() - to_make.size(), outcome.failed);
   if (outcome.made > 0) {

@@ -9,6 +9,7 @@
 
 #include "base/partial_file.h"
 #include "base/sha256.h"
+#include "demos/legibility.h"
 #include "demos/pair_report.h"
 #include "demos/scenes/fineness.h"
 #include "demos/version.h"
@@ -51,7 +52,7 @@ void turn(const ClipPlan& plan, int panel, const std::uint8_t* rgba,
 struct Made {
   std::string frames_hash;  // of the raw frames (RGBA, top row first, one after the other)
   std::vector<ordered_json> accuracy;  // of the methods whose error was asked for
-  std::vector<std::string> broken_promises;
+  std::vector<std::string> broken_promises, hard_to_see;
 };
 
 void add_new(const std::vector<std::string>& lines, std::vector<std::string>& all) {
@@ -91,6 +92,7 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
   std::ranges::transform(pictures, panels.begin(), [](const Picture& p) { return &p; });
   const Scenery scenery = set_scenery(plan.scene, plan.source->look, plan.theme.theme,
                                       rehearsal_limit(*plan.source, time_limit));
+  made.hard_to_see = hard_to_see(plan.scene, scenery, panel_width(plan), plan.video.height);
   Canvas canvas(plan.video.width, plan.video.height);
   VideoWriter video(path, plan.video);
   FrameHash frames;
@@ -134,6 +136,7 @@ Made write_poster(const ClipPlan& plan, const std::string& path, const std::func
   FrameHash frames;
   std::vector<SheetFrame> sheet;
   Made made;
+  made.hard_to_see = hard_to_see(plan.scene, scenery, width, plan.video.height);
   for (const Configuration& method : plan.methods) {
     const Fineness fineness = find_fineness(plan, method, time_limit, made);
     Player player(*plan.source, made_finer(plan.scene, fineness.factor), method);
@@ -236,6 +239,7 @@ ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder
   entry["sha256"] = sha256_of_file(path);
   if (!made.accuracy.empty()) entry["accuracy"] = made.accuracy;
   if (!made.broken_promises.empty()) entry["broken_promises"] = made.broken_promises;
+  if (!made.hard_to_see.empty()) entry["hard_to_see"] = made.hard_to_see;
   return entry;
 }
 

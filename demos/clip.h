@@ -56,9 +56,10 @@ int poster_frame(const ClipPlan& plan);
 nlohmann::ordered_json plan_entry(const ClipPlan& plan);
 
 /// Makes the file in `folder`, as made_as says, and returns its manifest entry: the plan's, the
-/// hashes, and in `broken_promises` what Player says of it, if anything. Calls `tick` after every
-/// frame. Throws std::runtime_error where the simulation, the drawing or the file fails, or where
-/// one method takes longer than `time_limit` (s).
+/// hashes, and in `broken_promises` what Player says of it, in `hard_to_see` what legibility.h
+/// does, if anything. Calls `tick` after every frame. Throws std::runtime_error where the
+/// simulation, the drawing or the file fails, or where one method takes longer than `time_limit`
+/// (s).
 nlohmann::ordered_json make_clip(const ClipPlan& plan, const std::filesystem::path& folder,
                                  const std::function<void()>& tick,
                                  std::optional<double> time_limit = std::nullopt);

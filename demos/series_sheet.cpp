@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/progress.h"
+#include "demos/legibility.h"
 #include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
@@ -58,6 +59,8 @@ std::vector<VectorFrame> pictures_of(const Sweep& sweep, const std::string& meth
     }
     sheet.resize(frames.size() * columns);
     const Scenery scenery = set_scenery_aloud(stimulus.source, scene, options);
+    tell_hard_to_see(sweep.table.place(column),
+                     hard_to_see(scene, scenery, options.width, options.height));
     const Configuration& configuration = stimulus.plan.methods[0];
     const std::string who = fmt::format("{}, {}", scene.name, to_string(configuration));
     const Fineness fineness = find_fineness_aloud(stimulus.source, scene, configuration,

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/progress.h"
+#include "demos/legibility.h"
 #include "demos/scenes/fineness.h"
 #include "render/canvas.h"
 #include "render/picture/compose.h"
@@ -216,6 +217,8 @@ void write_still(const SceneFile& file, const StillOptions& options) {
                            "times or a smaller --size");
   }
   const Scenery scenery = set_scenery_aloud(file, file.scene, options);
+  tell_hard_to_see(file.path.string(),
+                   hard_to_see(file.scene, scenery, options.width, options.height));
   if (sequence) {
     write_sequence(file, options, frames, scenery);
   } else if (ending == ".png") {

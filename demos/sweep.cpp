@@ -18,6 +18,7 @@
 #include "base/sha256.h"
 #include "base/unfinished_folder.h"
 #include "demos/clip.h"
+#include "demos/legibility.h"
 #include "demos/manifest.h"
 #include "demos/pair_report.h"
 #include "demos/scenes/trajectory.h"
@@ -266,12 +267,14 @@ void tell_of_others(const Stimuli& stimuli, const fs::path& out) {
       others.begin()->string(), others.size() == 1 ? "is" : "are");
 }
 
-void tell_broken_promises(const Stimuli& stimuli, const fs::path& out) {
+void tell_notes(const Stimuli& stimuli, const fs::path& out) {
   for (const Stimulus& stimulus : stimuli.list) {
     const ordered_json record = record_of(stimulus, out);
-    if (record.is_null() || !record["clip"].contains("broken_promises")) continue;
-    pinchlab::tell_broken_promises((out / stimulus.plan.file).string(),
-                                   record["clip"]["broken_promises"]);
+    if (record.is_null()) continue;
+    const std::string path = (out / stimulus.plan.file).string();
+    const ordered_json& clip = record["clip"];
+    if (clip.contains("hard_to_see")) tell_hard_to_see(path, clip["hard_to_see"]);
+    if (clip.contains("broken_promises")) tell_broken_promises(path, clip["broken_promises"]);
   }
 }
 
@@ -302,7 +305,7 @@ int run_sweep(const SweepOptions& options) {
     UnfinishedFolder::remove_left_over(out);
     end_by(outcome.signal);
   }
-  tell_broken_promises(stimuli, out);
+  tell_notes(stimuli, out);
   fmt::print(stderr, "{}: {} made, {} there already, {} failed\n", out.string(), outcome.made,
              stimuli.list.size() - to_make.size(), outcome.failed);
   if (!options.shard && outcome.failed == 0) {

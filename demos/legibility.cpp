@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "demos/legibility.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "render/mesh.h"
+#include "render/text.h"
+
+namespace pinchlab {
+
+std::vector<std::string> hard_to_see(const Scene& scene, const Scenery& scenery, int width,
+                                     int height) {
+  std::vector<std::string> lines;
+  const double scale = Fit(scenery.view, 0, width, height).scale;  // px/m
+  for (const Cable& cable : scene.cables) {
+    const double wide = 2.0 * scale * cable.half_width;
+    if (cable.joint != Joint::none || wide >= 0.5) continue;
+    lines.push_back(
+        fmt::format("cable \"{}\" is {:.2g} px wide and can hardly be seen; take a larger --size, "
+                    "a smaller view or a greater half_width_m",
+                    cable.name, wide));
+  }
+  const Font font;
+  for (const SceneryLabel& label : scenery.labels) {
+    const std::string lacking = font.lacking(label.text);
+    if (lacking.empty()) continue;
+    lines.push_back(
+        fmt::format("label \"{}\": the font lacks {}, and shows a box; write something else, or "
+                    "let PINCHLAB_FONT name a font that has it",
+                    label.text, lacking));
+  }
+  return lines;
+}
+
+void tell_hard_to_see(const std::string& file, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) fmt::print(stderr, "{}: note: {}\n", file, line);
+}
+
+}  // namespace pinchlab
