@@ -317,8 +317,9 @@ class Composer {
     picture_.add(Patch{picture_.corners.size() - count, count, colour});
   }
 
-  /// A polygon's band along its outline, which hides the sides of the patch that fills it.
-  void add_polygon(std::size_t i, double band, Colour fill, Colour edge) {
+  /// A polygon's band along its outline, `inset` m within it, which hides the sides of the patch
+  /// that fills it.
+  void add_polygon(std::size_t i, double inset, double band, Colour fill, Colour edge) {
     Strip outline;
     outline.first = picture_.points.size();
     outline.half_width = 0.5 * band;
@@ -326,7 +327,7 @@ class Composer {
     Patch patch;
     patch.first = picture_.corners.size();
     patch.fill = fill;
-    polygon(i).trace(0.5 * band, [this](const Vec2& point, const Vec2& e, bool is_new) {
+    polygon(i).trace(inset + 0.5 * band, [this](const Vec2& point, const Vec2& e, bool is_new) {
       picture_.points.push_back({point, e, 0.0});
       if (is_new) picture_.corners.push_back(point);
     });
@@ -341,21 +342,14 @@ class Composer {
   /// An outline's band and what is within it.
   void add_outline(std::size_t i, double band, Colour fill, Colour edge) {
     const Vec2& centre = world_.position[i];
-    if (is_polygon(scene_.bodies[i])) return add_polygon(i, band, fill, edge);
+    if (is_polygon(scene_.bodies[i])) return add_polygon(i, 0.0, band, fill, edge);
     picture_.add(Stroke{centre, centre, scene_.bodies[i].radius, band, fill, edge});
   }
 
   /// What is within an outline's band.
   void add_interior(std::size_t i, double band, Colour fill) {
-    if (!is_polygon(scene_.bodies[i])) {
-      picture_.add(disc(world_.position[i], scene_.bodies[i].radius - band, fill));
-      return;
-    }
-    const std::size_t first = picture_.corners.size();
-    polygon(i).trace(band, [this](const Vec2& point, const Vec2&, bool is_new) {
-      if (is_new) picture_.corners.push_back(point);
-    });
-    picture_.add(Patch{first, picture_.corners.size() - first, fill});
+    if (is_polygon(scene_.bodies[i])) return add_polygon(i, band, band, fill, fill);
+    picture_.add(disc(world_.position[i], scene_.bodies[i].radius - band, fill));
   }
 
   /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.

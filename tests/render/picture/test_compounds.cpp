@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How bodies of several shapes are drawn.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render/picture/compose.h"
+#include "sim/compound.h"
+#include "tests/render/scenes.h"
+
+namespace pinchlab {
+namespace {
+
+// Patches have jagged sides. Those of the insides lie under bands of their own colour.
+TEST(ComposeCompounds, InsidesHaveSmoothSides) {
+  Scene scene;
+  scene.name = "compound";
+  scene.bodies = {testing::body("pair", BodyKind::free, {0.0, 0.0}, 1.0)};
+  Shape square;
+  make_polygon(square.properties, {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}, 0.0);
+  std::vector<Shape> shapes(2, square);
+  shapes[0].place = {-0.4, 0.1};
+  shapes[1].place = {0.4, -0.1};
+  add_shapes(scene, 0, shapes);
+  scene.frame_count = 2;
+  Picture picture;
+  compose(scene, set_scenery(scene), make_world(scene, Method::pinch), picture);
+  ASSERT_EQ(picture.patches.size(), 4U);
+  ASSERT_EQ(picture.strips.size(), 4U);
+  const Colour inside = picture.patches.back().fill;
+  EXPECT_EQ(
+      std::ranges::count_if(picture.strips, [&inside](const Strip& s) { return s.fill == inside; }),
+      2);
+}
+
+}  // namespace
+}  // namespace pinchlab
