@@ -2,6 +2,7 @@
 #pragma once
 // How chains hang at rest.
 
+#include <optional>
 #include <vector>
 
 #include "sim/scene.h"
@@ -22,6 +23,7 @@ struct Hanging {
   std::vector<Vec2> directions;  // unit, of its pieces from its start on
   std::vector<double> lengths;   // m, between its nodes
   Vec2 tail = Vec2::Zero();      // m, where the first begins
+  std::vector<Vec2> tensions;    // N, of the pieces
   double tension = 0.0;          // N, of the piece that bears most
 };
 
@@ -37,5 +39,20 @@ struct Hanging {
 /// The chain must be longer than the ends are apart.
 Hanging hang(const std::vector<Vec2>& weights, const std::vector<double>& lengths,
              const HangingEnd& tail, const HangingEnd& head);
+
+/// A chain of rods, which bear a push too, between a point and another `reach` (m) from it; all
+/// weights point one way, and none is 0. It is at rest where
+///     F = sum s_j l_j t_j / |t_j| - reach = 0,    t_j = t_k + (the weights from rod j to rod k),
+/// with s_j = 1 for rods that pull and -1 for those that push, which Newton's method solves for t_k
+/// with J = sum s_j l_j / |t_j| (I - u_j u_j^T).
+///     A chain of which no piece is slack is one of rods that all pull. Where one is, rod k, the
+/// rest of the chain stands upright, and leaves r = reach - sum of l_j u_j to it, |r| < l_k: too
+/// little for a rod, which pushes. For a small push a in direction v, t_k = -a v, the others lean by
+/// c a v_x, c = sum of l_j / |t_j|, with x across the weights and y along them:
+///     l_k v_y = r_y,    l_k v_x = r_x + c a v_x,    |v| = 1,
+/// from where Newton's method starts; to either side where r_x = 0.
+///     Nothing where it finds none.
+std::optional<Hanging> hang_rods(const std::vector<Vec2>& weights,
+                                 const std::vector<double>& lengths, const Vec2& reach);
 
 }  // namespace pinchlab

@@ -162,6 +162,28 @@ void refuse_what_cannot_sag(const Scene& scene, const Cable& cable, const Vec2& 
       "stiffness");
 }
 
+/// Whether its pieces bear force both ways.
+bool is_of_rods(const Cable& cable) {
+  return cable.axial_stiffness == infinity || cable.bending_stiffness > 0.0;
+}
+
+/// How pieces of that length (m) hang at rest between nodes of these masses (kg). A slack one,
+/// which no rod is, is shorter.
+Hanging hang_pieces(const Scene& scene, const Cable& whole, const std::vector<double>& masses,
+                    double piece, const Vec2& reach, const std::string& place) {
+  // Without gravity it is at rest in any shape.
+  const Vec2 gravity = scene.gravity.norm() > 0.0 ? scene.gravity : Vec2(0.0, -1.0);
+  std::vector<Vec2> weights;
+  weights.reserve(masses.size());
+  for (const double mass : masses) weights.push_back(mass * gravity);
+  const std::vector<double> lengths(masses.size() + 1, piece);
+  if (!is_of_rods(whole)) return hang(weights, lengths, {}, {reach});
+  if (auto hanging = hang_rods(weights, lengths, reach)) return *std::move(hanging);
+  throw SceneError(place,
+                   "finds no rest between ends that are so near to each other; move them apart, or "
+                   "give the cable another number of nodes");
+}
+
 /// Piece k of the cable that `made` tells of, which has `spare` (m) to give, between its nodes.
 Cable piece_of(const Cable& whole, const NodedCable& made, int k, double piece, double spare) {
   const bool is_last = k == made.pieces;
@@ -170,7 +192,7 @@ Cable piece_of(const Cable& whole, const NodedCable& made, int k, double piece, 
   part.mass_per_metre = 0.0;
   part.nodes = 0;
   part.piece = true;
-  part.rod = part.axial_stiffness == infinity || part.bending_stiffness > 0.0;
+  part.rod = is_of_rods(part);
   part.bending_stiffness = 0.0;
   if (whole.bending_stiffness > 0.0 && !is_last) {
     part.bends_with = made.first_piece + k;
@@ -202,25 +224,20 @@ NodedCable spread(Scene& scene, std::size_t c, Expected expected) {
   const int pieces = count_pieces(scene, whole, expected, place);
   const double piece = length / pieces;
   const std::vector<double> masses = weigh_nodes(scene, whole, pieces, piece);
-  std::vector<Vec2> directions(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
+  // What a straight cable has to spare, its pieces share.
+  Hanging laid;
+  laid.directions.assign(index(pieces), straight > 0.0 ? Vec2(d / straight) : Vec2(1.0, 0.0));
+  laid.lengths.assign(index(pieces), straight / pieces);
   const bool hangs = whole.slack > 0.0;
-  if (hangs) {
-    // Without gravity it is at rest in any shape.
-    const Vec2 gravity = scene.gravity.norm() > 0.0 ? scene.gravity : Vec2(0.0, -1.0);
-    std::vector<Vec2> weights;
-    weights.reserve(masses.size());
-    for (const double mass : masses) weights.push_back(mass * gravity);
-    directions = hang(weights, std::vector<double>(index(pieces), piece), {}, {d}).directions;
-  }
+  if (hangs) laid = hang_pieces(scene, whole, masses, piece, d, place);
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), pieces - 1,
                   static_cast<int>(scene.cables.size()), pieces - 1};
   Vec2 position = from;
   for (int k = 0; k < pieces; ++k) {
-    // What a straight cable has to spare, its pieces share.
-    const Cable part = piece_of(whole, made, k, piece, hangs ? 0.0 : whole.slack / pieces);
+    const double spare = hangs ? piece - at(laid.lengths, k) : whole.slack / pieces;
+    const Cable part = piece_of(whole, made, k, piece, spare);
     if (k + 1 < pieces) {
-      position +=
-          hangs ? Vec2(piece * at(directions, k)) : Vec2(straight / pieces * at(directions, k));
+      position += at(laid.lengths, k) * at(laid.directions, k);
       scene.bodies.push_back(node_of(whole, k + 1, position, at(masses, k)));
     }
     if (k == 0) {
