@@ -235,6 +235,7 @@ void lay_wraps(const Scene& scene, Course& course) {
     wrap -= turn * std::floor((wrap + rounding) / turn);
     wrap = std::max(wrap, 0.0);
     of_stop += wrap;
+    link.wrap = wrap;  // without turns, until lay_material
     const int asked = at(course.given.wraps, course.scratch.stops[i]).extra_turns;
     const int turns = link.corner < 0 ? asked : 0;  // round a polygon they are links of their own
     if (of_stop > suspicious && asked == 0) {
@@ -254,13 +255,39 @@ void lay_wraps(const Scene& scene, Course& course) {
 }
 
 /// Layers on the drums that hold the ends: their radius moves the tangents, and so the wraps.
-void lay_layers(const World& world, Course& course) {
-  CableState& cable = course.cable;
+void lay_layers(const World& world, CableState& cable) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     if (const int way = way_of_layers(cable, i); way != 0) begin_layers(world, cable, i, way);
   }
   if (!cable.fills) return;
   for (std::size_t i = 1; i < cable.segments.size(); ++i) update_tangent(world, cable, i);
+}
+
+double wrap_between_tangents(const CableState& cable, std::size_t i) {
+  return cable.links[i].orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
+}
+
+/// The part of a turn beside the turns asked for is the tangent's to the layers. They raise it, by
+/// th: a load hangs beside them, with no part of a turn, where that to the bare rim is -th, all but
+/// one. So that such a load need not be placed to the last digit it may hang as far out as twice,
+/// with a part of -th to the layers; whoever hangs it further out has nearly a turn more.
+void drop_turns_of_bare_rims(const World& world, Course& course) {
+  CableState& cable = course.cable;
+  for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    if (way_of_layers(cable, i) == 0) continue;
+    const int asked = at(course.given.wraps, course.scratch.stops[i]).extra_turns;
+    const double bare = cable.links[i].wrap - turn;
+    if (asked == 0 || bare < -0.5 * turn) continue;  // th < pi / 2 does not make up for that
+    const std::vector<Link> links = cable.links;
+    const std::vector<Segment> segments = cable.segments;
+    for (std::size_t k = i + 1; k < segments.size(); ++k)
+      cable.segments[k].alpha -= cable.links[i].orientation * turn;
+    lay_layers(world, cable);
+    const double part = wrap_between_tangents(cable, i) - turn * asked;
+    if (part >= bare - part) continue;  // -th
+    cable.links = links;
+    cable.segments = segments;
+  }
 }
 
 /// Material coordinates: along the taut path, the slack shared among the spans by their lengths.
@@ -278,7 +305,7 @@ void lay_material(const World& world, Course& course) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Link& link = cable.links[i];
     if (link.orientation != 0) {
-      link.wrap = link.orientation * (alpha_head(cable, i) - cable.segments[i].alpha);
+      link.wrap = wrap_between_tangents(cable, i);
       (evenly && may_carry(world, cable, i) ? free_length : taut) += stored_length(link);
     }
     if (i < first_segment(cable)) continue;
@@ -342,7 +369,8 @@ void lay_cable(const Scene& scene, const World& world, double allowed, std::size
   lay_links(scene, world, course);
   lay_tangents(scene, world, course);
   lay_wraps(scene, course);
-  lay_layers(world, course);
+  lay_layers(world, cable);
+  if (cable.fills) drop_turns_of_bare_rims(world, course);
   lay_material(world, course);
   update_wraps_and_rest_lengths(world, cable);
   if (!cable.rims.empty()) lay_down(world, cable);

@@ -53,6 +53,42 @@ TEST(Layers, AreRoundTheDrumFromItsRimOn) {
   }
 }
 
+/// A load at (x, -3) on a rope that is wound on a drum, whose rim with the rope's half width is of
+/// 0.3 m, from its right side on, twice and what that place asks for.
+World wound_twice(double x, bool from_start) {
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed, 0.0, 0.0, 0.28));
+  scene.bodies.push_back(body("load", BodyKind::free, x, -3.0, 0.1, 3.0));
+  const Attachment rim{0, {0.3, 0.0}, true};
+  scene.cables.push_back(from_start ? cable(rim, {{0, -1, 2}}, on(1), 0.02)
+                                    : cable(on(1), {{0, 1, 2}}, rim, 0.02));
+  return make_world(scene, Method::pinch);
+}
+
+// Beside two turns a rope 0.04 m thick is 0.38 m out; the load hangs there, or at the bare rim, or
+// as far out again, by two turns and the little that its place asks for, which it asks smoothly.
+TEST(Layers, ALoadBesideThemHangsFromWholeTurns) {
+  for (const bool from_start : {true, false}) {
+    const auto wrap_at = [from_start](double x) {
+      return wound_twice(x, from_start).cables[0].links[1].wrap;
+    };
+    const World world = wound_twice(0.38, from_start);
+    const CableState& cable = world.cables[0];
+    EXPECT_NEAR(cable.links[1].wrap, 4.0 * pi, 1e-14);
+    EXPECT_NEAR(cable.links[1].radius, 0.38, 1e-15);
+    EXPECT_NEAR(cable.segments[from_start ? 2 : 1].length, 3.0, 1e-15);
+    EXPECT_NEAR(length_of(world), cable.length, 1e-13);
+    double before = wrap_at(0.28);
+    for (double x = 0.281; x < 0.45; x += 1e-3) {
+      const double wrap = wrap_at(x);
+      EXPECT_NEAR(before - wrap, 1e-3 / 3.0, 1e-5) << x;
+      before = wrap;
+    }
+    EXPECT_NEAR(wrap_at(0.38 - 1e-6) - wrap_at(0.38 + 1e-6), 2e-6 / 3.0, 1e-8);
+    EXPECT_GT(wrap_at(0.5), 5.9 * pi);  // nearly once more round
+  }
+}
+
 TEST(Layers, EnergyIsKeptAndTheOrderIsTwo) {
   for (const bool from_start : {true, false}) {
     double before = 0.0, last = 0.0;
