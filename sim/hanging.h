@@ -47,8 +47,8 @@ Hanging hang(const std::vector<Vec2>& weights, const std::vector<double>& length
 /// with J = sum s_j l_j / |t_j| (I - u_j u_j^T).
 ///     A chain of which no piece is slack is one of rods that all pull. Where one is, rod k, the
 /// rest of the chain stands upright, and leaves r = reach - sum of l_j u_j to it, |r| < l_k: too
-/// little for a rod, which pushes. For a small push a in direction v, t_k = -a v, the others lean by
-/// c a v_x, c = sum of l_j / |t_j|, with x across the weights and y along them:
+/// little for a rod, which pushes. For a small push a in direction v, t_k = -a v, the others lean
+/// by c a v_x, c = sum of l_j / |t_j|, with x across the weights and y along them:
 ///     l_k v_y = r_y,    l_k v_x = r_x + c a v_x,    |v| = 1,
 /// from where Newton's method starts; to either side where r_x = 0.
 ///     Nothing where it finds none.

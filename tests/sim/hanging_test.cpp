@@ -45,7 +45,7 @@ double moves_by(const Scene& scene, World& world) {
 }
 
 // Two legs of 20 pieces and a piece across them that is longer than its ends' distance: it keeps
-// the legs apart. Either end bears half of the weight, without its own half piece, and as the other.
+// the legs apart. Either end bears half of the weight, without its own half piece.
 TEST(Hanging, APieceAcrossTwoLegsKeepsThemApart) {
   Scene scene = hung({0.02, 0.0}, 2.02, 40);
   spread_nodes(scene);
