@@ -250,8 +250,7 @@ void draw_still(StillCommand& options) {
     options.height = of_sheet.height;
     return write_series(read_sweep(options.scene, options.table), options.method, options);
   }
-  SceneFile file = read_scene_file(options.scene);
-  file.scene = with_timing(file.scene, options.timing);
+  const SceneFile file = read_scene_file(options.scene, options.timing);
   options.methods = {method_of(file.scene, options.method)};
   if (options.both) options.methods = {Method::pinch, file.scene.baseline};
   check_error_is_heeded(options.timing, options.methods);
@@ -306,8 +305,10 @@ void add_simulate(CLI::App& app) {
              "pinch, pinch_no_contact, cable, baseline (the scene's own), or thesis: all of the "
              "thesis' ways, its iterative solver too [pinch]");
   command
-      ->add_option("--until", options->until,
-                   "The last row is the last frame's up to this time, s [the clip's last frame]")
+      ->add_option(
+          "--until", options->until,
+          "The last row is the last frame's up to this time, s [the clip's last frame, which is at "
+          "its duration less that of a frame]")
       ->type_name("S");
   add_fps(*command, options->timing);
   add_error(*command, options->timing);
@@ -323,14 +324,15 @@ void add_simulate(CLI::App& app) {
       "time_s,cable,segment,from_body,to_body,length_m,rest_length_m,tension_n,pinched,slipping\n"
       "Velocities are those at the row's time; tension is the last step's; pinched is 0 or 1; "
       "slipping is 1\n"
-      "(forward), -1 (backward) or 0 over to_body. Numbers read back exactly.\n\n"
+      "(forward), -1 (backward) or 0 over to_body. Numbers read back exactly. A cable c with nodes "
+      "and no wraps\nis the cables c, c:1, c:2 and so on, a piece each.\n\n"
       "Examples:\n"
       "  pinchlab simulate demos/03-drop.json --out drop.csv --segments drop-segments.csv\n"
       "  pinchlab simulate demos/03-drop.json --method baseline --until 2 --steps-per-frame 16 "
       "--out -\n"
       "  pinchlab simulate demos/02-stack.json --method thesis --out stack-thesis.csv");
   command->callback([options] {
-    const SceneFile file = read_scene_file(options->scene);
+    const SceneFile file = read_scene_file(options->scene, options->timing);
     options->configuration = method_of(file.scene, options->method);
     write_trajectory(file, *options);
   });

@@ -42,11 +42,11 @@ void remove_partial_files(const fs::path& folder) {
   }
 }
 
-std::vector<SceneFile> read_scenes(const std::vector<fs::path>& paths) {
+std::vector<SceneFile> read_scenes(const std::vector<fs::path>& paths, const Timing& timing) {
   std::vector<SceneFile> scenes;
   std::set<std::string> names;
   for (const fs::path& path : find_scenes(paths)) {
-    scenes.push_back(read_scene_file(path));
+    scenes.push_back(read_scene_file(path, timing));
     if (!names.insert(scenes.back().scene.name).second) {
       throw std::invalid_argument(fmt::format("{}: a scene called {} is in the list already",
                                               path.string(), scenes.back().scene.name));
@@ -356,7 +356,7 @@ std::vector<ClipPlan> plan_clips(const SceneFile& source, const BatchOptions& op
 
 int render_batch(const BatchOptions& options) {
   // Everything that can be wrong with the input is found before the first file is touched.
-  const std::vector<SceneFile> scenes = read_scenes(options.scenes);
+  const std::vector<SceneFile> scenes = read_scenes(options.scenes, options.timing);
   std::vector<ClipPlan> plans;
   for (const SceneFile& scene : scenes) {
     std::ranges::move(plan_clips(scene, options), std::back_inserter(plans));

@@ -62,7 +62,7 @@ Stimulus stimulus_of(const Sweep& sweep, const BatchOptions& render, std::size_t
   stimulus.row = row;
   stimulus.filled = fill(sweep.scene, sweep.table, row).dump(1) + "\n";
   try {
-    stimulus.source = parse_scene(stimulus.filled, sweep.scene.path);
+    stimulus.source = parse_scene(stimulus.filled, sweep.scene.path, render.timing);
     stimulus.plan = plan_of(sweep, row, stimulus.source, render);
   } catch (const std::exception& error) {
     throw InputError(sweep.table.place(row), error.what());

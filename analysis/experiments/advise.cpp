@@ -204,12 +204,15 @@ std::string cost(const Trial& trial) {
 }
 
 /// What to type for a configuration that can be typed.
-std::string how_to_use(const Question& question, const Rung& rung) {
+std::string how_to_use(const Question& question, const Advice& advice, const Rung& rung) {
   const std::size_t solver = rung.setting.find(" direct");
   const bool adapts = rung.setting.ends_with(by_error);
-  return fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {}{} --out -\n",
-                     question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame,
-                     adapts ? fmt::format(" --error {:g}", question.error_m) : "");
+  const std::string try_it =
+      fmt::format("Try it: pinchlab simulate {} --method {} --steps-per-frame {}{} --out -\n",
+                  question.scene.string(), rung.setting.substr(0, solver), rung.steps_per_frame,
+                  adapts ? fmt::format(" --error {:g}", question.error_m) : "");
+  const std::string keep = words_to_keep(advice.nodes);
+  return keep.empty() ? try_it : fmt::format("In the scene, {}.\n{}", keep, try_it);
 }
 
 }  // namespace
@@ -274,6 +277,7 @@ Advice advise(const Question& question) {
               Method::pinch);  // tells what is wrong with it by its file
   Watch watch(time_limit_of_all(file, question.time_limit, "a shorter --time is faster"));
   Advice advice;
+  advice.nodes = file.chosen_nodes;
   solve(question, file.scene, watch, advice);
   if (vouched_for(question, advice.problem)) {
     const std::vector<Contender> all = possible(file.scene, tried(question), advice.refused);
@@ -313,7 +317,7 @@ std::string advice_text(const Question& question, const Advice& advice) {
   return text + fmt::format("Cheapest within {:g} m: {}, {} step{} a frame: {:.1e} m off, {}.\n{}",
                             question.error_m, best.setting, best.steps_per_frame,
                             best.steps_per_frame == 1 ? "" : "s", best.trial.error,
-                            cost(best.trial), how_to_use(question, best));
+                            cost(best.trial), how_to_use(question, advice, best));
 }
 
 void add_advise_command(CLI::App& app) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/experiments/work_precision.h"
+#include "demos/scenes/timing.h"
 
 namespace pinchlab::experiments {
 
@@ -30,6 +31,7 @@ struct Advice {
   std::vector<Rung> rungs;  ///< empty where the reference cannot vouch for the wanted error
   int best = -1;            ///< best_to_type
   std::vector<std::string> refused;  ///< configurations that cannot do the scene
+  std::vector<ChosenNodes> nodes;    ///< by the scene's own steps, and the same at all steps
 };
 
 /// The rung that is cheapest within the error at its steps and all finer ones, of the settings that

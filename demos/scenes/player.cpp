@@ -6,55 +6,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
-#include "demos/scenes/scene_format.h"
-
 namespace pinchlab {
-namespace {
-
-void check_range(const char* what, int value, int high) {
-  if (value < 1 || value > high) {
-    throw std::invalid_argument(fmt::format("{} must be 1 to {}, not {}", what, high, value));
-  }
-}
-
-}  // namespace
-
-Scene with_timing(const Scene& scene, const Timing& timing) {
-  Scene changed = scene;
-  if (timing.frames_per_second) {
-    const int rate = *timing.frames_per_second;
-    check_range("frames per second", rate, 1000);
-    const auto frames = static_cast<std::int64_t>(scene.frame_count) * rate;
-    if (frames % scene.frames_per_second != 0) {
-      throw std::invalid_argument(fmt::format(
-          "{}: its {} s are not a whole number of frames at {} a second; its own rate is {}",
-          scene.name, static_cast<double>(scene.frame_count) / scene.frames_per_second, rate,
-          scene.frames_per_second));
-    }
-    const std::int64_t count = frames / scene.frames_per_second;
-    if (count > max_frame_count) {
-      throw std::invalid_argument(fmt::format("{}: {} frames are more than the {} that can be made",
-                                              scene.name, count, max_frame_count));
-    }
-    changed.frame_count = static_cast<int>(count);
-    changed.frames_per_second = rate;
-    changed.steps_per_frame = (scene.frames_per_second * scene.steps_per_frame + rate - 1) / rate;
-  }
-  if (timing.steps_per_frame) {
-    check_range("steps per frame", *timing.steps_per_frame, 1'000'000);
-    changed.steps_per_frame = *timing.steps_per_frame;
-  }
-  if (timing.error) changed.error = *timing.error;
-  return changed;
-}
-
 void check_error_is_heeded(const Timing& timing, std::span<const Configuration> methods) {
   if (timing.error.value_or(0.0) == 0.0 || std::ranges::any_of(methods, locates_events)) return;
   std::set<std::string> names;
@@ -65,8 +23,17 @@ void check_error_is_heeded(const Timing& timing, std::span<const Configuration> 
                   fmt::join(names, " and ")));
 }
 
+std::string words_to_keep(std::span<const ChosenNodes> nodes) {
+  std::string text;
+  for (const ChosenNodes& chosen : nodes) {
+    text += fmt::format("{}{} to cable \"{}\"", text.empty() ? "give \"nodes\": " : ", ",
+                        chosen.nodes, chosen.cable);
+  }
+  return text.empty() ? "" : text + ", since more steps give more nodes";
+}
+
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
-                           const World& world, int frame) {
+                           const World& world, int frame, std::span<const ChosenNodes> nodes) {
   const Configuration& configuration = world.configuration;
   const std::string sweeps =
       configuration.solver == Solver::iterative &&
@@ -76,11 +43,12 @@ std::string failure_report(const std::filesystem::path& path, const Scene& scene
           : "";
   return fmt::format(
       "{0}: method {1}: {2}; to see it again: pinchlab simulate {0} --method {1} --fps {3} "
-      "--steps-per-frame {4}{5} --until {6} --out -{7}",
+      "--steps-per-frame {4}{5} --until {6} --out -{7}{8}",
       path.string(), to_string(world.configuration), world.failure, scene.frames_per_second,
       scene.steps_per_frame,
       locates_events(configuration) ? fmt::format(" --error {}", scene.error) : "",
-      static_cast<double>(frame) / scene.frames_per_second, sweeps);
+      static_cast<double>(frame) / scene.frames_per_second, sweeps,
+      nodes.empty() ? "" : "; before that, " + words_to_keep(nodes));
 }
 
 void tell_broken_promises(const std::string& file, const std::vector<std::string>& lines) {
@@ -158,7 +126,10 @@ void Player::advance_to(int frame) {
 void Player::advance_to_step(std::int64_t wanted) {
   for (; step_ < wanted; ++step_) {
     if (step(scene_, world_, work_) != StepStatus::ok) {
-      throw std::runtime_error(failure_report(file_.path, scene_, world_, frame() + 1));
+      const bool finer = scene_.steps_per_frame != file_.scene.steps_per_frame;
+      throw std::runtime_error(
+          failure_report(file_.path, scene_, world_, frame() + 1,
+                         finer ? std::span(file_.chosen_nodes) : std::span<const ChosenNodes>()));
     }
     promises_.note(scene_, world_);
     if (on_step_) on_step_();

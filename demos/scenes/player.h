@@ -17,26 +17,16 @@
 
 namespace pinchlab {
 
-/// What the command line may change about a scene's timing.
-struct Timing {
-  std::optional<int> frames_per_second;
-  std::optional<int> steps_per_frame;
-  std::optional<double> error{};  ///< m, of Scene::error
-};
-
-/// The scene with another timing and the same duration. With another frame rate alone, a frame gets
-/// the fewest steps that make none longer than the scene's own. Throws std::invalid_argument, with
-/// the cure, where the duration is not a whole number of frames or a value is out of range.
-Scene with_timing(const Scene& scene, const Timing& timing);
-
 /// Throws std::invalid_argument where `timing` has an error above 0 and none of the methods divides
 /// its steps for one.
 void check_error_is_heeded(const Timing& timing, std::span<const Configuration> methods);
 
 /// What is told of a world that became not finite on the way to `frame` of the scene from `path`:
-/// where and when, and the command that shows it again.
+/// where and when, and the command that shows it again, once cables have these nodes.
 std::string failure_report(const std::filesystem::path& path, const Scene& scene,
-                           const World& world, int frame);
+                           const World& world, int frame, std::span<const ChosenNodes> nodes = {});
+/// How to keep nodes that were chosen while steps change; "" where there are none.
+std::string words_to_keep(std::span<const ChosenNodes> nodes);
 
 /// Writes what Player::broken_promises says of a file to standard error, and a line on what helps;
 /// nothing where there is nothing.

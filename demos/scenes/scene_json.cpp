@@ -56,7 +56,8 @@ std::string scene_name(const std::filesystem::path& path) {
 SceneFileError::SceneFileError(const std::string& file, std::vector<SceneProblem> problems_)
     : std::runtime_error(report(file, problems_)), problems(std::move(problems_)) {}
 
-SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) {
+SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
+                      const Timing& timing) {
   SceneFile file;
   file.path = path;
   const std::string name = scene_name(path);
@@ -67,11 +68,11 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
     const json value = parse_strict_json(text);
     check_format(value, scene_format(), "", problems);
     if (problems.empty()) {
-      SceneContent content = read_scene(value, problems);
+      SceneContent content = read_scene(value, name, timing, problems);
       file.scene = std::move(content.scene);
-      file.scene.name = name;
       file.look = std::move(content.look);
       file.poster_time = content.poster_time;
+      file.chosen_nodes = std::move(content.chosen_nodes);
     }
   } catch (const JsonError& error) {
     problems.push_back({error.place, error.what()});
@@ -88,7 +89,7 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path) 
   return file;
 }
 
-SceneFile read_scene_file(const std::filesystem::path& path) {
+SceneFile read_scene_file(const std::filesystem::path& path, const Timing& timing) {
   if (path.empty()) throw SceneFileError("the scene file's name", {{"", "is empty"}});
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
@@ -100,7 +101,7 @@ SceneFile read_scene_file(const std::filesystem::path& path) {
   } catch (const InputError& unreadable) {
     throw SceneFileError(path.string(), {{"", unreadable.message}});
   }
-  return parse_scene(text, path);
+  return parse_scene(text, path, timing);
 }
 
 World start_world(const Scene& scene, const std::filesystem::path& path,

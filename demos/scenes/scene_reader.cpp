@@ -15,11 +15,10 @@
 #include "demos/scenes/joint_reader.h"
 #include "demos/scenes/json_values.h"
 #include "demos/scenes/look_reader.h"
+#include "demos/scenes/node_reader.h"
 #include "demos/scenes/scene_format.h"
 #include "sim/configuration.h"
-#include "sim/nodes.h"
 #include "sim/outline.h"
-#include "sim/scene_error.h"
 
 namespace pinchlab {
 namespace {
@@ -29,8 +28,9 @@ using nlohmann::json;
 // Turns JSON of the right form into a Scene and collects what does not go together.
 class Reader {
  public:
-  explicit Reader(std::vector<SceneProblem>& problems) : problems_(problems) {}
-  SceneContent read(const json& file);
+  Reader(const Timing& timing, std::vector<SceneProblem>& problems)
+      : timing_(timing), problems_(problems) {}
+  SceneContent read(const json& file, const std::string& name);
 
  private:
   void problem(const std::string& place, std::string message) {
@@ -56,10 +56,10 @@ class Reader {
   Wall read_wall(const json& from, const std::string& place);
   View read_view(const json& from);
   void read_timing(const json& from, SceneContent& to);
-  void spread(SceneContent& to);
   void claim_joints(const json& joints);
   void read_joints(const json& file, SceneContent& to);
 
+  const Timing& timing_;
   std::vector<SceneProblem>& problems_;
   std::map<std::string, int> body_names_, cable_names_;
   std::vector<Vec2> origins_;  // of the bodies' frames in the file: read_shapes
@@ -375,45 +375,6 @@ void Reader::read_timing(const json& from, SceneContent& to) {
   }
 }
 
-// Nodes have no names in the file, and look like their cable.
-void Reader::spread(SceneContent& to) {
-  if (!problems_.empty()) return;
-  constexpr int most_nodes = 10'000;
-  int nodes = 0;
-  for (std::size_t c = 0; c < to.scene.cables.size(); ++c) {
-    const Cable& cable = to.scene.cables[c];
-    if (becomes_nodes(cable) || becomes_strung(cable)) {
-      nodes += cable.nodes > 0 ? cable.nodes : most_nodes_chosen;
-    }
-    if (nodes <= most_nodes) continue;
-    problem(
-        fmt::format("/cables/{}", c),
-        fmt::format("cables with mass up to this one may have more than {} nodes; give them fewer "
-                    "with nodes",
-                    most_nodes));
-    return;
-  }
-  try {
-    for (const NodedCable& made : spread_nodes(to.scene)) {
-      for (int i = 0; i < made.bodies; ++i) {
-        const std::string& name = at(to.scene.bodies, made.first_body + i).name;
-        if (body_names_.contains(name)) {
-          problem(fmt::format("/bodies/{}/name", body_names_.at(name)),
-                  fmt::format("\"{}\" is the name of a node of a cable; choose another", name));
-        }
-        BodyLook look;
-        look.label = "";
-        look.marks = false;
-        to.look.bodies.push_back(look);
-      }
-      to.look.cables.insert(to.look.cables.end(), index(made.pieces),
-                            at(to.look.cables, made.cable));
-    }
-  } catch (const SceneError& error) {
-    problem(error.place, error.message);
-  }
-}
-
 // Joints are cables in tables, and hinges two.
 void Reader::claim_joints(const json& joints) {
   std::map<std::string, std::size_t> names;
@@ -449,9 +410,10 @@ void Reader::read_joints(const json& file, SceneContent& to) {
   }
 }
 
-SceneContent Reader::read(const json& file) {
+SceneContent Reader::read(const json& file, const std::string& name) {
   SceneContent to;
   Scene& scene = to.scene;
+  scene.name = name;
   scene.title = file["title"].get<std::string>();
   take(file, "gravity_m_s2", scene.gravity);
   for (std::size_t i = 0; i < file["bodies"].size(); ++i) {
@@ -483,7 +445,10 @@ SceneContent Reader::read(const json& file) {
   for (const json& cable : cables) to.look.cables.push_back(read_cable_look(cable));
   claim_joints(file.value("joints", json::array()));
   read_joints(file, to);  // by which a cable with mass may hold more
-  spread(to);
+  if (problems_.empty()) {
+    scene = with_timing(scene, timing_);  // whose steps nodes are to follow
+    read_nodes(to, body_names_, problems_);
+  }
   const auto baseline = configuration_from_string(file["baseline"]["method"].get<std::string>());
   scene.baseline = baseline.value().method;
   scene.baseline_reason = file["baseline"]["reason"].get<std::string>();
@@ -492,8 +457,9 @@ SceneContent Reader::read(const json& file) {
 
 }  // namespace
 
-SceneContent read_scene(const json& from, std::vector<SceneProblem>& problems) {
-  return Reader(problems).read(from);
+SceneContent read_scene(const json& from, const std::string& name, const Timing& timing,
+                        std::vector<SceneProblem>& problems) {
+  return Reader(timing, problems).read(from, name);
 }
 
 }  // namespace pinchlab

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <sstream>
 
 #include "demos/scenes/player.h"
@@ -129,6 +130,43 @@ TEST(Simulate, UntilAndTiming) {
   EXPECT_NEAR(std::stod(usual.back()[3]), std::stod(fine.back()[3]), 1e-3);
 }
 
+// A rope that bends at 9 nodes needs more than 4 steps a frame; where it may choose, it has the
+// nodes that a file with these steps gives it.
+TEST(Simulate, NodesFollowTheStepsThatAreAskedFor) {
+  const fs::path folder = folder_with_scene();
+  const auto write = [&folder](const char* nodes, const char* steps) {
+    std::ofstream(folder / "02-rope.json") << R"({
+      "title": "Rope", "duration_s": 0.5, "view": "fit",
+      "baseline": {"method": "cable", "reason": "it is plain"},
+      "bodies": [{"name": "a", "kind": "rail", "rail_axis": [1, 0], "radius_m": 0.01,
+                  "mass_kg": 0.1, "position_m": [1, 0]}],
+      "cables": [{"name": "c", "half_width_m": 0.005, "mass_per_metre_kg": 1,
+                  "bending_stiffness_n_m2": 8, "start": {"world_m": [0, 0]}, "end": {"body": "a"},
+                  "nodes": )" << nodes << R"(}], "steps_per_frame": )"
+                                           << steps << "}\n";
+  };
+  const auto simulate = [&folder](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"simulate", "02-rope.json", "--out", "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_program(folder, arguments);
+  };
+  write("9", "4");
+  const std::string refusal = simulate({}).err;
+  EXPECT_NE(refusal.find("faster than 4 steps a frame follow"), std::string::npos) << refusal;
+  const RunResult asked = simulate({"--steps-per-frame", "16"});
+  EXPECT_EQ(asked.exit_code, 0) << asked.err;
+  const std::string as_long = simulate({"--fps", "240"}).err;
+  EXPECT_NE(as_long.find("faster than 1 steps a frame follow"), std::string::npos) << as_long;
+  write("9", "16");
+  EXPECT_EQ(simulate({}).out, asked.out);
+  EXPECT_EQ(simulate({"--steps-per-frame", "4"}).err, refusal);
+  write("\"automatic\"", "4");
+  const RunResult chosen = simulate({"--steps-per-frame", "16"});
+  EXPECT_NE(simulate({}).out, chosen.out);
+  write("\"automatic\"", "16");
+  EXPECT_EQ(simulate({}).out, chosen.out);
+}
+
 TEST(WithTiming, KeepsTheDurationAndNoStepGetsLonger) {
   Scene scene;
   scene.frame_count = 300;
@@ -184,6 +222,11 @@ TEST(Player, FailureSaysHowToSeeItAgain) {
   world.configuration = Method::pinch;
   EXPECT_NE(failure_report("s.json", scene, world, 6).find("--error 0.001 --until 0.1 "),
             std::string::npos);
+  // With the nodes of other steps it would be another motion.
+  const std::vector<ChosenNodes> nodes = {{"rope", 63}, {"chain", 7}};
+  EXPECT_TRUE(failure_report("s.json", scene, world, 6, nodes)
+                  .ends_with("--out -; before that, give \"nodes\": 63 to cable \"rope\", 7 to "
+                             "cable \"chain\", since more steps give more nodes"));
 }
 
 }  // namespace
