@@ -31,7 +31,8 @@ std::vector<Shape> shapes_of(const json& from, const std::string& place,
 
 /// Gives the compound the mass of its density, and its centre of mass to its shapes and its
 /// position; where that is in the file's frame (m). A compound of both mass and inertia has it at
-/// that frame's origin.
+/// that frame's origin, and so has one that a motor turns about an axle whatever that takes: its
+/// weight moves nothing.
 Vec2 weigh(const json& from, const std::string& place, std::vector<Shape>& shapes, Body& body,
            std::vector<SceneProblem>& problems) {
   const Plate plate = plate_of(shapes);
@@ -40,6 +41,12 @@ Vec2 weigh(const json& from, const std::string& place, std::vector<Shape>& shape
     check_mass_of_density(from, place, body.mass, problems);
   }
   if (body.kind == BodyKind::fixed || (from.contains("mass_kg") && body.inertia)) {
+    return Vec2::Zero();
+  }
+  if (body.kind == BodyKind::fixed_axle && body.driven_angular_velocity &&
+      body.torque_limit == infinity) {
+    const double second_moment = plate.second_moment + plate.area * plate.centre.squaredNorm();
+    body.inertia = body.mass / plate.area * second_moment;
     return Vec2::Zero();
   }
   if (body.kind == BodyKind::fixed_axle && plate.centre.norm() > 1e-6 * std::sqrt(plate.area)) {

@@ -124,6 +124,32 @@ TEST(CompoundErrors, SayWhatIsWrongAndWhere) {
            "at_m, hold a free body by a hinge, or give mass_kg and inertia_kg_m2");
 }
 
+// Where it must turn as a motor wants it a compound may be a cam, since its weight moves nothing;
+// with a torque limit, or without a motor, mass and inertia say that its weight is at the axle.
+TEST(CompoundKeys, ACamTurnsAboutItsAxle) {
+  json scene = compound_scene();
+  json& cam = scene["bodies"][0];
+  cam = {{"name", "cam"},
+         {"kind", "fixed_axle"},
+         {"mass_kg", 2},
+         {"position_m", {-4, 3}},
+         {"shapes", json::parse(R"([{"radius_m": 0.2, "at_m": [0.1, 0]}])")},
+         {"driven_angular_velocity_rad_s", 2}};
+  for (const char* list : {"cables", "joints"}) scene.erase(list);
+  const SceneFile file = parse_scene(scene.dump(), "s.json");
+  const Body& read = file.scene.bodies[0];
+  EXPECT_EQ(read.position, Vec2(-4.0, 3.0));
+  EXPECT_NEAR(read.inertia.value(), 2.0 * (0.5 * 0.2 * 0.2 + 0.1 * 0.1), 1e-15);
+  World world = start_world(file.scene, "s.json", Method::pinch);
+  EXPECT_EQ(world.position[0], Vec2(-4.0, 3.0));
+  cam["torque_limit_n_m"] = 1e3;
+  EXPECT_NE(error_of(scene.dump()).find("off the axle"), std::string::npos);
+  cam["inertia_kg_m2"] = 0.1;
+  EXPECT_EQ(error_of(scene.dump()), "no error");
+  cam.erase("torque_limit_n_m");
+  EXPECT_NE(error_of(scene.dump()).find("a motor without torque_limit_n_m"), std::string::npos);
+}
+
 TEST(CompoundErrors, NamesAndEnds) {
   json scene = compound_scene();
   scene["bodies"][0]["name"] = "left weight:2";
