@@ -43,6 +43,20 @@ Scene tower(int count, bool zig_zag, int cables = 1) {
   return scene;
 }
 
+/// A cable over body 0, a drum, with a load of its own on either side.
+void add_loads(Scene& scene, int number, double left_mass, double right_mass) {
+  const int left = static_cast<int>(scene.bodies.size());
+  for (const double side : {-R, R}) {
+    const double mass = side < 0.0 ? left_mass : right_mass;
+    Body load =
+        body(fmt::format("load {} {}", number, side), BodyKind::free, side, -2.0, 0.2, mass);
+    load.outlined = false;  // the others' are in the same places
+    scene.bodies.push_back(load);
+  }
+  scene.cables.push_back(cable(on(left), {{0, -1, 0}}, on(left + 1), w));
+  scene.cables.back().name = fmt::format("cable {}", number);
+}
+
 class Stack : public ::testing::TestWithParam<int> {};
 
 TEST_P(Stack, OfTenPinchingBodiesComesToRest) {
@@ -271,27 +285,57 @@ TEST(Pinch, RollsOverAWrapThroughAllKindsOfPinch) {
   EXPECT_GT(world.position[1].x(), 1.0) << "the roller has crossed";
 }
 
-// Pinch friction is bounded by what presses: a driven roller drags a slipping cable with mu N at
-// most.
+// Pinch friction is bounded by what presses: a driven roller drags slipping cables with mu N at
+// most, each with as much of that as there are cables; not with all of it.
 TEST(Pinch, DrivenRollerPullsWithItsFriction) {
   const double mu = 0.25, mass = 2.0;
-  Scene scene;
-  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 5.0));
-  scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, r + 0.25 + 2.0 * w, 0.25, mass));
-  scene.bodies.push_back(body("left", BodyKind::free, -R, -2.0, 0.2, 1.0));
-  scene.bodies.push_back(body("right", BodyKind::free, R, -2.0, 0.2, 1.0));
-  scene.bodies[0].cable_friction = 0.0;
-  scene.bodies[1].cable_friction = mu;
-  scene.bodies[1].driven_angular_velocity = -50.0;
-  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3)));
-  World world = make_world(scene, measured());
-  const double y = world.position[2].y();
-  run(scene, world, 240);
-  // The drum is frictionless, so the roller's mu N moves the two loads alone: a = mu N / (2 m).
-  // Driven clockwise, its lower side drags the cable to the left.
-  const double a = mu * mass * g / 2.0;
-  EXPECT_NEAR(y - world.position[2].y(), 0.5 * a, 1e-10);
-  EXPECT_NEAR(world.angle[0], 0.0, 1e-12);
+  for (const int cables : {1, 2, 3}) {
+    Scene scene;
+    scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 5.0));
+    scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, r + 0.25 + 2.0 * w, 0.25, mass));
+    scene.bodies[0].cable_friction = 0.0;
+    scene.bodies[1].cable_friction = mu;
+    scene.bodies[1].driven_angular_velocity = -50.0;
+    for (int c = 0; c < cables; ++c) add_loads(scene, c, 1.0, 1.0);
+    World world = make_world(scene, measured());
+    run(scene, world, 240);
+    // The drum is frictionless, so the roller's mu N moves the loads alone: a = mu N / (2 m).
+    // Driven clockwise, its lower side drags the cables to the left.
+    const double a = mu * mass * g / (2.0 * cables);
+    for (std::size_t c = 0; c < index(cables); ++c) {
+      EXPECT_NEAR(-2.0 - world.position[2 + 2 * c].y(), 0.5 * a, 1e-10) << cables << ' ' << c;
+    }
+    EXPECT_NEAR(world.angle[0], 0.0, 1e-12);
+  }
+}
+
+// Cables clamped between axles share the one row that turns the roller, each by the sign of its own
+// direction: the drum accelerates the roller by I alpha / (r + w), half of it in either.
+TEST(Clamp, CablesOfBothDirectionsShareWhatTurnsTheRoller) {
+  constexpr double lever = 0.25 + w, drum_mass = 10.0, roller_mass = 2.0;
+  for (const bool reversed : {false, true}) {
+    Scene scene;
+    scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, drum_mass));
+    scene.bodies.push_back(
+        body("roller", BodyKind::fixed_axle, 0.0, r + 0.25 + 2.0 * w, 0.25, roller_mass));
+    add_loads(scene, 0, 1.0, 2.0);
+    add_loads(scene, 1, 2.0, 3.0);
+    if (reversed) std::swap(scene.cables[1].start, scene.cables[1].end);
+    if (reversed) scene.cables[1].wraps[0].orientation = 1;
+    World world = make_world(scene, measured());
+    run(scene, world, 60);
+    const double of_drum = 0.5 * drum_mass * r * r / (R * R);
+    const double of_roller = 0.5 * roller_mass * 0.25 * 0.25 / (lever * lever);
+    const double a = 2.0 * g / (8.0 + of_drum + of_roller), shared = 0.5 * of_roller * a;
+    for (const std::size_t c : {0U, 1U}) {
+      const CableState& cable = world.cables[c];
+      ASSERT_EQ(cable.links.size(), 5U);
+      EXPECT_NEAR(cable.segments[2].tension, c == 1 && reversed ? shared : -shared, 1e-9);
+      const double light = 1.0 + static_cast<double>(c), heavy = light + 1.0;
+      EXPECT_NEAR(cable.segments[reversed && c == 1 ? 4 : 1].tension, light * (g + a), 1e-9);
+      EXPECT_NEAR(cable.segments[reversed && c == 1 ? 1 : 4].tension, heavy * (g - a), 1e-9);
+    }
+  }
 }
 
 // With friction on the drum too the cable carries it along, by the capstan law and the pinch

@@ -87,6 +87,19 @@ TEST(PressedSlip, ABoxHoldsACableByTheFrictionOfBothItsSides) {
   }
 }
 
+// A cable's grip is a share of the friction of both: held = 0.5 (mu + 0.2) M g. With all of the
+// beam's the weight would sink at 3.855 m/s^2 instead of 4.301.
+TEST(PressedSlip, AWeakerGripHoldsByAsMuchLess) {
+  const Pressed with;
+  for (const double share : {1.0, 0.5, 0.0}) {
+    Scene scene = scene_of(with);
+    scene.cables[0].grip = share;
+    const World world = after_half_a_second(scene);
+    const double a = with.acceleration(share * (with.mu + with.grip) * with.mass * g);
+    EXPECT_NEAR(acceleration(world, sunk(world)), a, 1e-10) << share;
+  }
+}
+
 // The heaviest weight that it holds: m / k = light k + (mu + grip) M.
 TEST(PressedSlip, ABoxHoldsAsMuchAsItsWeightAllows) {
   Pressed with;
