@@ -243,6 +243,31 @@ TEST(AdaptNodes, AStraightSpanMovesAsOneWithoutNodes) {
   }
 }
 
+// Where pieces become one, their ends' motion is changed for what is lost with the nodes: on a rail
+// only along it. Else the cart would leave the rail for good.
+TEST(AdaptNodes, ACartThatHoldsTheRopeStaysOnItsRail) {
+  Scene scene;
+  scene.steps_per_frame = 16;
+  scene.bodies.push_back(body("cart", BodyKind::rail, 0.6, 0.0, 0.05, 0.5));
+  scene.bodies[0].rail_axis = {1.0, 0.0};
+  scene.bodies[0].velocity = {1.0, 0.0};
+  scene.cables.push_back(cable(at(0.0, 0.3), {}, on(0), 0.005));
+  Cable& rope = scene.cables[0];
+  rope.slack = 0.3;
+  rope.mass_per_metre = 0.5;
+  rope.nodes = 31;
+  rope.node_tolerance = 0.01;
+  rope.linear_drag = 1.0;
+  spread_nodes(scene);
+  World world = make_world(scene, measured());
+  Workspace work;
+  for (int i = 0; i < 60 * 16 * 2; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+    ASSERT_LT(std::abs(world.position[0].y()), 1e-12) << i;
+  }
+  EXPECT_GT(world.diagnostics.node_changes, 20);
+}
+
 // Few nodes but at the bight: in the time of the finest, within a hundredth, with less than half of
 // its pieces.
 TEST(AdaptNodes, AFoldedChainFallsAsTheFinest) {

@@ -160,6 +160,21 @@ TEST(Methods, IterativeSlidingObeysTheCapstanLaw) {
   EXPECT_NEAR(world.position[1].y() - scene.bodies[1].position.y(), 0.5 * a * t * t, 1e-4 * a);
 }
 
+// Plain cable joints let pulleys sink into each other as far as the cable between them is long,
+// backwards: the upper one comes to rest there, and is neither let through nor thrown off.
+TEST(Methods, PlainCableHoldsAPulleyByTheLengthOfItsOverlap) {
+  Scene scene;
+  scene.bodies.push_back(body("low", BodyKind::fixed_axle, 0.0, 0.0, 0.3, 1.0));
+  scene.bodies.push_back(body("high", BodyKind::rail, 0.0, 0.72, 0.3, 1.0));
+  scene.cables.push_back(cable(at(-1.0, -1.0), {{0, -1, 0}, {1, 1, 0}}, at(1.5, 2.0), 0.05));
+  scene.cables[0].slack = 0.05;
+  scene.steps_per_frame = 4;
+  World world = make_world(scene, Method::cable);
+  run(scene, world, 480);
+  EXPECT_NEAR(world.position[1].y(), 0.694431148, 1e-8);
+  EXPECT_NEAR(world.cables[0].segments[2].rest_length, 0.7 - world.position[1].y(), 1e-9);
+}
+
 /// Ten sweeps where no cable slides; where one does, enough to converge (sim/README.md).
 TEST(Methods, SweepsMakeNoEnergy) {
   for (int seed = 1; seed <= seeds_of(60); ++seed) {

@@ -180,6 +180,27 @@ TEST(MotorLimits, StallOverAPulley) {
   }
 }
 
+// The rope cannot give but by throwing the load along its rail, which is all but level: the drum is
+// stopped instead, and the load hardly moves. One that did not stall would throw it for kilometres.
+TEST(MotorLimits, StallWhereTheyWouldThrow) {
+  for (const double mass : {0.01, 1.0}) {
+    for (const double speed : {5.0, 50.0}) {
+      Scene scene;
+      scene.bodies = {body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2, 1.0),
+                      body("ball", BodyKind::free, 1.0, -1.0, 0.05, mass),
+                      body("load", BodyKind::rail, -0.22, -2.0, 0.05, mass)};
+      scene.bodies[0].driven_angular_velocity = -speed;
+      scene.bodies[2].rail_axis = Vec2(1.0, 0.02).normalized();
+      scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(1), 0.02));
+      World world = make_world(scene, Method::pinch);
+      run(scene, world, 120);
+      EXPECT_LT((world.position[1] - scene.bodies[1].position).norm(), 1.0) << mass << ' ' << speed;
+      EXPECT_LT((world.position[2] - scene.bodies[2].position).norm(), 1.0) << mass << ' ' << speed;
+      EXPECT_LT(most_stretched(world), 1e-9) << mass << ' ' << speed;
+    }
+  }
+}
+
 // Sweeps know neither groups of sliding segments nor what contradicts a motor: they hold it.
 // However slow: what a weight gains by falling for a step is no speed that the motor gives.
 TEST(MotorLimits, SlowMotorsHoldWhatHangs) {

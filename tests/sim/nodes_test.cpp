@@ -354,6 +354,21 @@ TEST(Nodes, AreChosenForAllCablesAtOnceAsForEach) {
   }
 }
 
+// Where nodes adapt an end carries half of a piece at its centre, which adds to its mass, and not
+// to its inertia: that of a disc would follow its mass.
+TEST(Nodes, WhatAnEndCarriesLeavesItsInertia) {
+  Scene scene;
+  scene.bodies.push_back(body("end", BodyKind::free, 1.0, 0.0, 0.1, 0.4));
+  scene.cables.push_back(cable(at(0.0, 0.0), {}, on(0), 0.005));
+  scene.cables[0].slack = 0.1;
+  scene.cables[0].mass_per_metre = 2.0;
+  scene.cables[0].nodes = 7;
+  scene.cables[0].node_tolerance = 0.01;
+  spread_nodes(scene);
+  EXPECT_NEAR(scene.bodies[0].mass, 0.4 + 2.2 / 16.0, 1e-12);
+  EXPECT_DOUBLE_EQ(inertia_of(scene.bodies[0]), 0.5 * 0.4 * 0.1 * 0.1);
+}
+
 // The end's default: nodes within the disc are never clear of it.
 TEST(Nodes, AWeightIsHeldAtItsCentre) {
   for (const double slack : {0.0, 0.02}) {
