@@ -69,6 +69,16 @@ TEST(SignFlip, MonteCarloAgreesWithTheNormalLimit) {
   EXPECT_NEAR(flip.p.value, normal, 4.0 * std::sqrt(normal * (1.0 - normal) / 99999.0) + 1e-3);
 }
 
+// Distinct sizes out of reach of the exact sum, all of one sign: no flip of 99999 comes as far, and
+// p is that of the sample itself, one in 100000, never 0.
+TEST(SignFlip, MonteCarloIsNeverCertain) {
+  std::vector<std::int64_t> scores;
+  for (std::int64_t i = 0; i < 60; ++i) scores.push_back(1000003 * (i + 1) + i * i);
+  const SignFlip flip = sign_flip_test(scores, RandomUse::sign_flip, 1);
+  EXPECT_FALSE(flip.exact);
+  EXPECT_DOUBLE_EQ(flip.p.value, 1e-5);
+}
+
 TEST(Pooled, SwappingTheMethodsChangesNoPValue) {
   const AnswersTable table = test::clustered_table();
   AnswersTable swapped = table;

@@ -155,6 +155,23 @@ TEST(Fit, SameSeedSameNumbersAndGoodnessOfFit) {
   EXPECT_LE(fit_psychometric({}, zigzag, {.resamples = 199}).p_deviance.value, 0.01);
 }
 
+// Of 39 resamples alpha / 2 leaves the (40 alpha / 2)-th of either end in, and never none: at 0.05,
+// and at less, the bounds are the smallest and the largest.
+TEST(Fit, BootstrapBoundsAreOrderedResamples) {
+  const auto bounds_at = [](double alpha) {
+    const PsychometricFit fit =
+        fit_psychometric({}, example(), {.alpha = alpha, .resamples = 39, .seed = 3});
+    return std::pair(fit.bootstrap_threshold_low.value, fit.bootstrap_threshold_high.value);
+  };
+  const auto [low, high] = bounds_at(0.05);
+  EXPECT_EQ(bounds_at(0.049), std::pair(low, high));
+  EXPECT_EQ(bounds_at(0.01), std::pair(low, high));
+  const auto [second, last_but_one] = bounds_at(0.1);
+  EXPECT_GT(second, low);
+  EXPECT_LT(last_but_one, high);
+  EXPECT_EQ(bounds_at(0.149), std::pair(second, last_but_one));
+}
+
 TEST(Fit, ThresholdMayStandAtAnotherHeight) {
   PsychometricModel model;
   const PsychometricFit half = fit_psychometric(model, example(), {.resamples = 0});

@@ -174,5 +174,37 @@ TEST(SideBias, IsFoundWhereThereIsOne) {
   EXPECT_LT(bias.p_sign_flip.value, 0.005);
 }
 
+// A demonstration with one answer tells nothing of sides, and has no variance, not 0 / 0.
+TEST(SideBias, ADemonstrationOfOneAnswerCountsNothing) {
+  AnswersTable table = sides({{9, 4, 1, 6}, {7, 8, 3, 2}});
+  const SideBias without = side_bias(table, 1);
+  table.demonstrations.emplace_back("2");
+  table.answers.push_back(table.answers.back());
+  table.answers.back().demonstration = 2;
+  const SideBias with = side_bias(table, 1);
+  EXPECT_EQ(with.chosen.total(), without.chosen.total() + 1);
+  EXPECT_GT(with.chi_square.value, 0.0);
+  EXPECT_EQ(with.chi_square.value, without.chi_square.value);
+  EXPECT_EQ(with.bias.value, without.bias.value);
+}
+
+// Answers whose position was not recorded are in no order, least of all in that of the file.
+TEST(OrderEffect, IsNoneWhereNoPositionWasRecorded) {
+  AnswersTable table = sides({{9, 4, 1, 6}, {7, 8, 3, 2}});
+  for (Answer& answer : table.answers) ASSERT_EQ(answer.position, 0);
+  const OrderEffect none = order_effect(table, 1);
+  EXPECT_TRUE(none.by_position.empty());
+  EXPECT_FALSE(none.chi_square);
+  EXPECT_FALSE(none.p_sign_flip);
+  // Of those that were recorded the others take no place.
+  for (Answer& answer : table.answers) {
+    answer.position = static_cast<std::uint16_t>(answer.demonstration == 0 ? 0 : 7);
+  }
+  const OrderEffect some = order_effect(table, 1);
+  ASSERT_EQ(some.by_position.size(), 1U);
+  EXPECT_EQ(some.by_position[0].pinch, 15);
+  EXPECT_EQ(some.by_position[0].cable, 5);
+}
+
 }  // namespace
 }  // namespace pinchlab::analysis
