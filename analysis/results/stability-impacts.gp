@@ -24,11 +24,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 256 ? 256 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [0.7692307692307692:332.8]
 set format x '%g'
@@ -39,7 +39,7 @@ set label 11 'thesis' at screen 0.0868, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.1222, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0270
 set rmargin at screen 0.1573
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'equal discs on a taut span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -47,9 +47,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.1666
 set rmargin at screen 0.2969
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'unequal discs on a taut span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -61,7 +64,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unequal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.3062
 set rmargin at screen 0.4365
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'equal discs on a slack span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -71,7 +74,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'equal discs on a slack span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.4458
 set rmargin at screen 0.5761
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'unequal discs on a slack span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -81,7 +84,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unequal discs on a slack span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.5854
 set rmargin at screen 0.7157
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'load into three cables' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -91,7 +94,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'load into three cables' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.7250
 set rmargin at screen 0.8553
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'ball on a span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -101,7 +104,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'ball on a span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.8646
 set rmargin at screen 0.9949
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'Newton''s cradle' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -136,11 +139,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 256 ? 256 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [0.7692307692307692:332.8]
 set format x '%g'
@@ -151,7 +154,7 @@ set label 11 'thesis' at screen 0.0868, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.1222, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0270
 set rmargin at screen 0.1573
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'equal discs on a taut span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -159,9 +162,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'equal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.1666
 set rmargin at screen 0.2969
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'unequal discs on a taut span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -173,7 +179,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unequal discs on a taut span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.3062
 set rmargin at screen 0.4365
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'equal discs on a slack span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -183,7 +189,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'equal discs on a slack span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.4458
 set rmargin at screen 0.5761
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'unequal discs on a slack span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -193,7 +199,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'unequal discs on a slack span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.5854
 set rmargin at screen 0.7157
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'load into three cables' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -203,7 +209,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'load into three cables' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.7250
 set rmargin at screen 0.8553
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'ball on a span' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced
@@ -213,7 +219,7 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-impacts.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'ball on a span' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
 set lmargin at screen 0.8646
 set rmargin at screen 0.9949
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'Newton''s cradle' noenhanced offset 0,-0.6
 set xlabel 'steps a frame' noenhanced

@@ -24,11 +24,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 10 ? 10 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set xrange [0.73:10.27]
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
@@ -38,7 +38,7 @@ set label 12 'pinch joints without contact rows' at screen 0.4006, screen 0.9588
 set label 13 'plain cable joints' at screen 0.8149, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.4876
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'zig-zag' noenhanced offset 0,-0.6
 set xlabel 'rollers on top of one another' noenhanced
@@ -47,9 +47,13 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'pinch_no_contact' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 4 notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
+unset label 13
 set lmargin at screen 0.5843
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 unset object
 unset label
@@ -96,11 +100,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 10 ? 10 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set xrange [0.73:10.27]
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
@@ -110,7 +114,7 @@ set label 12 'pinch joints without contact rows' at screen 0.4006, screen 0.9588
 set label 13 'plain cable joints' at screen 0.8149, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.4876
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'zig-zag' noenhanced offset 0,-0.6
 set xlabel 'rollers on top of one another' noenhanced
@@ -119,9 +123,13 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'pinch_no_contact' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 4 notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-jitter.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'zig-zag' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
+unset label 13
 set lmargin at screen 0.5843
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 unset object
 unset label

@@ -24,14 +24,14 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 1001 ? 1001 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [0.7692307692307692:1301.3]
-set format x '%g'
+set format x '10^{%L}'
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
 set label 10 'ours (pinch)' at screen 0.1022, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
@@ -39,7 +39,7 @@ set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.5207
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title '1000 kg and 999 kg' noenhanced offset 0,-0.6
 set xlabel 'pulleys' noenhanced
@@ -47,9 +47,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.5511
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title '2 kg and 1 kg' noenhanced offset 0,-0.6
 set xlabel 'pulleys' noenhanced
@@ -86,14 +89,14 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 1 ? 1 : x > 1001 ? 1001 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [0.7692307692307692:1301.3]
-set format x '%g'
+set format x '10^{%L}'
 set ylabel 'worst measure / its limit' offset 1,0
 unset key
 set label 10 'ours (pinch)' at screen 0.1022, screen 0.9588 left noenhanced point ls 1 offset 0.8,0
@@ -101,7 +104,7 @@ set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.5207
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title '1000 kg and 999 kg' noenhanced offset 0,-0.6
 set xlabel 'pulleys' noenhanced
@@ -109,9 +112,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-pulleys.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq '1000 kg and 999 kg' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.5511
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title '2 kg and 1 kg' noenhanced offset 0,-0.6
 set xlabel 'pulleys' noenhanced

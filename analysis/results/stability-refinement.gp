@@ -24,11 +24,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 0.0001 ? 0.0001 : x > 0.01 ? 0.01 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [7.692307692307693e-05:0.013000000000000001]
 set format x '%g'
@@ -39,7 +39,7 @@ set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.5207
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'blown cable' noenhanced offset 0,-0.6
 set xlabel 'tolerance in m' noenhanced
@@ -47,9 +47,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.5511
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'folded chain' noenhanced offset 0,-0.6
 set xlabel 'tolerance in m' noenhanced
@@ -86,11 +89,11 @@ shown(s) = s > 100000 ? 100000 : s < 1e-09 ? 1e-09 : s
 place(x) = x < 0.0001 ? 0.0001 : x > 0.01 ? 0.01 : x
 set multiplot
 set logscale y
-set yrange [3.3333333333333337e-10:300000]
+set yrange [3.3333333333333337e-10:10000000]
 set ytics 1e-9,1e3
 set format y '10^{%L}'
 set object 1 rectangle from graph 0, first 1 to graph 1, graph 1 fc rgb '#f3e3e0' fs solid noborder behind
-set label 1 'failed' at graph 0.02, graph 0.95 tc rgb '#8a4a3a'
+set label 1 'failed' at graph 0.02, graph 0.94 tc rgb '#8a4a3a'
 set logscale x
 set xrange [7.692307692307693e-05:0.013000000000000001]
 set format x '%g'
@@ -101,7 +104,7 @@ set label 11 'thesis' at screen 0.2845, screen 0.9588 left noenhanced point ls 2
 set label 12 'plain cable joints' at screen 0.4006, screen 0.9588 left noenhanced point ls 3 offset 0.8,0
 set lmargin at screen 0.0884
 set rmargin at screen 0.5207
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'blown cable' noenhanced offset 0,-0.6
 set xlabel 'tolerance in m' noenhanced
@@ -109,9 +112,12 @@ plot 1 with lines lw 1 dt 2 lc rgb '#8a4a3a' notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'cable' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 3 notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'thesis' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 2 notitle, \
   'stability-refinement.csv' using (place(column('x'))):(strcol('method') eq 'pinch' && strcol('series') eq 'blown cable' ? shown(column('severity')) : NaN) with linespoints ls 1 notitle
+unset label 10
+unset label 11
+unset label 12
 set lmargin at screen 0.5511
 set rmargin at screen 0.9834
-set bmargin at screen 0.1706
+set bmargin at screen 0.1941
 set tmargin at screen 0.8412
 set title 'folded chain' noenhanced offset 0,-0.6
 set xlabel 'tolerance in m' noenhanced

@@ -35,7 +35,7 @@ set xlabel 'frames a second'
 set ylabel 'steps a frame'
 set lmargin at screen 0.0607
 set rmargin at screen 0.3561
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'ours (pinch)' offset 0,-0.6
@@ -43,7 +43,7 @@ plot 'stability-steps-map.csv' using (strcol('method') eq 'pinch' ? (column('x')
   '' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle
 set lmargin at screen 0.3770
 set rmargin at screen 0.6724
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'thesis' offset 0,-0.6
@@ -53,7 +53,7 @@ plot 'stability-steps-map.csv' using (strcol('method') eq 'thesis' ? (column('x'
   '' using (strcol('method') eq 'thesis' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle
 set lmargin at screen 0.6932
 set rmargin at screen 0.9886
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'plain cable joints' offset 0,-0.6
@@ -97,7 +97,7 @@ set xlabel 'frames a second'
 set ylabel 'steps a frame'
 set lmargin at screen 0.0607
 set rmargin at screen 0.3561
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'ours (pinch)' offset 0,-0.6
@@ -105,7 +105,7 @@ plot 'stability-steps-map.csv' using (strcol('method') eq 'pinch' ? (column('x')
   '' using (strcol('method') eq 'pinch' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle
 set lmargin at screen 0.3770
 set rmargin at screen 0.6724
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'thesis' offset 0,-0.6
@@ -115,7 +115,7 @@ plot 'stability-steps-map.csv' using (strcol('method') eq 'thesis' ? (column('x'
   '' using (strcol('method') eq 'thesis' ? (column('x') == 15 ? 0 : column('x') == 20 ? 1 : column('x') == 24 ? 2 : column('x') == 30 ? 3 : column('x') == 60 ? 4 : column('x') == 120 ? 5 : NaN) : NaN):(column('y') == 1 ? 0 : column('y') == 2 ? 1 : column('y') == 4 ? 2 : column('y') == 8 ? 3 : column('y') == 16 ? 4 : NaN):(label(column('severity'))) with labels font ',10' notitle
 set lmargin at screen 0.6932
 set rmargin at screen 0.9886
-set bmargin at screen 0.1758
+set bmargin at screen 0.2000
 set tmargin at screen 0.9091
 unset arrow
 set title 'plain cable joints' offset 0,-0.6
