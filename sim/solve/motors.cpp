@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+
+#include "sim/trees.h"
 
 namespace pinchlab {
 
@@ -28,31 +31,79 @@ double impulse_of_rows(const PartSystem& s, int place) {
   return sum;
 }
 
-/// How fast inextensible cables of the part are being stretched at most (m/s).
-double stretching(const PartSystem& s, const SolveScratch& set) {
+/// Joins a part's rows, and the places after them, to sets that hang together: by rows that bear
+/// force, or would have to, on what can move, and by cables that slide over what cannot.
+void join_rows(const PartSystem& s, SolveScratch& set) {
+  const int rows = static_cast<int>(s.rows.size());
+  std::vector<int>& root = set.root_of_row;
+  root.resize(s.rows.size() + s.mobility.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto joins = [&s](int r) {
+    const Row& row = at(s.rows, r);
+    return !row.idle && (row.on || row.impulse != 0.0 || row.speed < 0.0);
+  };
+  const auto join_to = [&](int r, int place) {
+    if (joins(r) && at(s.mobile, place)) join(root, r, rows + place);
+  };
+  for (int r = 0; r < rows; ++r) {
+    join_to(r, at(s.bodies, r).a);
+    join_to(r, at(s.bodies, r).b);
+  }
+  for (const ThirdBody& third : s.thirds) join_to(third.row, third.place);
+  if (set.capstan.runs.empty()) return;
+  for (const Group& group : set.capstan.groups) {
+    for (int m = group.begin + 1; m < group.end; ++m) {
+      join(root, at(set.capstan.members, m), at(set.capstan.members, m - 1));
+    }
+  }
+}
+
+/// Marks, of what join_rows has joined, the sets that pull at a body.
+void find_pulling(const PartSystem& s, int place, SolveScratch& set) {
+  std::vector<int>& root = set.root_of_row;
+  std::vector<char>& pulling = set.pulling;
+  pulling.assign(root.size(), 0);
+  const auto mark = [&](std::size_t r) { at(pulling, find_root(root, static_cast<int>(r))) = 1; };
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    if (s.bodies[r].a == place || s.bodies[r].b == place) mark(r);
+  }
+  for (const ThirdBody& third : s.thirds) {
+    if (third.place == place) mark(index(third.row));
+  }
+  for (std::size_t i = 0; i < root.size(); ++i) {
+    pulling[i] = at(pulling, find_root(root, static_cast<int>(i)));
+  }
+}
+
+/// How fast inextensible cables of the part are being stretched at most (m/s), by rows that count.
+template <class Counts>
+double stretching(const PartSystem& s, const SolveScratch& set, Counts counts) {
   const CapstanScratch& capstan = set.capstan;
   double most = 0.0;
   for (int r = 0; r < s.first_contact_row; ++r) {
     const Row& row = at(s.rows, r);
-    if (row.kind != RowKind::segment || row.idle || row.compliance > 0.0) continue;
+    if (row.kind != RowKind::segment || row.idle || row.compliance > 0.0 || !counts(r)) continue;
     const bool grouped = !capstan.runs.empty() && capstan.group_of_row[index(r)] >= 0;
     if (!grouped) most = std::max(most, -row.speed);
   }
   if (capstan.runs.empty()) return most;
   for (const Group& group : capstan.groups) {
+    if (!counts(at(capstan.members, group.begin))) continue;
     const Shortage shortage = shortage_of(group, s, capstan);
     if (shortage.clearance <= set.reach) most = std::max(most, shortage.speed);
   }
   return most;
 }
 
-/// The speed that all of the part's moving bodies would have with the energy of motion that rows
-/// have given them (m/s); what they have taken counts against it.
-double speed_given(const World& world, std::span<const int> bodies, const PartSystem& s) {
+/// The speed that all of the part's moving bodies that count would have with the energy of motion
+/// that rows have given them (m/s); what they have taken counts against it.
+template <class Counts>
+double speed_given(const World& world, std::span<const int> bodies, const PartSystem& s,
+                   Counts counts) {
   double energy = 0.0, mass = 0.0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const BodyProperties& body = at(world.bodies, bodies[i]);
-    if (!can_move(body)) continue;
+    if (!can_move(body) || !counts(static_cast<int>(i))) continue;
     energy += body.mass *
               (s.velocity[i].head<2>().squaredNorm() - s.unconstrained[i].head<2>().squaredNorm());
     mass += body.mass;
@@ -60,25 +111,35 @@ double speed_given(const World& world, std::span<const int> bodies, const PartSy
   return energy > 0.0 ? std::sqrt(energy / mass) : 0.0;
 }
 
-/// Lets motors without a limit stall where all else that could give is a cable's stretch, or a body
-/// that it would throw; whether any has changed. One whose stalling leaves most of the stretch has
-/// nothing to do with it, and insists.
+/// Lets motors without a limit stall where all else that could give is a stretch of the cables that
+/// pull at their bodies, or a body there that they would throw; whether any has changed. One whose
+/// stalling leaves most of the stretch has nothing to do with it, and insists.
 bool stall(const World& world, const Parts& parts, const Part& part, PartSystem& s,
-           const SolveScratch& set) {
+           SolveScratch& set) {
   constexpr double most = 0.5;
   const std::span<const int> bodies = bodies_of(parts, part);
-  bool changed = false;
+  const auto all = [](int) { return true; };
+  const double any_stretched = stretching(s, set, all);
+  const double any_given = speed_given(world, bodies, s, all);
+  bool changed = false, joined = false;
   for (Motor& motor : s.motors) {
     const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
     if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
-    const double stretched = stretching(s, set);
+    if (any_stretched <= contradicting * rim && any_given <= thrown * rim) continue;
+    if (!joined) join_rows(s, set);
+    joined = true;
+    find_pulling(s, motor.place, set);
+    const auto of_row = [&set](int r) { return at(set.pulling, r) != 0; };
+    const auto of_place = [&](int place) { return set.pulling[s.rows.size() + index(place)] != 0; };
+    const double stretched = stretching(s, set, of_row);
     if (motor.state == MotorState::stalls) {
       if (motor.threw || stretched <= contradicting * rim || stretched < most * motor.stretched) {
         continue;  // it has helped, or insisting would throw again
       }
       motor.state = MotorState::insists;
     } else {
-      motor.threw = speed_given(world, bodies, s) > thrown * rim;
+      motor.threw =
+          any_given > thrown * rim && speed_given(world, bodies, s, of_place) > thrown * rim;
       if (!motor.threw && stretched <= contradicting * rim) continue;
       motor.stretched = stretched;
       motor.state = MotorState::stalls;
@@ -175,7 +236,7 @@ bool stall_all(PartSystem& s) {
 }
 
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& s,
-                   const SolveScratch& set) {
+                   SolveScratch& set) {
   const bool changed = change_limited_motors(s);
   // What sweeps leave of a row is no contradiction.
   const bool direct = world.configuration.solver == Solver::direct;

@@ -37,11 +37,11 @@ void drive(PartSystem& system);
 /// that gives all it can holds its speed where it would turn faster.
 bool change_limited_motors(PartSystem& system);
 
-/// The same for all motors. Where cables of the part that cannot give contradict a motor without a
-/// limit, or could only give by throwing a body, it stalls: it leaves its body to the cables for
-/// this kick, unless that does not help and it threw nothing.
+/// The same for all motors. Where cables that pull at its body cannot give and contradict a motor
+/// without a limit, or could only give by throwing a body, it stalls: it leaves its body to the
+/// cables for this kick, unless that does not help and it threw nothing.
 bool change_motors(const World& world, const Parts& parts, const Part& part, PartSystem& system,
-                   const SolveScratch& scratch);
+                   SolveScratch& scratch);
 
 /// Lets all motors that hold a speed leave their bodies to the rows; whether there are any.
 bool stall_all(PartSystem& system);

@@ -123,6 +123,8 @@ struct SolveScratch {
   OrderScratch ordering;
   DualScratch dual;
   ComplementaryScratch complementary;
+  std::vector<int> root_of_row;     // rows, then places: disjoint sets, by join_rows (motors.cpp)
+  std::vector<char> pulling;        // of them, at a motor's body; by find_pulling
   std::vector<double> bounds;       // of frictions, before they are made anew; by bounds_stand
   std::vector<double> repaired_by;  // kg m, of the rows in a repair so far; by repair
 };

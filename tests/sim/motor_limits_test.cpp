@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "sim/scene_error.h"
@@ -176,6 +177,54 @@ TEST(MotorLimits, StallOverAPulley) {
       for (int i = 0; i < 240; ++i) ASSERT_EQ(step(scene, world, work), StepStatus::ok);
       EXPECT_NEAR(world.angle[0], 0.0, 1e-3) << friction;
       EXPECT_LT(most_stretched(world), 1e-6) << friction;
+    }
+  }
+}
+
+/// Drums that contradict each other by a belt, or by a rope that slides over a smooth peg, and a
+/// third that lowers a load, which only a slack rope ties to the second of them.
+Scene contradicting_drums(bool by_belt, const std::array<int, 3>& drums) {
+  Scene scene;
+  scene.bodies.resize(3);
+  const auto [a, b, winch] = drums;
+  const auto add = [&scene](int number, double x, double speed) {
+    Body& drum = scene.bodies[index(number)];
+    drum = body(fmt::format("drum {}", x), BodyKind::fixed_axle, x, 0.0, 0.2, 1.0);
+    drum.driven_angular_velocity = speed;
+  };
+  add(a, 0.0, 1.0);
+  add(b, 2.0, -2.0);
+  add(winch, 5.0, 1.5);
+  scene.bodies.push_back(body("load", BodyKind::free, 4.78, -3.0, 0.1, 2.0));
+  scene.bodies.push_back(body("peg", BodyKind::fixed, 1.0, 1.0, 0.2, 1.0));
+  scene.bodies[4].cable_friction = 0.0;
+  Cable belt = cable({a, {-0.22, 0.0}}, {{a, -1, 0}, {4, -1, 0}, {b, -1, 0}}, {b, {0.22, 0.0}});
+  if (by_belt) belt = Cable();
+  belt.closed = by_belt;
+  if (by_belt) belt.wraps = {{a, 1, 0}, {b, 1, 0}};
+  scene.cables = {belt, cable(on(3), {{winch, -1, 2}}, {winch, {0.22, 0.0}}),
+                  cable(on(3), {{b, 1, 0}}, {b, {-0.22, 0.0}})};
+  scene.cables[2].slack = 3.0;
+  for (const int c : {0, 1, 2}) {
+    scene.cables[index(c)].half_width = 0.02;
+    scene.cables[index(c)].name = fmt::format("cable {}", c);
+  }
+  return scene;
+}
+
+// The third goes on. It stalled with the others, as all of a part did, and dropped its load.
+TEST(MotorLimits, OnlyThoseStallThatContradictEachOther) {
+  for (const bool by_belt : {true, false}) {
+    for (const std::array<int, 3>& drums : {std::array{0, 1, 2}, std::array{1, 2, 0}}) {
+      World world = make_world(contradicting_drums(by_belt, drums), Method::pinch);
+      run(contradicting_drums(by_belt, drums), world, 120);
+      const auto [a, b, winch] = drums;
+      EXPECT_NEAR(world.angle[index(winch)], 0.75, 1e-12) << by_belt;
+      EXPECT_NEAR(world.position[3].y(), -3.0 - 0.22 * 0.75, 1e-12) << by_belt;
+      // Equal drums, at 1 and -2 rad/s to begin with, share what they have.
+      EXPECT_NEAR(world.angle[index(a)], -0.25, 1e-9) << by_belt;
+      EXPECT_NEAR(world.angle[index(b)], -0.25, 1e-9) << by_belt;
+      EXPECT_LT(most_stretched(world), 1e-12) << by_belt;
     }
   }
 }
