@@ -64,8 +64,9 @@ void join_bodies(const World& world, std::vector<int>& root) {
     }
   }
   for (const Contact& contact : world.contacts) {
-    if (contact.slipping_cable >= 0) {
-      const int moved = body_of_cable(world, at(world.cables, contact.slipping_cable));
+    for (const int pressed : {contact.slipping_cable, contact.layers_cable}) {
+      if (pressed < 0) continue;
+      const int moved = body_of_cable(world, at(world.cables, pressed));
       const int presser = body_of_contact(world, contact);
       if (moved >= 0 && !is_static(at(world.bodies, presser))) join(root, moved, presser);
     }

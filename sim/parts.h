@@ -52,12 +52,16 @@ inline bool is_idle(const Part& part) {
   return part.asleep || part.waits;
 }
 
-/// What a contact joins into one part: its bodies, and a cable that may slip where it is pressed.
+/// What a contact joins into one part: its bodies, and cables that may slip where they are pressed,
+/// or whose spans turn where their layers are.
 struct Joined {
-  int a, b, cable;
+  int a, b, slipping, layers;
 
   explicit Joined(const Contact& contact)
-      : a(contact.a), b(contact.b), cable(contact.slipping_cable) {}
+      : a(contact.a),
+        b(contact.b),
+        slipping(contact.slipping_cable),
+        layers(contact.layers_cable) {}
   bool operator==(const Joined&) const = default;
 };
 

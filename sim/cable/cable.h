@@ -171,13 +171,18 @@ inline bool holds_span(const World& world, const CableState& cable, const Link& 
 /// +1 or -1 where a link is on the drum in layers that holds the cable's start or end; or 0.
 int way_of_layers(const CableState& cable, std::size_t link);
 
-/// The drum's link whose layers a contact presses (Contact::layers_cable): next to one of the ends.
-inline const Link& pressed_layers(const World& world, const Contact& contact) {
+/// The number of the drum's link whose layers a contact presses (Contact::layers_cable): next to
+/// one of the cable's ends.
+inline int number_of_pressed_layers(const World& world, const Contact& contact) {
   const std::vector<Link>& links = at(world.cables, contact.layers_cable).links;
   const Link& first = links[1];
   const bool is_first =
       first.layers.way > 0 && (first.body == contact.a || first.body == contact.b);
-  return is_first ? first : links[links.size() - 2];
+  return is_first ? 1 : static_cast<int>(links.size()) - 2;
+}
+
+inline const Link& pressed_layers(const World& world, const Contact& contact) {
+  return at(at(world.cables, contact.layers_cable).links, number_of_pressed_layers(world, contact));
 }
 
 /// The least gap of a contact as its layers now lie (m).

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/solve/contact_bodies.h"
 
+#include <algorithm>
+
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
@@ -14,12 +16,6 @@ namespace pinchlab {
 
 namespace {
 
-/// The radius (m) of the layers that a contact presses, `later` s from now.
-double radius_of_layers(const World& world, const Link& drum, double later) {
-  const double turning = at(world.angular_velocity, drum.body);
-  return drum.radius - later * drum.layers.way * drum.orientation * drum.layers.growth * turning;
-}
-
 /// What the row of a contact with a piece sees of an end of it, of which it has that share, where
 /// the force along `e` acts `off` (m) to the right of the piece's line.
 Eigen::Vector3d sight_of_end(const World& world, const Link& end, const Vec2& e, double off,
@@ -29,6 +25,66 @@ Eigen::Vector3d sight_of_end(const World& world, const Link& end, const Vec2& e,
   const double lever =
       is_node ? off : cross(link_centre(world, end) - pivot_of(world, end.body), e);
   return share * Eigen::Vector3d(e.x(), e.y(), lever);
+}
+
+/// The span that leaves a drum's layers, from one link of its cable to the next, and what turns it.
+///
+/// It is a tangent of its ends' circles, left(e) . (c_b - c_a) = p_b - p_a with e = (cos alpha, sin
+/// alpha), and the signed radius of what fills changes by p' = slope (alpha' - om), so that
+///     length alpha' = left(e) . (c_b' - c_a') - slope_a om_a + slope_b om_b,
+///     length = L - slope_a + slope_b.
+/// By that the radius of a drum in layers changes, R' = way orientation growth (alpha' - om).
+struct LeavingSpan {
+  int from = -1, to = -1;
+  double slope_a = 0.0, slope_b = 0.0;  // m/rad
+  double length = 0.0;                  // m
+  Vec2 across = Vec2::Zero();           // left(e)
+};
+
+LeavingSpan leaving_span(const CableState& cable, int drum) {
+  LeavingSpan span;
+  const int after = next_link(cable, drum);
+  span.to = at(cable.links, drum).layers.way > 0 ? after : drum;
+  span.from = previous_link(cable, span.to);
+  const Layers &a = at(cable.links, span.from).layers, &b = at(cable.links, span.to).layers;
+  if (a.way > 0) span.slope_a = a.growth;
+  if (b.way < 0) span.slope_b = -b.growth;
+  const Segment& segment = at(cable.segments, span.to);
+  // As of ropes with mass (mass.cpp): what is shorter has no room for a turn more or less.
+  span.length = std::max(segment.length + span.slope_b - span.slope_a, 0.5 * segment.length);
+  span.across = left(segment.direction);
+  return span;
+}
+
+/// m/rad, of the radius of a drum in layers.
+double growth_of(const Link& drum) {
+  return drum.layers.way * drum.orientation * drum.layers.growth;
+}
+
+double turning_of(const World& world, const Link& link) {
+  return link.body >= 0 ? at(world.angular_velocity, link.body) : 0.0;
+}
+
+/// The radius (m) of the layers that a contact presses, `later` s from now.
+double radius_of_layers(const World& world, const Contact& contact, double later) {
+  const CableState& cable = at(world.cables, contact.layers_cable);
+  const int number = number_of_pressed_layers(world, contact);
+  const Link& drum = at(cable.links, number);
+  const LeavingSpan span = leaving_span(cable, number);
+  double turning = 0.0;  // rad/s, of the span
+  if (span.length > 0.0) {
+    const Link &from = at(cable.links, span.from), &to = at(cable.links, span.to);
+    turning = (span.across.dot(velocity_of(world, to) - velocity_of(world, from)) +
+               span.slope_b * turning_of(world, to) - span.slope_a * turning_of(world, from)) /
+              span.length;
+  }
+  return drum.radius + later * growth_of(drum) * (turning - turning_of(world, drum));
+}
+
+void set_third(PartSystem& s, int r, int place, const Eigen::Vector3d& j) {
+  at(s.rows, r).has_third = true;
+  at(s.rows, r).item = static_cast<int>(s.thirds.size());
+  s.thirds.push_back({r, place, j, Eigen::Vector3d::Zero()});
 }
 
 }  // namespace
@@ -68,7 +124,7 @@ void set_tangent_bodies(const World& world, const Contact& contact, const TimeSp
   if (contact.layers_cable >= 0) {  // at the centre line of the outermost, in the interval's middle
     const Link& drum = pressed_layers(world, contact);
     const bool is_a = drum.body == contact.a;
-    const double radius = radius_of_layers(world, drum, 0.5 * interval.length);
+    const double radius = radius_of_layers(world, contact, 0.5 * interval.length);
     const double other = radii + contact.gap - drum.radius;
     lever_a = is_a ? radius : other;
     lever_b = is_a ? other : radius;
@@ -130,6 +186,38 @@ double change_of_sliding(const World& world, const Contact& contact, double leng
   return 0.5 * length * contact.normal.dot(sweep);
 }
 
+void add_growth_of_layers(const World& world, const Parts& parts, const Contact& contact,
+                          PartSystem& s, int r) {
+  const CableState& cable = at(world.cables, contact.layers_cable);
+  const int number = number_of_pressed_layers(world, contact);
+  const Link& drum = at(cable.links, number);
+  const auto add = [&](int body, const Eigen::Vector3d& j) {
+    const int place = place_of(parts, s, body);
+    if (place == s.ground()) return;
+    RowBodies& bodies = at(s.bodies, r);
+    if (place == bodies.a) {
+      bodies.ja += j;
+    } else if (place == bodies.b) {
+      bodies.jb += j;
+    } else {
+      set_third(s, r, place, j);
+    }
+  };
+  const double growth = growth_of(drum);
+  add(drum.body, {0.0, 0.0, growth});
+  const LeavingSpan span = leaving_span(cable, number);
+  if (!(span.length > 0.0)) return;
+  const double share = -growth / span.length;
+  const auto add_end = [&](int link, double sign, double slope) {
+    const Link& end = at(cable.links, link);
+    Eigen::Vector3d j = sight_of_end(world, end, span.across, 0.0, sign * share);
+    j.z() += share * slope;
+    add(end.body, j);
+  };
+  add_end(span.from, -1.0, -span.slope_a);
+  add_end(span.to, 1.0, span.slope_b);
+}
+
 void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,
                          PartSystem& s, int r) {
   const Foot foot = foot_of(world, contact);
@@ -153,9 +241,7 @@ void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& 
   bodies.jb = at_tail == s.ground() ? of_head : of_tail;
   if (at_tail == at_head) bodies.jb = of_tail + of_head;
   if (!is_one && at_tail != s.ground()) {
-    at(s.rows, r).has_third = true;
-    at(s.rows, r).item = static_cast<int>(s.thirds.size());
-    s.thirds.push_back({r, at_head, of_head, Eigen::Vector3d::Zero()});
+    set_third(s, r, at_head, of_head);
   }
   at(s.responses, r).a = bodies.a;
   at(s.responses, r).b = bodies.b;

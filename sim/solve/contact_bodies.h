@@ -25,6 +25,11 @@ void set_tangent_bodies(const World& world, const Contact& contact, const TimeSp
 /// as the point where they meet moves along an outline that turns. 0 of circles.
 double change_of_sliding(const World& world, const Contact& contact, double length);
 
+/// What a drum that winds does to what lies on its layers, by the row of that contact's normal: it
+/// lifts it, and bears the work; so does what turns the span that leaves, the third body.
+void add_growth_of_layers(const World& world, const Parts& parts, const Contact& contact,
+                          PartSystem& s, int r);
+
 /// The three bodies of the row of a contact with a piece: across it, or with `along` of friction,
 /// whose forces both act at one point, as those of other contacts do.
 void set_bodies_at_piece(const World& world, const Parts& parts, const Contact& contact, bool along,

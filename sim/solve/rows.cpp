@@ -164,12 +164,6 @@ void set_normal_row(const Scene& scene, const World& world, const Contact& conta
   } else {
     add_seats(world, contact, bodies);
   }
-  if (contact.layers_cable >= 0 && contact.target > 0.0) {
-    // A drum that winds lifts what lies on it, and bears the work.
-    const Link& drum = pressed_layers(world, contact);
-    Eigen::Vector3d& j = drum.body == contact.a ? bodies.ja : bodies.jb;
-    j.z() += drum.layers.way * drum.orientation * drum.layers.growth;
-  }
   const double clearance = contact.gap - target_of(world, contact);
   set_clearance(clearance, interval, row);
   // Where events are not located contacts bar half a plane: of a point, what only passes it too.
@@ -260,6 +254,8 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
   if (contact.touch == Touch::piece) {
     set_bodies_at_piece(world, parts, contact, false, s, normal);
+  } else if (contact.layers_cable >= 0 && contact.target > 0.0) {
+    add_growth_of_layers(world, parts, contact, s, normal);
   }
   weigh(s, normal);
   const double mu = coefficient_of(world, contact);
