@@ -57,6 +57,7 @@ SweepRow sweep_row(const PartSystem& system, std::size_t number) {
   }
   r.bias = steered_bias(row);
   r.compliance = row.compliance;
+  r.third = row.has_third ? row.item : -1;
   r.stiffness = row.diagonal > 0.0 ? row.diagonal + row.compliance : 0.0;
   r.impulse = 0.0;
   return r;
@@ -83,14 +84,22 @@ void load(const Sweep& s) {
 }
 
 double speed(const Sweep& s, const SweepRow& row) {
-  return row.ja.dot(at(s.system.velocity, row.a)) + row.jb.dot(at(s.system.velocity, row.b)) +
-         row.bias + row.compliance * row.impulse;
+  const double of_two = row.ja.dot(at(s.system.velocity, row.a)) +
+                        row.jb.dot(at(s.system.velocity, row.b)) + row.bias +
+                        row.compliance * row.impulse;
+  if (row.third < 0) return of_two;
+  const ThirdBody& third = at(s.system.thirds, row.third);
+  return of_two + third.j.dot(at(s.system.velocity, third.place));
 }
 
 void set_impulse(const Sweep& s, SweepRow& row, double impulse) {
   const double change = impulse - row.impulse;
   at(s.system.velocity, row.a) += change * row.response_a;
   at(s.system.velocity, row.b) += change * row.response_b;
+  if (row.third >= 0) {
+    const ThirdBody& third = at(s.system.thirds, row.third);
+    at(s.system.velocity, third.place) += change * third.response;
+  }
   row.impulse = impulse;
 }
 

@@ -17,6 +17,7 @@ enum class Clamp {
 /// A row with all that a sweep reads of it, in one piece.
 struct SweepRow {
   int a = 0, b = 0;  // places of the part's bodies
+  int third = -1;    // of PartSystem::thirds, or -1
   int other = -1;    // see Clamp
   Clamp clamp = Clamp::tension;
   bool by_run = false;  // relaxed with the body that its cable slides over
