@@ -45,13 +45,6 @@ bool bears(const SharpTip& tip, const Vec2& way_out) {
   return cross(tip.cone[0], -way_out) >= -rounding && cross(-way_out, tip.cone[1]) >= -rounding;
 }
 
-/// m/s, of a place of a body, or of the world (-1).
-Vec2 velocity_at(const World& world, int body, const Vec2& place) {
-  if (body < 0) return Vec2::Zero();
-  return at(world.velocity, body) +
-         at(world.angular_velocity, body) * left(place - at(world.position, body));
-}
-
 }  // namespace
 
 bool goes_past(const World& world, double near, Contact& contact) {
@@ -69,8 +62,7 @@ bool goes_past(const World& world, double near, Contact& contact) {
     if (std::abs(out.distance) > near || !bears(tip, way_out)) continue;
     if (contact.gap > near) return true;
     const Vec2 normal = of_a ? Vec2(-way_out) : way_out;
-    const Vec2 velocity =
-        velocity_at(world, contact.b, tip.place) - velocity_at(world, contact.a, tip.place);
+    const Vec2 velocity = relative_velocity(world, contact, tip.place);
     const double parting = velocity.dot(contact.normal);
     if (parting >= 0.0 || velocity.dot(normal) <= parting) continue;
     contact.normal = normal;

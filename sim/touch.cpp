@@ -337,9 +337,6 @@ bool ends_beyond(const Contact& contact) {
   return of_wall || is_on_side(contact);
 }
 
-namespace {
-
-/// Velocity of b, or of a wall, less that of a, at that place (m/s).
 Vec2 relative_velocity(const World& world, const Contact& contact, const Vec2& place) {
   const auto velocity = [&](int body) {
     return Vec2(at(world.velocity, body) +
@@ -348,6 +345,8 @@ Vec2 relative_velocity(const World& world, const Contact& contact, const Vec2& p
   const Vec2 of_b = contact.b >= 0 ? velocity(contact.b) : Vec2(Vec2::Zero());
   return of_b - velocity(contact.a);
 }
+
+namespace {
 
 /// Unit, from a body's corner along the side of it which a contact there of this normal is on.
 Vec2 side_from(const World& world, int body, int corner, const Vec2& normal) {

@@ -57,6 +57,9 @@ double on_straight(const World& world, const Contact& contact, const std::vector
 /// Whether its point touches nothing beyond there: of sharp corners, and of a corner and a wall.
 bool ends_beyond(const Contact& contact);
 
+/// Velocity of b, or of a wall, less that of a, at that place (m/s).
+Vec2 relative_velocity(const World& world, const Contact& contact, const Vec2& place);
+
 /// Brings a contact's gap and normal up to the bodies' present positions.
 void measure(const World& world, Contact& contact);
 

@@ -112,10 +112,11 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
 bool note_cable_between(const World& world, const CableState& cable, const Link& link,
                         Contact& contact) {
   const double least = cable.least_gap + thickness_of_layers(link);
-  if (contact.bare && locates_events(world.configuration) && contact.gap < least * (1.0 - margin)) {
-    return false;
+  if (cable.least_gap > 0.0) {
+    const bool located = locates_events(world.configuration);
+    if (contact.bare && located && contact.gap < least * (1.0 - margin)) return false;
+    contact.target = std::max(contact.target, least);
   }
-  if (cable.least_gap > 0.0) contact.target = std::max(contact.target, least);
   contact.cable_between = static_cast<int>(&cable - world.cables.data());
   return true;
 }

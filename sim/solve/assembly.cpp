@@ -100,7 +100,7 @@ bool Assembly::takes_part(int number, bool beside_run) const {
   bool gives = row.diagonal + row.compliance > 0.0;
   if (is_friction(row)) {
     const Friction& friction = at(s_.frictions, row.friction);
-    // What slides beneath it it moves by what is beyond (system.cpp).
+    // A pinch moves cable that slides beneath it by what the cable leads to (system.cpp).
     gives = gives || (friction.run >= 0 && may_slide(at(set_.capstan.runs, friction.run)));
     if (is_bounded(friction)) return gives && column_of(friction.normal) >= 0;
     return gives && row.on && friction.repeats < 0;

@@ -79,10 +79,6 @@ void balance(const PartSystem& system, SolveScratch& set, const Group& group) {
   balance(system, s, begin, group.end, entering, 0.0);
 }
 
-}  // namespace
-
-namespace {
-
 /// Lets slack cable go with the middle body of a pinch that holds it more than the wrapped one.
 void follow_middles(const PartSystem& system, CapstanScratch& s) {
   for (const Friction& friction : system.frictions) {

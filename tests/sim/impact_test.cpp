@@ -11,16 +11,6 @@
 namespace pinchlab::testing {
 namespace {
 
-World after(Scene scene, int steps_per_frame, double seconds) {
-  scene.steps_per_frame = steps_per_frame;
-  World world = make_world(scene, measured());
-  Workspace work;
-  while (world.time() < seconds - 0.5 * world.step_length) {
-    EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-  }
-  return world;
-}
-
 class AtOnce : public ::testing::TestWithParam<int> {};
 
 // Struck by one corner after the other it turned, and went off to a side.

@@ -38,22 +38,6 @@ Scene nip(double of_axle, double of_rail) {
   return scene;
 }
 
-/// Moves on to that time (s).
-void run_to(const Scene& scene, World& world, double time) {
-  Workspace work;
-  while (world.time() < time - 0.5 * world.step_length) {
-    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-  }
-  EXPECT_EQ(world.diagnostics.fallbacks, 0);
-}
-
-World after(Scene scene, int steps_per_frame, double seconds) {
-  scene.steps_per_frame = steps_per_frame;
-  World world = make_world(scene, measured());
-  run_to(scene, world, seconds);
-  return world;
-}
-
 class Nip : public ::testing::TestWithParam<int> {};
 
 // Neither a driven roller on a rail that is straight at the drum nor a drum that stands gives way

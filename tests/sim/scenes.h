@@ -39,6 +39,23 @@ inline void run(const Scene& scene, World& world, int steps) {
   }
 }
 
+/// Moves on to that time (s), never by the fallback.
+inline void run_to(const Scene& scene, World& world, double time) {
+  Workspace work;
+  while (world.time() < time - 0.5 * world.step_length) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+  }
+  EXPECT_EQ(world.diagnostics.fallbacks, 0);
+}
+
+/// The scene, by that many steps a frame, after so many seconds.
+inline World after(Scene scene, int steps_per_frame, double seconds) {
+  scene.steps_per_frame = steps_per_frame;
+  World world = make_world(scene, measured());
+  run_to(scene, world, seconds);
+  return world;
+}
+
 /// The largest of each over a run. Energies in J, lengths in m.
 struct Extremes {
   double energy_gain = -infinity;  // over that at the start
