@@ -74,7 +74,7 @@ class Composer {
         add_joint(c);
       }
     }
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_head(i);
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_ends(i);
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_arrow_shaft(i);
     for (const SceneryLabel& label : scenery_.labels) {
       picture_.add(Label{world_.position[label.body] + label.offset, scenery_.text(), label.text,
@@ -432,10 +432,11 @@ class Composer {
             scenery_.arrow_middle[i] + reach};
   }
 
-  void add_arrow_head(std::size_t i) {
+  void add_arrow_ends(std::size_t i) {
     const Arrow a = arrow(i);
     if (a.sense == 0.0) return;
     const Vec2& centre = world_.position[i];
+    picture_.add(disc(centre + a.radius * unit_vector(a.from), a.half_width, theme_.ink));
     const Vec2 radial = unit_vector(a.to), tip = centre + a.radius * radial;
     for (const double side : {-1.0, 1.0}) {
       const Vec2 barb = tip + 1.1 * scenery_.unit() * (side * radial - a.sense * left(radial));
