@@ -222,20 +222,24 @@ bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
   Assembly assembly(s, set);
   assembly.list();
   assembly.number();
-  // Pivots are about as many as unknowns, and cost the square of their number: of 200 about a
-  // tenth of a second.
+  // Pivots are about as many as unknowns, and cost the square of their number: of 200 in extended
+  // numbers about a tenth of a second.
   constexpr std::size_t most_unknowns = 200;
   if (set.complementary.kinds.size() > most_unknowns) return false;
   Complementarity& problem = set.complementary.problem;
   assembly.assemble();
   problem.yielding = yielding;
-  if (!solve_complementarity(problem)) return false;
-  // What bears then does so without yielding as well, unless it contradicts itself.
-  for (const double share : {0.0, yielding}) {
-    solve_for_bearing(problem, share);
-    if (!assembly.holds(round_off, share)) continue;
-    set.left_out = assembly.gives_way(round_off, share);
-    return true;
+  for (const Numbers numbers : {Numbers::doubles, Numbers::extended}) {
+    if (!find_bearing(problem, numbers)) continue;
+    // What bears then does so without yielding as well, unless it contradicts itself.
+    for (const double share : {0.0, yielding}) {
+      solve_for_bearing(problem, share);
+      if (!assembly.holds(round_off, share)) continue;
+      const bool gives_way = assembly.gives_way(round_off, share);
+      if (gives_way && numbers == Numbers::doubles) break;  // or only hardly bends
+      set.left_out = gives_way;
+      return true;
+    }
   }
   return false;
 }

@@ -7,8 +7,8 @@
 // and leaves by complementary pivots. If M is copositive (z'M z >= 0 for z >= 0) the method ends
 // with a solution unless z >= 0 with M z >= 0, z'M z = 0 and q'z < 0 tells that there need be none
 // (Cottle, Pang & Stone, The Linear Complementarity Problem, 1992, 4.4). Ties are resolved
-// lexicographically, so that it does not circle. Numbers are extended ones: where rows nearly
-// repeat or contradict one another doubles tell neither that they do not, nor by how much.
+// lexicographically, so that it does not circle. Pivots may be made in doubles, but where rows
+// nearly repeat or contradict one another these tell neither that they do not, nor by how much.
 
 #include <vector>
 
@@ -17,7 +17,7 @@
 
 namespace pinchlab {
 
-/// A problem and what solve_complementarity finds of it, in storage that is used again.
+/// A problem and what is found of it, in storage that is used again.
 struct Complementarity {
   int size = 0;
   std::vector<Extended> matrix;  // size x size, one row after another
@@ -25,13 +25,14 @@ struct Complementarity {
   std::vector<char> either;  // of each z: it may have either sign
   double yielding = 0.0;     // added to M's diagonal: what repeats itself shares alike
 
-  std::vector<Extended> z;
-  std::vector<char>
-      bears;  // of each z: it is one of the unknowns that solve w = 0; if it is 0 too,
-              // the problem is degenerate
+  std::vector<char> bears;  // of each z: it is one of the unknowns that solve w = 0; if it is 0
+                            // too, the problem is degenerate. By find_bearing
+  std::vector<Extended> z;  // by solve_for_bearing
   // Storage.
   std::vector<Extended> tableau;
-  std::vector<int> basis;
+  std::vector<double> rough_tableau;
+  std::vector<int> basis, outside;  // variables, of rows and of columns
+  std::vector<int> place;           // of each variable: its column, or -1
 
   /// Starts a problem of that size, of zeros.
   void begin(int count);
@@ -39,9 +40,12 @@ struct Complementarity {
   Extended& entry(int row, int column) { return matrix[index(row) * index(size) + index(column)]; }
 };
 
-/// Whether a solution is found, in `z` and `bears`. What repeats others of those that may have
+/// In which pivots are made.
+enum class Numbers { doubles, extended };
+
+/// Finds which z bear in a solution; whether it has. What repeats others of those that may have
 /// either sign stays 0. Of scaled problems: diagonals of M of about 1.
-bool solve_complementarity(Complementarity& problem);
+bool find_bearing(Complementarity& problem, Numbers numbers);
 
 /// Gives the z that bear in the solution the values that make their w zero with another `yielding`,
 /// which may contradict their signs. Values come from the matrix itself, by the greatest pivots
