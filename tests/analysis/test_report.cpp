@@ -298,6 +298,16 @@ TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   EXPECT_NE(html.find("data:image/svg+xml;base64,PHN2Zy8+"), std::string::npos);
 }
 
+TEST(Figures, SayWhatTheyHaveNoRoomFor) {
+  std::string csv = "demonstration,pinch,cable\n";
+  for (int i = 0; i < 61; ++i) csv += fmt::format("d{},3,1\n", i);
+  const std::string more = " 60 of 61 demonstrations; the tables hold all.";
+  const AnswersTable many = test::table_of(csv),
+                     few = test::table_of("demonstration,pinch,cable\na,3,1\n");
+  EXPECT_TRUE(make_figures(analyse_table(many, {})).front().caption.ends_with(more));
+  EXPECT_TRUE(make_figures(analyse_table(few, {})).front().caption.ends_with("of all."));
+}
+
 TEST(Gnuplot, QuotedTextIsInert) {
   EXPECT_EQ(gnuplot_quote("it's"), "'it''s'");
   EXPECT_EQ(gnuplot_tic("50% slip"), "'50%% slip'");
