@@ -87,7 +87,8 @@ export function questionnaire(show, texts, part, questions, exit) {
       for (const field of fields) {
         const answer = check(field);
         if (field.isWrong) first ??= field;
-        else if (answer !== undefined) answers[field.question.name] = answer;
+        else if (answer === undefined) delete answers[field.question.name];  // taken back since "Next" was pressed before
+        else answers[field.question.name] = answer;
       }
       problem.textContent = first ? texts.questionnaire_problem : '';
       if (!first) return;
