@@ -79,8 +79,9 @@ export function questionnaire(show, texts, part, questions, exit) {
       field.invalid(field.isWrong);
       return answer;
     };
-    // What was wrong is looked at again as soon as it changes.
-    for (const field of fields) field.element.addEventListener('change', () => { if (field.isWrong) check(field); });
+    // What was wrong is looked at again as soon as it changes; not when the field is left, as a message that goes between the press
+    // and the release of "Next" moves that away from under the pointer.
+    for (const field of fields) field.element.addEventListener('input', () => { if (field.isWrong) check(field); });
     const answers = {};
     const next = (event) => {
       let first = null;
