@@ -79,8 +79,8 @@ export function questionnaire(show, texts, part, questions, exit) {
       field.invalid(field.isWrong);
       return answer;
     };
-    // What was wrong is looked at again as soon as it changes; not when the field is left, as a message that goes between the press
-    // and the release of "Next" moves that away from under the pointer.
+    // What was wrong is looked at again as soon as it changes; not when the field is left, as a
+    // message that goes then moves "Next" away from under the pointer that is pressed on it.
     for (const field of fields) field.element.addEventListener('input', () => { if (field.isWrong) check(field); });
     const answers = {};
     const next = (event) => {
@@ -88,7 +88,7 @@ export function questionnaire(show, texts, part, questions, exit) {
       for (const field of fields) {
         const answer = check(field);
         if (field.isWrong) first ??= field;
-        else if (answer === undefined) delete answers[field.question.name];  // taken back since "Next" was pressed before
+        else if (answer === undefined) delete answers[field.question.name];  // it was taken back
         else answers[field.question.name] = answer;
       }
       problem.textContent = first ? texts.questionnaire_problem : '';
