@@ -106,9 +106,21 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
 
 Difference difference_read(const GroupResult& group) {
   const CochranQ& cochran = group.cochran_q;
-  if (cochran.p) return {"Cochran's Q", cochran.q, cochran.df, cochran.p};
+  if (cochran.p) return {"Cochran's Q", cochran.q, cochran.df, cochran.p, cochran.participants};
   const Heterogeneity& pearson = group.heterogeneity;
-  return {"X²", pearson.chi_square, pearson.df, pearson.p};
+  return {"X²", pearson.chi_square, pearson.df, pearson.p, 0};
+}
+
+const Row& first_tested(const std::vector<const Row*>& rows) {
+  const auto tested = std::ranges::find_if(rows, [](const Row* row) { return bool(row->read.p); });
+  return tested == rows.end() ? *rows.front() : **tested;
+}
+
+std::vector<const Row*> rows_of(const std::vector<DemonstrationResult>& demonstrations) {
+  std::vector<const Row*> rows;
+  rows.reserve(demonstrations.size());
+  for (const DemonstrationResult& result : demonstrations) rows.push_back(&result.row);
+  return rows;
 }
 
 Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) {

@@ -298,6 +298,8 @@ CochranQ cochran_q(const AnswersTable& table, const Group& group) {
     total += sum;
     spread += static_cast<double>(k) * squares - sum * sum;
   });
+  if (result.participants == 0)
+    return all("no participant chose in every demonstration as often as it was shown");
   if (spread == 0.0)
     return all("no participant answered differently from one demonstration to another");
   const auto width = static_cast<double>(k);

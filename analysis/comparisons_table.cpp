@@ -11,6 +11,7 @@
 #include "analysis/besides.h"
 #include "analysis/circumstances.h"
 #include "analysis/csv_columns.h"
+#include "analysis/distinct_inputs.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -68,7 +69,7 @@ Row row_of(const CsvColumns& csv) {
 }
 
 void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& exclusions,
-              SameStudy& same_study, std::vector<Row>& rows) {
+              SameStudy& same_study, DistinctInputs& distinct, std::vector<Row>& rows) {
   CsvColumns csv(path, options, column_names, other_columns);
   const bool has_counts = csv.has(left_wins) && csv.has(right_wins);
   if (csv.has(choice) == has_counts || (csv.has(ties) && !has_counts)) {
@@ -81,6 +82,7 @@ void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
     csv.check_pilot(pilot, same_study);
     if (!csv.is_main(kind)) continue;
     rows.push_back(row_of(csv));
+    distinct.has_rows_of(rows.back().participant, path.string());
   }
 }
 
@@ -158,7 +160,7 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
   Exclusions exclusions(options);
   const auto excluded = [&](const std::string& name) { return exclusions.excluded(name); };
   std::vector<Row> rows;
-  std::set<fs::path> seen;
+  DistinctInputs distinct;
   SameStudy same_study;
   for (const fs::path& input : inputs) {
     if (!has_comparisons(input, options)) {
@@ -166,16 +168,16 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
                        "has no comparisons of named methods, but another input has; analyse them "
                        "in two runs");
     }
-    if (!seen.insert(fs::canonical(input)).second)
-      throw InputError(input.string(), "is named twice among the inputs");
+    distinct.add(input);
     table.sources.push_back(input.string());
     if (has_columns(input, options, {"left", "right"})) {
-      read_csv(input, options, exclusions, same_study, rows);
+      read_csv(input, options, exclusions, same_study, distinct, rows);
       continue;
     }
     table.has_session_records = true;
     for (const NamedAnswerFile& named :
          read_answer_files(input, options.allow_missing, same_study, excluded)) {
+      distinct.has_file_of(named.file.participant, named.name);
       read_file(named.file, rows);
       note(named.file, table.sessions[named.file.participant]);
       std::ranges::move(besides_of(named.file), std::back_inserter(table.besides));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace pinchlab::analysis {
 
@@ -62,7 +63,7 @@ class Writer {
       // Where answers are not independent the chi-square test has no p-value to give.
       const bool naive = rows[begin]->why_not_independent.empty();
       Cells p{{naive ? "Distribution probability (p-value)"
-                     : fmt::format("p-value ({})", rows[begin]->read.test)}};
+                     : fmt::format("p-value ({})", first_tested(rows).read.test)}};
       for (size_t i = begin; i < end; ++i) {
         const Row& row = *rows[i];
         block.header.push_back(row.name);
@@ -124,7 +125,7 @@ class Writer {
   // What can be said of demonstrations that participants answered more than once.
   void participant_table(const std::vector<const Row*>& rows,
                          const std::vector<const ScaleValue*>& scales) {
-    const Reading& first = rows.front()->read;
+    const Reading& first = first_tested(rows).read;
     TableBlock block;
     block.caption = fmt::format(
         "Every demonstration, participants as units: {} and {} interval ({}); p-values below {} "
@@ -150,16 +151,30 @@ class Writer {
         "Tests and intervals that count answers as independent (chi-square, exact binomial, "
         "Wilson, Clopper–Pearson, Bayes factor) are not given for single demonstrations: {}.",
         rows.front()->why_not_independent)});
+    not_given("A test of one half", rows, &Reading::p);
+    not_given("An interval", rows, &Reading::low);
+  }
+
+  // Which rows lack an estimate, and why.
+  void not_given(const std::string& what, const std::vector<const Row*>& rows,
+                 Estimate Reading::*estimate) {
+    std::map<std::string, std::vector<std::string>> names;  // by reason
+    for (const Row* row : rows) {
+      const Estimate& value = row->read.*estimate;
+      if (!value) names[value.why_not].push_back(row->name);
+    }
+    for (const auto& [reason, who] : names) {
+      add(Paragraph{
+          fmt::format("{} is not given for {}: {}.", what, fmt::join(who, ", "), reason)});
+    }
   }
 
   void demonstrations() {
     add(Heading{"Demonstrations"});
-    std::vector<const Row*> rows;
+    const std::vector<const Row*> rows = rows_of(report_.demonstrations);
     std::vector<const ScaleValue*> scales;
-    for (const DemonstrationResult& result : report_.demonstrations) {
-      rows.push_back(&result.row);
+    for (const DemonstrationResult& result : report_.demonstrations)
       scales.push_back(&result.scale);
-    }
     const bool independent = rows.front()->why_not_independent.empty();
     thesis_table(independent ? "2AFC results, chi-square analysis" : "2AFC results", rows, 3);
     add(FigureBlock{"shares"});
@@ -240,7 +255,9 @@ class Writer {
     add(std::move(block));
     document_.add(why_missing("Rao–Scott", report_.all().pooled.rao_scott.chi_square));
     document_.add(why_missing("The sign-flip test", report_.all().pooled.sign_flip.p));
-    document_.add(why_missing("The cluster bootstrap", report_.all().pooled.bootstrap.p));
+    const ClusterBootstrap& bootstrap = report_.all().pooled.bootstrap;
+    document_.add(why_missing("The cluster bootstrap", bootstrap.p));
+    if (bootstrap.p) document_.add(why_missing("The cluster bootstrap's interval", bootstrap.low));
     mixed_models();
   }
 
@@ -278,12 +295,17 @@ class Writer {
     add(Heading{"Do the demonstrations differ?"});
     TableBlock block;
     block.caption = "Differences between the demonstrations of a group";
-    block.header = {"", "X² (heterogeneity)", "df", "p", "Cochran's Q", "df", "p"};
+    block.header = {
+        "", "X² (heterogeneity)", "df", "p", "participants who chose in all", "Cochran's Q", "df",
+        "p"};
     for (const GroupResult& result : report_.groups) {
       block.rows.push_back({{result.row.name},
                             {fixed(result.heterogeneity.chi_square, 3)},
                             {fixed(result.heterogeneity.df, 0)},
                             p_cell(result.heterogeneity.p),
+                            {result.pooled.participants > 0 && result.demonstrations.size() > 1
+                                 ? fmt::format("{}", result.cochran_q.participants)
+                                 : dash},
                             {fixed(result.cochran_q.q, 3)},
                             {fixed(result.cochran_q.df, 0)},
                             p_cell(result.cochran_q.p)});

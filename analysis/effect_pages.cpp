@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/document.h"
+#include "base/counted.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -48,14 +49,28 @@ std::vector<Block> effect_blocks(const Report& report) {
         pinch, fixed(50.0 + 100.0 * side.bias.value, 1), fixed(side.chi_square, 3),
         p_equation(side.p), p_equation(side.p_sign_flip))});
   }
+  if (side.chosen.total() > 0 && side.unknown > 0) {
+    part.add(Paragraph{fmt::format("Of {} the side is not known; they are in no figure of sides.",
+                                   counted(side.unknown, "answer"))});
+  }
   part.add(why_missing("A side bias", side.p));
   const OrderEffect& order = report.order_effect;
   if (order.p_trend) {
     part.add(Paragraph{fmt::format(
-        "Over the course of a session the choice of {} shows a trend of X² = {} ({}; by "
-        "sign flips over participants {}).",
-        pinch, fixed(order.chi_square, 3), p_equation(order.p_trend),
-        p_equation(order.p_sign_flip))});
+        "From one place of the session to the next the share of answers for {} changes by {:+.1f} "
+        "percentage points (line of least squares; Cochran–Armitage X² = {}, {}; by sign flips "
+        "over "
+        "participants {}).",
+        pinch, 100.0 * order.share_by_place.value, fixed(order.chi_square, 3),
+        p_equation(order.p_trend), p_equation(order.p_sign_flip))});
+  }
+  std::int64_t placed = 0;
+  for (const Counts& counts : order.by_position) placed += counts.total();
+  const std::int64_t unplaced = report.all().row.counts.total() - placed;
+  if (placed > 0 && unplaced > 0) {
+    part.add(Paragraph{
+        fmt::format("Of {} the place in the session is not known; they are in no figure of order.",
+                    counted(unplaced, "answer"))});
   }
   part.add(why_missing("An order effect", order.p_trend));
   if (side.chosen.total() > 0 || !order.by_position.empty()) part.add(FigureBlock{"effects"});

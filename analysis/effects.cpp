@@ -170,7 +170,8 @@ OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
   });
 
   const auto all = [&](const std::string& reason) {
-    result.chi_square = result.p_trend = result.p_sign_flip = Estimate::none(reason);
+    result.share_by_place = result.chi_square = result.p_trend = result.p_sign_flip =
+        Estimate::none(reason);
     return result;
   };
   if (!why_no_answers(table).empty()) return all(why_no_answers(table));
@@ -190,7 +191,9 @@ OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
   if (result.by_position.size() < 2) return all("one answer a participant has no order");
   const double share = pinch / n;
   const double covariance = xy - share * x;
-  const double chi_square = covariance * covariance / (share * (1.0 - share) * (xx - x * x / n));
+  const double squares = xx - x * x / n;
+  const double chi_square = covariance * covariance / (share * (1.0 - share) * squares);
+  result.share_by_place = covariance / squares;
   result.chi_square = chi_square;
   result.p_trend = chi_square_p(chi_square, 1.0);
   result.p_sign_flip = sign_flip_test(std::move(scores), RandomUse::order_flip, seed).p;

@@ -31,6 +31,8 @@ SideBias side_bias(const AnswersTable& table, std::uint64_t seed);
 /// participant's answers.
 struct OrderEffect {
   std::vector<Counts> by_position;  ///< [i]: the (i + 1)-th answer of each participant
+  Estimate share_by_place;  ///< by which the share of pinch rises from one position to the next:
+                            ///< slope of the line of least squares
   Estimate chi_square;  ///< Cochran-Armitage trend of pinch over position, answers as independent
   Estimate p_trend;
   Estimate

@@ -19,6 +19,11 @@ constexpr const char* grey = "#555555";
 
 constexpr size_t most_rows = 60;  // of one figure; the tables hold the rest
 
+// What a caption says of rows that a figure has no room for.
+std::string left_out(size_t shown, size_t all, const char* what) {
+  return shown < all ? fmt::format(" {} of {} {}; the tables hold all.", shown, all, what) : "";
+}
+
 int height_of_rows(size_t rows) {
   return 130 + 34 * static_cast<int>(rows);
 }
@@ -78,8 +83,9 @@ Figure shares_figure(const Report& report) {
   const std::string level = fmt::format("{:g} %", 100.0 * (1.0 - report.options.alpha));
   return {"shares",
           fmt::format("Share of answers for {} in each demonstration with {} intervals ({}); the "
-                      "dashed line is chance. Right: answers for {} of all.",
-                      pinch, level, report.demonstrations.front().row.read.interval, pinch),
+                      "dashed line is chance. Right: answers for {} of all.{}",
+                      pinch, level, first_tested(rows_of(report.demonstrations)).read.interval,
+                      pinch, left_out(rows, report.demonstrations.size(), "demonstrations")),
           gnuplot_script("shares", 760, height_of_rows(rows),
                          data + row_axes(labels, "answers for " + pinch) + counts +
                              "set rmargin 9\nset key above\n" + plot + "\n")};
@@ -119,8 +125,9 @@ Figure groups_figure(const Report& report) {
   return {"groups",
           fmt::format("Share of answers for {} in each group with {:g} % intervals, taking all "
                       "answers as independent "
-                      "and taking participants as units; the dashed line is chance.",
-                      pinch, 100.0 * (1.0 - report.options.alpha)),
+                      "and taking participants as units; the dashed line is chance.{}",
+                      pinch, 100.0 * (1.0 - report.options.alpha),
+                      left_out(rows, report.groups.size(), "groups")),
           gnuplot_script("groups", 760, height_of_rows(rows) + 20,
                          data + row_axes(labels, "answers for " + pinch) + counts +
                              "set rmargin 11\nset key above\n" + plot + "\n")};

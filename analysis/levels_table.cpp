@@ -7,12 +7,12 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "analysis/besides.h"
 #include "analysis/circumstances.h"
 #include "analysis/csv_columns.h"
 #include "analysis/csv_inputs.h"
+#include "analysis/distinct_inputs.h"
 #include "analysis/groups.h"
 #include "base/answer_file.h"
 #include "base/csv_reader.h"
@@ -74,7 +74,7 @@ LevelCell cell_of(const CsvColumns& csv, const ReadOptions& options) {
 
 // Returns whether hits are correct answers.
 bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& exclusions,
-              SameStudy& same_study, Cells& cells) {
+              SameStudy& same_study, DistinctInputs& distinct, Cells& cells) {
   CsvColumns csv(path, options, column_names, other_columns);
   if (csv.has(correct) == csv.has(choice))
     csv.fail("a table of levels needs either a column `correct` or a column `choice`");
@@ -85,6 +85,7 @@ bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
     if (exclusions.excluded(person)) continue;
     csv.check_pilot(pilot, same_study);
     if (!csv.is_main(kind)) continue;
+    distinct.has_rows_of(person, path.string());
     add(cells, csv.name(demonstration), person, cell_of(csv, options));
   }
   return csv.has(correct);
@@ -115,22 +116,22 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
   Exclusions exclusions(options);
   const auto excluded = [&](const std::string& name) { return exclusions.excluded(name); };
   Cells cells;
-  std::set<fs::path> seen;
+  DistinctInputs distinct;
   SameStudy same_study;
   for (const fs::path& input : inputs) {
     if (!has_levels(input, options)) {
       throw InputError(input.string(),
                        "has no levels, but another input has; analyse them in two runs");
     }
-    if (!seen.insert(fs::canonical(input)).second)
-      throw InputError(input.string(), "is named twice among the inputs");
+    distinct.add(input);
     bool is_correct = true;
     if (has_columns(input, options, {"level"})) {
-      is_correct = read_csv(input, options, exclusions, same_study, cells);
+      is_correct = read_csv(input, options, exclusions, same_study, distinct, cells);
     } else {
       for (const NamedAnswerFile& named :
            read_answer_files(input, options.allow_missing, same_study, excluded)) {
         table.has_session_records = true;
+        distinct.has_file_of(named.file.participant, named.name);
         read_file(named.file, cells);
         note(named.file, table.sessions[named.file.participant]);
         std::ranges::move(besides_of(named.file), std::back_inserter(table.besides));

@@ -82,15 +82,18 @@ std::string verdict(const Report& report, const std::optional<DesignCheck>& desi
 }
 
 std::string demonstrations_in_words(const Report& report) {
-  const Reading& first = report.demonstrations.front().row.read;
+  const std::vector<const Row*> rows = rows_of(report.demonstrations);
+  const Reading& first = first_tested(rows).read;
   if (!first.p) {
     return fmt::format(" The demonstrations cannot be tested one by one: {}.", first.p.why_not);
   }
-  std::vector<std::string> for_pinch, for_cable, unclear, robust;
-  for (const DemonstrationResult& result : report.demonstrations) {
-    const Row& row = result.row;
+  std::vector<std::string> for_pinch, for_cable, unclear, robust, untested;
+  for (const Row* shown : rows) {
+    const Row& row = *shown;
     const std::string item = fmt::format("{} ({})", row.name, out_of(row.counts));
-    if (row.read.p.value >= report.options.alpha) {
+    if (!row.read.p) {
+      untested.push_back(item);
+    } else if (row.read.p.value >= report.options.alpha) {
       unclear.push_back(item);
     } else {
       (row.share > 0.5 ? for_pinch : for_cable).push_back(item);
@@ -108,6 +111,9 @@ std::string demonstrations_in_words(const Report& report) {
     text += fmt::format(" {} was preferred in {}.", report.options.cable_label, list_of(for_cable));
   }
   if (!unclear.empty()) text += fmt::format(" No clear preference shows in {}.", list_of(unclear));
+  if (!untested.empty()) {
+    text += fmt::format(" Not tested, for want of a second participant: {}.", list_of(untested));
+  }
   if (for_pinch.size() + for_cable.size() > 0) {
     text += robust.empty()
                 ? " None of these holds once Holm's correction allows for testing so many."
@@ -139,10 +145,17 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
   }
   const Difference difference = difference_read(report.all());
   if (difference.p && difference.p.value < report.options.alpha) {
+    const int everybody = report.all().pooled.participants;
+    const std::string of_whom =
+        difference.participants > 0 && difference.participants < everybody
+            ? fmt::format(" over the {} of {} participants who chose in all of them",
+                          difference.participants, everybody)
+            : "";
     text += fmt::format(
-        " The demonstrations differ from one another ({} = {:.2f}, df {}, {}), so the figure over "
-        "all of them is an average of unlike cases.",
-        difference.name, difference.statistic.value, difference.df.value, p_in_words(difference.p));
+        " The demonstrations differ from one another ({} = {:.2f}{}, df {}, {}), so the figure "
+        "over all of them is an average of unlike cases.",
+        difference.name, difference.statistic.value, of_whom, difference.df.value,
+        p_in_words(difference.p));
   }
   if (!report.graded.empty() && report.graded.back().ties > 0) {
     std::vector<std::string> only_ties;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/psychometric.h"
 
+#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
 
@@ -256,13 +257,20 @@ PsychometricFit fit_psychometric(const PsychometricModel& model,
                rise_of(options.alpha, observers.size(), random_effects));
   fit.width = fit.curve.width;
   fit.slope = slope_of(model, fit.curve.width);
-  if (search.steep(best.x[1])) {
-    fit.width = fit.slope = Estimate::none(
-        "the share of hits jumps from one level to the next; levels between them would tell");
+  const bool is_steep = search.steep(best.x[1]);
+  const bool jumps = is_steep || search.rises_to_steep(best);
+  if (jumps) {
+    fit.width = fit.slope = Estimate::none(fmt::format(
+        "the share of hits {} from one level to the next; levels between them would tell",
+        is_steep ? "jumps" : "may as well jump"));
   }
   fit.deviance = level_deviance(Likelihood(model), points, curve, spread);
   add_resamples(fit, resample(model, points, random_effects, best, curve, spread, options), model,
                 axis, options.alpha);
+  // Studies simulated from one of many curves that fit as well do not tell of the others.
+  if (jumps) fit.bootstrap_slope_low = fit.bootstrap_slope_high = fit.slope;
+  if (jumps && spread == 0.0)
+    fit.bootstrap_threshold_low = fit.bootstrap_threshold_high = fit.slope;
   return fit;
 }
 

@@ -117,6 +117,13 @@ Search::Result Search::best() {
   return minimise(minimise(first.x, -1).x, -1);
 }
 
+bool Search::rises_to_steep(const Result& best) {
+  constexpr double nothing = 1e-3;  // of a log-likelihood, whose intervals are cut at about 2
+  std::vector<double> steepest = best.x;
+  steepest[1] = least_;
+  return minimise(steepest, 1).minimum <= best.minimum + nothing;
+}
+
 // At a spread, a lapse or a guess rate of 0 the gradient in its parameter is 0, minimum or not.
 void Search::leave_stationary_points(std::vector<double>& x) const {
   if (random_effects_ && std::abs(x[2]) < 0.02) x[2] = 0.02;

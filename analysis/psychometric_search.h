@@ -26,6 +26,8 @@ class Search {
   [[nodiscard]] double spread_of(const std::vector<double>& x) const;
   /// A width that the levels cannot tell from 0, or from a function that does not rise.
   [[nodiscard]] bool steep(double ln_width) const { return ln_width < least_ + 0.01; }
+  /// Whether the likelihood is as high where the function is as steep as that.
+  [[nodiscard]] bool rises_to_steep(const Result& best);
   [[nodiscard]] static bool flat(double ln_width) { return ln_width > most_ - 0.01; }
   [[nodiscard]] const std::vector<double>& modes() const { return modes_; }
 

@@ -49,6 +49,7 @@ struct GroupResult {
 struct Difference {
   std::string name;
   Estimate statistic, df, p;
+  int participants = 0;  ///< that Cochran's Q is of: those who chose in all demonstrations
 };
 Difference difference_read(const GroupResult& group);
 
@@ -65,6 +66,13 @@ struct Report {
 
   [[nodiscard]] const GroupResult& all() const { return groups.back(); }
 };
+
+/// The first row that has a test, by which tables and figures name their tests and intervals; the
+/// first one where none has.
+const Row& first_tested(const std::vector<const Row*>& rows);
+
+/// The rows of all demonstrations.
+std::vector<const Row*> rows_of(const std::vector<DemonstrationResult>& demonstrations);
 
 /// Computes everything. Throws InputError for options out of range.
 Report analyse_table(const AnswersTable& table, const AnalysisOptions& options);

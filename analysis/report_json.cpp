@@ -153,6 +153,7 @@ ordered_json order_json(const OrderEffect& order) {
                                    {"pinch", order.by_position[i].pinch},
                                    {"cable", order.by_position[i].cable}});
   }
+  put(object, "share_by_place", order.share_by_place);
   put(object, "trend_chi_square", order.chi_square);
   put(object, "p_trend", order.p_trend);
   put(object, "p_sign_flip", order.p_sign_flip);

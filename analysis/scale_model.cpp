@@ -252,7 +252,12 @@ void fill(const Design& design, const std::vector<double>& parameters, const Sco
   if (robust.size > 0) fit.robust = centred(robust, design.methods);
   if (design.with_side) {
     fit.side = parameters[design.side()];
-    fit.side_se = std::sqrt((robust.size > 0 ? robust : bread).at(design.side(), design.side()));
+    const double of_independent = bread.at(design.side(), design.side());
+    const double variance =
+        robust.size > 0 ? robust.at(design.side(), design.side()) : of_independent;
+    fit.side_se = variance > roundoff_share * of_independent
+                      ? Estimate(std::sqrt(variance))
+                      : Estimate::none("participants do not differ at all");
   }
   if (design.with_ties) {
     const double parameter = parameters[design.ties()];

@@ -39,13 +39,18 @@ struct Matrix {
 /// Inverse of a symmetric positive definite matrix; size 0 if it is not one.
 Matrix inverse(const Matrix& matrix);
 
+/// What is left of a variance between participants, as a share of that of independent answers,
+/// where they do not differ at all: round-off, which must not pass for a variance.
+constexpr double roundoff_share = 1e-10;
+
 struct ScaleFit {
   std::string why_not = "not computed";  ///< empty: the fit holds
   std::vector<double> values;            ///< of the methods; their sum is 0
   Matrix covariance;                     ///< of `values`, if all answers are independent
   Matrix robust;  ///< the same if only participants are; size 0 where there are fewer than two
   std::size_t clusters = 0;  ///< participants
-  Estimate side, side_se;    ///< of the left, on the scale; robust where there are participants
+  Estimate side, side_se;    ///< of the left, on the scale; robust where there are participants,
+                             ///< no error where these do not differ
   Estimate tie;              ///< nu or tau, where there are ties
   double log_likelihood = 0.0;
   double deviance = 0.0;  ///< against shares of each pair (left and right told apart) of their own

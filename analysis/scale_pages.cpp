@@ -136,8 +136,9 @@ class Writer {
       row.push_back({decided > 0 ? fmt::format("{:.1f}", 100.0 * static_cast<double>(pair.wins) /
                                                              static_cast<double>(decided))
                                  : "–"});
-      row.push_back({pair.p ? fmt::format("{:.1f}", 100.0 * pair.expected_share) : "–"});
-      row.push_back({pair.p ? number(pair.difference) : "–"});
+      const bool has_scale = report_.fit().why_not.empty();
+      row.push_back({has_scale ? fmt::format("{:.1f}", 100.0 * pair.expected_share) : "–"});
+      row.push_back({has_scale ? number(pair.difference) : "–"});
       row.push_back({interval(pair.low, pair.high)});
       row.push_back({p_text(pair.p)});
       row.push_back(p_cell(pair.p_holm));
@@ -195,13 +196,14 @@ class Writer {
     }
     if (t.triples > 0) {
       add(Paragraph{fmt::format(
-          "Of {} triples of methods, the shares of all answers break weak stochastic transitivity "
-          "in {}, moderate in {}, strong in {}.",
-          t.triples, t.weak, t.moderate, t.strong)});
+          "Of {} of methods, the shares of all answers break weak stochastic transitivity in {}, "
+          "moderate in {}, strong in {}.",
+          counted(t.triples, "triple"), t.weak, t.moderate, t.strong)});
     }
   }
 
   void observers() {
+    const std::string why_not = why_nobody_is_compared(report_.observers);
     std::string names;
     for (const ObserverFit& fit : report_.observers) {
       if (!fit.is_far_out) continue;
@@ -210,6 +212,11 @@ class Writer {
                            report_.transitivity.of_participant[fit.participant]);
     }
     if (report_.observers.empty()) return;
+    if (!why_not.empty()) {
+      add(Paragraph{"Who chooses far otherwise than the others is not looked for: " + why_not +
+                    "."});
+      return;
+    }
     add(Paragraph{
         names.empty()
             ? "No participant chooses far otherwise than the others (log-likelihood under the "
@@ -274,8 +281,9 @@ Figure scale_figure(const ScaleReport& report, const ComparisonsTable& table) {
     const std::size_t method = report.order[i];
     script += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplot_tic(table.methods[method]), i + 1);
     const ScaleValueOf& value = report.all.values[method];
-    all += fmt::format("{:.6f} {:.6f} {:.6f} {}\n", value.value.value, value.low.value,
-                       value.high.value, i + 1);
+    all += fmt::format("{:.6f} {:.6f} {:.6f} {}\n", value.value.value,
+                       (value.low ? value.low : value.value).value,
+                       (value.high ? value.high : value.value).value, i + 1);
     for (const Scale& one : report.demonstrations) {
       if (one.values[method].value) {
         each += fmt::format("{:.6f} {:.2f}\n", one.values[method].value.value,
@@ -326,15 +334,20 @@ std::string scale_words(const ScaleReport& report, const ComparisonsTable& table
                         number(value.value), interval(value.low, value.high));
   }
   text += fmt::format(" ({} intervals).", level_text(report));
-  std::string apart, together;
+  std::string apart, together, untested;
   for (const ScalePair& pair : report.pairs) {
-    std::string& list = pair.p_holm && pair.p_holm.value < report.options.alpha ? apart : together;
+    std::string& list = !pair.p_holm                               ? untested
+                        : pair.p_holm.value < report.options.alpha ? apart
+                                                                   : together;
     list += fmt::format("{}{} {} {}", list.empty() ? "" : ", ", table.methods[pair.first],
                         &list == &apart ? "over" : "and", table.methods[pair.second]);
   }
   if (differ && !apart.empty())
     text += fmt::format(" After Holm's correction these hold: {}.", apart);
   if (!together.empty()) text += fmt::format(" Not told apart: {}.", together);
+  if (!untested.empty()) {
+    text += fmt::format(" Not tested, since participants do not differ at all: {}.", untested);
+  }
   if (report.difference.p && report.difference.p.value < report.options.alpha) {
     text += fmt::format(
         " Demonstrations differ in their scales ({}), so that the common one is an average of "

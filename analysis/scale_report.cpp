@@ -13,9 +13,15 @@
 namespace pinchlab::analysis {
 namespace {
 
-double error_of(const Matrix& covariance, std::size_t i, std::size_t j) {
-  return std::sqrt(
-      std::max(0.0, covariance.at(i, i) + covariance.at(j, j) - 2 * covariance.at(i, j)));
+double variance_of_difference(const Matrix& covariance, std::size_t i, std::size_t j) {
+  return covariance.at(i, i) + covariance.at(j, j) - 2 * covariance.at(i, j);
+}
+
+// A standard error from its variance that is read and that of independent answers.
+Estimate error_of(double variance, double of_independent) {
+  return variance > roundoff_share * of_independent
+             ? Estimate(std::sqrt(variance))
+             : Estimate::none("participants do not differ at all");
 }
 
 // Half an interval's width in standard errors: Student's with N - 1 degrees of freedom where
@@ -47,8 +53,10 @@ Scale scale_of(const std::string& name, const ComparisonsTable& table,
       value.value = value.low = value.high = Estimate::none(fit.why_not);
       continue;
     }
-    const double half = reach(fit, options.alpha) * std::sqrt(fit.read().at(i, i));
-    value = {fit.values[i], fit.values[i] - half, fit.values[i] + half};
+    const Estimate error = error_of(fit.read().at(i, i), fit.covariance.at(i, i));
+    const double half = reach(fit, options.alpha) * error.value;
+    value = {fit.values[i], error, error};
+    if (error) value.low = fit.values[i] - half, value.high = fit.values[i] + half;
   }
   return scale;
 }
@@ -72,12 +80,15 @@ ScalePair pair_of(const ScaleReport& report, const ComparisonsTable& table, std:
     return pair;
   }
   pair.difference = fit.values[first] - fit.values[second];
-  const double error = error_of(fit.read(), first, second);
-  const double half = reach(fit, report.options.alpha) * error;
-  pair.low = pair.difference - half;
-  pair.high = pair.difference + half;
-  pair.p = error > 0 ? Estimate(two_sided_p(fit, pair.difference / error))
-                     : Estimate::none("participants do not differ at all");
+  const Estimate error = error_of(variance_of_difference(fit.read(), first, second),
+                                  variance_of_difference(fit.covariance, first, second));
+  pair.low = pair.high = pair.p = error;
+  if (error) {
+    const double half = reach(fit, report.options.alpha) * error.value;
+    pair.low = pair.difference - half;
+    pair.high = pair.difference + half;
+    pair.p = two_sided_p(fit, pair.difference / error.value);
+  }
   const Outcomes expected = outcomes(report.options.model, fit, first, second);
   pair.expected_share = expected.left / (expected.left + expected.right);
   return pair;
@@ -126,9 +137,10 @@ ScaleReport analyse_scale(const ComparisonsTable& table, const ScaleOptions& opt
     if (in_both_orders(table)) {
       report.with_side = fit_scale(options.model, methods, table.choices, true);
       const ScaleFit& side = report.with_side;
-      report.p_side = side.why_not.empty()
+      report.p_side = !side.why_not.empty() ? Estimate::none(side.why_not)
+                      : side.side_se
                           ? Estimate(two_sided_p(side, side.side.value / side.side_se.value))
-                          : Estimate::none(side.why_not);
+                          : side.side_se;
     }
   }
   report.circumstances = circumstances(table.sessions, table.has_session_records);

@@ -61,8 +61,8 @@ std::string pairs_csv(const ScaleReport& report, const ComparisonsTable& table) 
   for (const ScalePair& pair : report.pairs) {
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_cell(table.methods[pair.first]),
                        csv_cell(table.methods[pair.second]), pair.wins, pair.losses, pair.ties,
-                       pair.p ? fmt::format("{}", pair.difference) : "", cell(pair.low),
-                       cell(pair.high), cell(pair.p), cell(pair.p_holm));
+                       report.fit().why_not.empty() ? fmt::format("{}", pair.difference) : "",
+                       cell(pair.low), cell(pair.high), cell(pair.p), cell(pair.p_holm));
   }
   return csv;
 }
@@ -89,8 +89,9 @@ void put_pairs(const ScaleReport& report, const ComparisonsTable& table, ordered
                            {"first_wins", pair.wins},
                            {"second_wins", pair.losses},
                            {"ties", pair.ties}};
+    const std::string& why_not = report.fit().why_not;
     put(object, "difference",
-        pair.low ? Estimate(pair.difference) : Estimate::none(pair.low.why_not));
+        why_not.empty() ? Estimate(pair.difference) : Estimate::none(why_not));
     put(object, "low", pair.low);
     put(object, "high", pair.high);
     put(object, "p", pair.p);
@@ -172,6 +173,8 @@ std::string scale_json(const ScaleReport& report, const ComparisonsTable& table)
     if (observer.is_far_out)
       document["far_out"].push_back(table.participants[observer.participant]);
   }
+  const std::string why_not = why_nobody_is_compared(report.observers);
+  if (!why_not.empty()) document["far_out_reason"] = why_not;
   put_circumstances(document, report.circumstances);
   put_besides(document, report.besides);
   return document.dump(2) + "\n";

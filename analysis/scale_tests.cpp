@@ -277,10 +277,11 @@ Transitivity transitivity(std::size_t methods, std::size_t participants, std::si
   result.of_participant.assign(participants, 0);
   result.rounds_of_participant.assign(participants, 0);
   result.consistence = result.p = Estimate::none(
-      participants == 0 ? "the input does not say whose answers are whose"
-                        : "no participant chose once in every pair of a demonstration");
+      methods < 3         ? "two methods make no triples"
+      : participants == 0 ? "the input does not say whose answers are whose"
+                          : "no participant chose once in every pair of a demonstration");
   count_stochastic_transitivity(methods, choices, result);
-  if (participants == 0) return result;
+  if (methods < 3 || participants == 0) return result;
   struct Round {
     std::vector<long> wins;
     std::map<std::pair<std::size_t, std::size_t>, std::int64_t> answers;
@@ -350,13 +351,20 @@ std::vector<ObserverFit> observer_fits(ScaleModel model, std::size_t methods,
       likelihoods.push_back(fit.log_likelihood.value);
     }
   }
-  constexpr std::size_t fewest = 5;  // for quartiles to mean something
-  if (likelihoods.size() < fewest) return fits;
+  if (likelihoods.size() < fewest_compared) return fits;
   const double low = quantile(likelihoods, 0.25), high = quantile(likelihoods, 0.75);
   for (ObserverFit& fit : fits) {
     fit.is_far_out = fit.log_likelihood && fit.log_likelihood.value < low - 1.5 * (high - low);
   }
   return fits;
+}
+
+std::string why_nobody_is_compared(const std::vector<ObserverFit>& fits) {
+  const auto compared = std::ranges::count_if(
+      fits, [](const ObserverFit& fit) { return fit.answers > 0 && fit.log_likelihood; });
+  return static_cast<std::size_t>(compared) >= fewest_compared
+             ? ""
+             : "fewer than five participants can be held against a scale of all others";
 }
 
 }  // namespace pinchlab::analysis

@@ -68,8 +68,12 @@ struct ObserverFit {
   Estimate log_likelihood;  ///< an answer
   bool is_far_out = false;
 };
+constexpr std::size_t fewest_compared = 5;  ///< for quartiles to mean something; else nobody is
 std::vector<ObserverFit> observer_fits(ScaleModel model, std::size_t methods,
                                        std::size_t participants,
                                        const std::vector<PairChoices>& choices);
+
+/// Why it is not known who is far out; empty where it is.
+std::string why_nobody_is_compared(const std::vector<ObserverFit>& fits);
 
 }  // namespace pinchlab::analysis

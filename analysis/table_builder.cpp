@@ -334,7 +334,8 @@ AnswersTable TableBuilder::finish() {
   for (const Counts& counts : table_.counts) total += counts.total();
   if (total == 0) {
     throw InputError(table_.sources.empty() ? "input" : table_.sources.front(),
-                     "no answers; a report needs at least one");
+                     table_.graded.empty() ? "no answers; a report needs at least one"
+                                           : "all answers are ties; a report needs a choice");
   }
   if (total > 2000000000) {
     throw InputError(table_.sources.front(),

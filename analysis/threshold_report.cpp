@@ -47,6 +47,11 @@ std::string interval(const Estimate& low, const Estimate& high) {
                      high ? number(high) : "unbounded");
 }
 
+// How many participants are known: totals name none.
+std::size_t participants_of(const Series& series) {
+  return series.observers.front().name.empty() ? 0 : series.observers.size();
+}
+
 std::int64_t answers_of(const Series& series) {
   std::int64_t sum = 0;
   for (const Observer& observer : series.observers) {
@@ -128,7 +133,7 @@ void fit_tables(const ThresholdReport& report, const LevelsTable& table, Documen
     }
     thresholds.rows.push_back(
         {{name_of(series)},
-         {fmt::format("{}", series.observers.size())},
+         {participants_of(series) > 0 ? fmt::format("{}", participants_of(series)) : "–"},
          {fmt::format("{}", answers_of(series))},
          {number(fit.threshold), true},
          {interval(fit.threshold_low, fit.threshold_high)},
@@ -316,7 +321,7 @@ std::string thresholds_csv(const ThresholdReport& report, const LevelsTable& tab
   csv += "\n";
   for (size_t i = 0; i < table.series.size(); ++i) {
     const Series& series = table.series[i];
-    csv += fmt::format("{},{},{}", csv_cell(name_of(series)), series.observers.size(),
+    csv += fmt::format("{},{},{}", csv_cell(name_of(series)), participants_of(series),
                        answers_of(series));
     for (const NamedEstimate& estimate : estimates) {
       const Estimate& value = report.fits[i].*estimate.value;
@@ -384,6 +389,7 @@ std::string threshold_words(const ThresholdReport& report, const LevelsTable& ta
     const std::vector<LevelCell> totals = totals_of(series);
     if (fit.threshold.value < totals.front().level || fit.threshold.value > totals.back().level)
       text += " It lies outside of the levels that were shown, so do not rely on it.";
+    if (!fit.slope) text += fmt::format(" Take its interval: {}.", fit.slope.why_not);
     if (fit.p_deviance && fit.p_deviance.value < report.options.alpha) {
       text += fmt::format(" The function does not fit these answers well ({}).",
                           p_equation(fit.p_deviance));
@@ -415,7 +421,7 @@ std::string threshold_json(const ThresholdReport& report, const LevelsTable& tab
     const Series& series = table.series[i];
     ordered_json object;
     object["name"] = name_of(series);
-    object["participants"] = series.observers.size();
+    object["participants"] = participants_of(series);
     object["answers"] = answers_of(series);
     for (const NamedEstimate& estimate : estimates) {
       const Estimate& value = report.fits[i].*estimate.value;

@@ -49,30 +49,32 @@ Recovery recovery(const ThresholdCondition& condition, int studies,
     const Rng rng = make_rng(RandomUse::study, options.seed, static_cast<std::uint64_t>(study));
     const PsychometricFit fit =
         fit_psychometric(model, simulate_thresholds(condition, rng.get()), options);
-    if (!fit.threshold || !fit.slope) {
+    if (!fit.threshold) {
       ++sum.not_estimable;
       continue;
     }
     const double off = axis(fit.threshold, 0.0) - truth;
     sum.bias += off;
     sum.error += off * off;
-    sum.slope_bias += std::log(fit.slope.value / true_slope);
+    sum.without_slope += fit.slope ? 0 : 1;
+    sum.slope_bias += fit.slope ? std::log(fit.slope.value / true_slope) : 0.0;
     sum.mean_spread += fit.spread ? fit.spread.value : 0.0;
     sum.threshold_coverage +=
         holds(axis(fit.threshold_low, -infinity), truth, axis(fit.threshold_high, infinity));
     sum.slope_coverage += holds(fit.slope_low ? fit.slope_low.value : 0.0, true_slope,
                                 fit.slope_high ? fit.slope_high.value : infinity);
     if (fit.p_deviance) {
-      sum.bootstrap_coverage += holds(axis(fit.bootstrap_threshold_low, 0.0), truth,
-                                      axis(fit.bootstrap_threshold_high, 0.0));
+      sum.bootstrap_coverage += holds(axis(fit.bootstrap_threshold_low, -infinity), truth,
+                                      axis(fit.bootstrap_threshold_high, infinity));
       sum.misfit += fit.p_deviance.value <= options.alpha ? 1.0 : 0.0;
     }
   }
-  for (double* value :
-       {&sum.bias, &sum.error, &sum.slope_bias, &sum.mean_spread, &sum.threshold_coverage,
-        &sum.slope_coverage, &sum.bootstrap_coverage, &sum.misfit}) {
-    *value /= std::max(1, studies - sum.not_estimable);
+  const int estimable = studies - sum.not_estimable;
+  for (double* value : {&sum.bias, &sum.error, &sum.mean_spread, &sum.threshold_coverage,
+                        &sum.slope_coverage, &sum.bootstrap_coverage, &sum.misfit}) {
+    *value /= std::max(1, estimable);
   }
+  sum.slope_bias /= std::max(1, estimable - sum.without_slope);
   sum.error = std::sqrt(sum.error);
   return sum;
 }

@@ -27,12 +27,13 @@ std::vector<Observer> simulate_thresholds(const ThresholdCondition& condition, g
 struct Recovery {
   double bias = 0.0;              ///< mean threshold minus truth, on the axis of t
   double error = 0.0;             ///< root mean square of that
-  double slope_bias = 0.0;        ///< mean of ln slope minus ln truth
+  double slope_bias = 0.0;        ///< mean of ln slope minus ln truth, where there is a slope
   double mean_spread = 0.0;       ///< mean estimate of the spread
   double threshold_coverage = 0;  ///< share of profile intervals that hold the true threshold
   double slope_coverage = 0;      ///< and the true slope; an interval open on one side reaches on
   double bootstrap_coverage = 0;  ///< percentile intervals of the threshold; 0 without resamples
   double misfit = 0;              ///< share of studies whose test of fit rejects at alpha
+  int without_slope = 0;          ///< studies in which the function may as well jump
   int not_estimable = 0;          ///< studies without a threshold, left out of the rest
 };
 

@@ -34,7 +34,8 @@ const std::vector<Named> conditions{
 void run(const Settings& settings) {
   std::string csv =
       "condition,participants,levels,trials,bias,rms_error,ln_slope_bias,mean_spread,true_spread,"
-      "threshold_coverage,slope_coverage,bootstrap_threshold_coverage,misfit,not_estimable\n";
+      "threshold_coverage,slope_coverage,bootstrap_threshold_coverage,misfit,without_slope,"
+      "not_estimable\n";
   std::string page = fmt::format(
       "# Thresholds of a known truth\n\n"
       "Written by `pinchlab_threshold_study --out analysis/results --studies {} --resamples {} "
@@ -44,30 +45,36 @@ void run(const Settings& settings) {
       "logarithm of the level), guesses fixed at 0.5, lapses of 2 % that the fit has to find. Bias "
       "and error are of the threshold. Coverage is the share of 95 % intervals that hold the "
       "truth; "
-      "three standard errors of the simulation are {:.1f} percentage points.\n\n"
+      "three standard errors of the simulation are {:.1f} percentage points. Without slope are "
+      "studies in which a function that jumps from one level to the next fits as well; the bias of "
+      "the slope leaves them out.\n\n"
       "| | levels × trials | bias | rms error | ln slope, bias | spread (truth) | threshold "
       "covered "
-      "| slope covered | bootstrap covers threshold | fit rejected | not estimable |\n"
-      "|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+      "| slope covered | bootstrap covers threshold | fit rejected | without slope | not estimable "
+      "|\n"
+      "|:--|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
       settings.studies, settings.resamples, settings.seed, settings.studies,
       300.0 * std::sqrt(0.05 * 0.95 / settings.studies));
   for (const auto& [name, condition] : conditions) {
     std::fprintf(stderr, "%s\n", name);
     const Recovery r =
         recovery(condition, settings.studies, {0.05, settings.resamples, settings.seed});
-    csv += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name,
+    csv += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", name,
                        condition.participants, condition.levels, condition.trials, r.bias, r.error,
                        r.slope_bias, r.mean_spread, condition.spread, r.threshold_coverage,
-                       r.slope_coverage, r.bootstrap_coverage, r.misfit, r.not_estimable);
+                       r.slope_coverage, r.bootstrap_coverage, r.misfit, r.without_slope,
+                       r.not_estimable);
     const bool resampled = settings.resamples > 0;
     page += fmt::format(
-        "| {} | {} × {} | {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} % | {:.1f} % | {} | {} | {} |\n",
+        "| {} | {} × {} | {:.3f} | {:.3f} | {:.3f} | {} | {:.1f} % | {:.1f} % | {} | {} | {} | {} "
+        "|\n",
         name, condition.levels, condition.trials, r.bias, r.error, r.slope_bias,
         condition.participants > 1 ? fmt::format("{:.3f} ({})", r.mean_spread, condition.spread)
                                    : "–",
         100.0 * r.threshold_coverage, 100.0 * r.slope_coverage,
         resampled ? fmt::format("{:.1f} %", 100.0 * r.bootstrap_coverage) : "–",
-        resampled ? fmt::format("{:.1f} %", 100.0 * r.misfit) : "–", r.not_estimable);
+        resampled ? fmt::format("{:.1f} %", 100.0 * r.misfit) : "–", r.without_slope,
+        r.not_estimable);
   }
   pinchlab::StagingFolder staging(settings.out);
   staging.write("threshold-recovery.csv", csv);

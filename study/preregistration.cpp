@@ -243,7 +243,8 @@ std::string analysis(const json& design, const Config& config) {
         "A preference over all demonstrations is tested by sign flips over participants, "
         "two-sided; "
         "each demonstration by the exact binomial test (where each participant answers once) or "
-        "sign flips, with Holm's correction. Intervals by {} resamples of participants.",
+        "sign flips, with Holm's correction. Intervals are Wilson's of demonstrations that each "
+        "participant answers once, and otherwise by {} resamples of participants.",
         word("bootstrap"));
   }
   return text + fmt::format(

@@ -79,15 +79,17 @@ export function questionnaire(show, texts, part, questions, exit) {
       field.invalid(field.isWrong);
       return answer;
     };
-    // What was wrong is looked at again as soon as it changes.
-    for (const field of fields) field.element.addEventListener('change', () => { if (field.isWrong) check(field); });
+    // What was wrong is looked at again as soon as it changes; not when the field is left, as a
+    // message that goes then moves "Next" away from under the pointer that is pressed on it.
+    for (const field of fields) field.element.addEventListener('input', () => { if (field.isWrong) check(field); });
     const answers = {};
     const next = (event) => {
       let first = null;
       for (const field of fields) {
         const answer = check(field);
         if (field.isWrong) first ??= field;
-        else if (answer !== undefined) answers[field.question.name] = answer;
+        else if (answer === undefined) delete answers[field.question.name];  // it was taken back
+        else answers[field.question.name] = answer;
       }
       problem.textContent = first ? texts.questionnaire_problem : '';
       if (!first) return;

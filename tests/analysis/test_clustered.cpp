@@ -175,5 +175,30 @@ TEST(CochranQ, NullWhereNobodyDiffers) {
   EXPECT_FALSE(cochran_q(table, table.groups.back()).q);
 }
 
+// Cochran's Q is of those who chose in every demonstration; the report says how many these are.
+TEST(CochransQ, SaysWhoItIsOf) {
+  ReadOptions options;
+  options.allow_missing = true;
+  const AnswersTable apart = test::table_of(
+      "participant,demonstration,choice\na,1,pinch\nb,1,cable\nc,2,pinch\nd,2,cable\n", options);
+  const CochranQ none = cochran_q(apart, apart.groups.back());
+  EXPECT_EQ(none.participants, 0);
+  EXPECT_NE(none.p.why_not.find("no participant chose in every demonstration"), std::string::npos)
+      << none.p.why_not;
+
+  std::string csv = "participant,demonstration,choice\n";
+  for (int i = 0; i < 8; ++i) csv += fmt::format("p{0},1,pinch\np{0},2,cable\n", i);
+  csv += "q,1,pinch\nr,2,cable\n";
+  const AnswersTable table = test::table_of(csv, options);
+  const Report report = analyse_table(table, {});
+  const std::string words = plain_words(report, table);
+  EXPECT_NE(words.find("(Cochran's Q = 8.00 over the 8 of 10 participants who chose in all of "
+                       "them, df 1, p = 0.0047)"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(report_markdown(report, table, {}).find("| 8 | 8.000 | 1 | **0.0047** |"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace pinchlab::analysis

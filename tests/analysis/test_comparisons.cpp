@@ -104,6 +104,64 @@ TEST(Comparisons, WritesAWholeReport) {
   EXPECT_EQ(document["scale"]["methods"][0]["name"], "cable");
 }
 
+std::string page_of(const ScaleReport& report, const ComparisonsTable& table) {
+  const test::TemporaryFolder folder;
+  write_scale_report(report, table, folder.path() / "report", false);
+  return test::read_text(folder.path() / "report/report.md");
+}
+
+// Participants who choose alike tell nothing of how participants differ, and round-off must not
+// pass for it: it gave p = 1e-95.
+TEST(Comparisons, ThoseWhoAreOfOneMindGiveNoErrors) {
+  const test::TemporaryFolder folder;
+  std::string csv = "participant,left,right,choice\n";
+  for (int i = 0; i < 7; ++i) {
+    for (const char* row : {"x,y,x", "y,x,x", "x,y,y", "y,z,y", "z,y,y", "y,z,z", "x,z,x", "z,x,x",
+                            "x,z,z", "z,x,x"}) {
+      csv += fmt::format("p{},{}\n", i, row);
+    }
+  }
+  const ComparisonsTable table = read_comparisons({folder.write("x.csv", csv)}, {});
+  const ScaleReport report = analyse_scale(table, {});
+  ASSERT_EQ(report.fit().why_not, "");
+  for (const ScalePair& pair : report.pairs) {
+    EXPECT_GT(pair.difference, 0.5);
+    for (const Estimate& none : {pair.p, pair.p_holm, pair.low, pair.high})
+      EXPECT_EQ(none.why_not, "participants do not differ at all");
+  }
+  EXPECT_FALSE(report.all.values[0].low || report.all.values[0].high || report.p_side);
+  EXPECT_NE(scale_words(report, table).find("participants do not differ at all: x and y"),
+            std::string::npos)
+      << scale_words(report, table);
+  const json document = json::parse(scale_json(report, table));
+  EXPECT_GT(document["pairs"][0]["difference"].get<double>(), 0.5);
+  EXPECT_TRUE(document["pairs"][0]["low"].is_null());
+  EXPECT_NE(page_of(report, table).find("| x over y | 14 of 21 | 66.7 | 64.4 | 0.59 | – | – | – |"),
+            std::string::npos)
+      << page_of(report, table);
+}
+
+// Two methods make no triples, and of four participants none is far from the others for sure.
+TEST(Comparisons, OfFewNothingIsSaidThatIsNotKnown) {
+  const test::TemporaryFolder folder;
+  const std::string head = "participant,left,right,choice\n";
+  std::string csv = head + "a,x,y,x\nb,y,x,x\nc,x,y,y\nd,y,x,y\n";
+  const auto page = [&] {
+    const ComparisonsTable table = read_comparisons({folder.write("x.csv", csv)}, {});
+    const ScaleReport report = analyse_scale(table, {});
+    EXPECT_EQ(scale_json(report, table).find("\"far_out_reason\"") == std::string::npos,
+              table.participants.size() > 4);
+    return page_of(report, table);
+  };
+  const std::string few = page();
+  EXPECT_EQ(few.find("nan"), std::string::npos) << few;
+  EXPECT_EQ(few.find("Circular triads"), std::string::npos);
+  EXPECT_EQ(few.find("No participant chooses far otherwise"), std::string::npos);
+  EXPECT_NE(few.find("is not looked for: fewer than five participants"), std::string::npos);
+  csv += "e,x,y,x\nf,y,x,x\n";
+  EXPECT_NE(page().find("No participant chooses far otherwise"), std::string::npos);
+}
+
 TEST(Comparisons, RefusesWhatCannotBe) {
   const test::TemporaryFolder folder;
   const auto csv = [&](const std::string& text) { return folder.write("x.csv", text); };
@@ -175,6 +233,56 @@ TEST(Comparisons, ReadsAnswerFilesOfNamedMethods) {
                     trial(3, "pinch", "cable", "left")};
   folder.write("answers/p3.json", file.dump());
   EXPECT_NE(why(folder.path() / "answers").find("other methods"), std::string::npos);
+}
+
+// Whoever names an export beside its answer files, or a copy of it, does not have twice as many
+// answers.
+TEST(Comparisons, NoAnswerCountsTwice) {
+  const test::TemporaryFolder folder;
+  json file = answer_file("p1");
+  file["plan"]["methods"] = {"pinch", "cable", "thesis"};
+  file["trials"] = {trial(1, "pinch", "cable", "left"), trial(2, "thesis", "pinch", "right"),
+                    trial(3, "thesis", "cable", "left")};
+  folder.write("answers/p1.json", file.dump());
+  const std::string rows = "p1,pinch,cable,pinch\np1,thesis,pinch,pinch\n";
+  const auto answers = folder.path() / "answers";
+  const auto table = folder.write("a.csv", "participant,left,right,choice\n" + rows);
+  const auto copy = folder.write("b.csv", "participant,left,right,choice\n" + rows);
+  const auto others =
+      folder.write("c.csv", "participant,left,right,choice\np2,pinch,cable,pinch\n");
+  const auto why_not = [](const std::vector<test::fs::path>& inputs) -> std::string {
+    try {
+      read_comparisons(inputs, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(why_not({answers, table}).find("participant `p1` has answers in"), std::string::npos);
+  EXPECT_NE(why_not({table, answers}).find("participant `p1` has answers in"), std::string::npos);
+  EXPECT_NE(why_not({table, copy}).find("holds the same answers as"), std::string::npos);
+  EXPECT_NE(why_not({table, table}).find("named twice"), std::string::npos);
+  EXPECT_EQ(why_not({answers, others}), "");
+  EXPECT_EQ(why_not({table, others}), "");
+}
+
+TEST(Levels, NoAnswerCountsTwice) {
+  const test::TemporaryFolder folder;
+  json file = answer_file("p1");
+  file["plan"]["graded_hit"] = "reference";
+  file["plan"]["answers_per_demonstration"] = 1;
+  file["trials"] = {trial(1, "reference", "graded", "left")};
+  file["trials"][0]["level"] = 0.5;
+  folder.write("answers/p1.json", file.dump());
+  const auto answers = folder.path() / "answers";
+  const std::string head = "participant,demonstration,level,correct\n";
+  const auto table = folder.write("a.csv", head + "p1,01-a,0.5,1\n");
+  const auto copy = folder.write("b.csv", head + "p1,01-a,0.5,1\n");
+  const auto later = folder.write("c.csv", head + "p1,01-a,0.25,1\n");  // of another day
+  EXPECT_THROW(read_levels({answers, table}, {}), InputError);
+  EXPECT_THROW(read_levels({table, answers}, {}), InputError);
+  EXPECT_THROW(read_levels({table, copy}, {}), InputError);
+  EXPECT_EQ(read_levels({table, later}, {}).series[0].observers[0].cells.size(), 2U);
 }
 
 TEST(Levels, ReadsAnswerFilesOfGradedClips) {

@@ -177,5 +177,16 @@ TEST(Graded, TiesOfMethodsAreTies) {
   EXPECT_EQ(table.ties, 1);
 }
 
+TEST(Graded, WhereAllAreTiesThatIsSaid) {
+  try {
+    test::table_of(
+        "participant,demonstration,choice,side,preference\na,x,tie,left,0\nb,x,tie,right,0\n");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("all answers are ties"), std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::analysis

@@ -128,7 +128,8 @@ TEST(Recovery, TruthIsFoundAndIntervalsHoldItAsOftenAsTheySay) {
   constexpr int studies = 400;
   const Recovery result = recovery(one, studies, {.resamples = 0, .seed = 7});
   const double limit = 3.0 * std::sqrt(0.05 * 0.95 / studies);
-  EXPECT_LT(result.not_estimable, studies / 50);
+  EXPECT_EQ(result.not_estimable, 0);
+  EXPECT_LT(result.without_slope, studies / 20);
   EXPECT_NEAR(result.bias, 0.0, 0.02);
   EXPECT_NEAR(result.threshold_coverage, 0.95, limit);
   EXPECT_NEAR(result.slope_coverage, 0.95, limit);
@@ -217,6 +218,26 @@ TEST(Fit, SaysWhatItCannotTell) {
   EXPECT_FALSE(jump.slope_high);
 }
 
+// From 1/2 to 1 between two levels: the likelihood rises with the slope for ever, and is the same
+// for every threshold between the two.
+TEST(Fit, AJumpHasNoSlope) {
+  const std::vector<Observer> totals = {{"", {{0.1, 20, 10}, {0.2, 20, 10}, {0.3, 20, 20}}}};
+  const PsychometricFit jump = fit_psychometric({}, totals, {.resamples = 39});
+  for (const Estimate& none : {jump.slope, jump.width, jump.slope_high, jump.bootstrap_slope_low,
+                               jump.bootstrap_slope_high, jump.bootstrap_threshold_low}) {
+    EXPECT_FALSE(none) << none.value;
+  }
+  EXPECT_NE(jump.slope.why_not.find("jump"), std::string::npos);
+  EXPECT_NEAR(jump.threshold_low.value, 0.2, 0.01);
+  EXPECT_NEAR(jump.threshold_high.value, 0.3, 0.01);
+  EXPECT_GT(jump.slope_low.value, 1.0);
+  // With levels on the way there is a slope.
+  const std::vector<Observer> on_the_way = {
+      {"", {{0.1, 40, 20}, {0.2, 40, 24}, {0.3, 40, 30}, {0.4, 40, 36}, {0.5, 40, 40}}}};
+  const PsychometricFit gentle = fit_psychometric({}, on_the_way, {.resamples = 39});
+  EXPECT_TRUE(gentle.slope && gentle.bootstrap_slope_high && gentle.bootstrap_threshold_high);
+}
+
 TEST(Levels, ReadsTrialsCountsAndChoices) {
   const TemporaryFolder folder;
   const auto counts = folder.write("counts.csv", example_csv());
@@ -298,6 +319,9 @@ TEST(ThresholdReport, SaysWhatItTookParticipantsFor) {
   EXPECT_NE(methods(one).find(chi), std::string::npos);
   EXPECT_NE(methods(two).find(own), std::string::npos);
   EXPECT_EQ(methods(two).find(chi), std::string::npos);
+  // Totals are of who knows how many.
+  EXPECT_NE(methods(one).find("| all answers | – | 200 |"), std::string::npos) << methods(one);
+  EXPECT_NE(methods(two).find("| all answers | 2 | 400 |"), std::string::npos) << methods(two);
 }
 
 TEST(ThresholdReport, WritesEveryFileAndEveryReason) {

@@ -117,6 +117,39 @@ TEST(RepeatedAnswers, OneParticipantIsRefusedWithTheReason) {
   EXPECT_NE(plain_words(report, table).find("cannot be tested one by one"), std::string::npos);
 }
 
+// Of two demonstrations one was answered by a single participant, twice for pinch: nothing is known
+// of how participants differ there, whichever comes first.
+void expect_one_untested(const std::string& untested, const std::string& tested) {
+  ReadOptions options;
+  options.repetitions = 2;
+  options.allow_missing = true;
+  std::string csv = "participant,demonstration,choice\n";
+  for (const char* who : {"a", "b", "c", "d", "e", "f", "g"})
+    csv += fmt::format("{0},{1},pinch\n{0},{1},pinch\n", who, tested);
+  csv += fmt::format("a,{0},pinch\na,{0},pinch\n", untested);
+  const AnswersTable table = test::table_of(csv, options);
+  const Report report = analyse_table(table, {});
+  const auto expect_in = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
+  };
+  const std::string words = plain_words(report, table), page = report_markdown(report, table, {});
+  expect_in(words,
+            "(sign-flip test over participants, p < 0.05), pinch was preferred in 1 of 2 "
+            "demonstrations: " +
+                tested + " (14 of 14).");
+  expect_in(words, "Not tested, for want of a second participant: " + untested + " (2 of 2).");
+  expect_in(words, "testing so many, " + tested + " remains.");
+  expect_in(page, "p-value (sign-flip test over participants)");
+  expect_in(page, "A test of one half is not given for " + untested + ": one participant");
+  expect_in(page, "An interval is not given for " + tested + ": participants do not differ");
+  expect_in(make_figures(report).front().caption, "(cluster bootstrap)");
+}
+
+TEST(RepeatedAnswers, NothingIsClaimedOfADemonstrationWithoutATest) {
+  expect_one_untested("x", "y");
+  expect_one_untested("y", "x");
+}
+
 // With two repetitions, scores 0 to 2: Q is (K - 1) times the sum of squared deviations of the
 // column sums over the sum of the participants' squared deviations (Friedman's construction).
 TEST(RepeatedAnswers, CochransQTakesTheirNumberAsScore) {

@@ -235,8 +235,34 @@ TEST(Effects, SideOrderAndTimes) {
   // Cochran-Armitage by hand: N r^2 with r the correlation of 1, 2, 3, 4 with 0, 0, 1, 1.
   EXPECT_NEAR(report.order_effect.chi_square.value, 40.0 * 0.8, 1e-9);
   EXPECT_EQ(report.order_effect.p_sign_flip.value, 2.0 / 1024.0);
+  EXPECT_NEAR(report.order_effect.share_by_place.value, 2.0 / 5.0, 1e-12);
   EXPECT_EQ(report.reaction_times[0].median_s.value, 2.5);
   EXPECT_EQ(report.reaction_times[0].longest_s.value, 4.0);
+}
+
+// Which way an order effect goes, and of how many answers side and place are not known.
+TEST(Effects, SayTheirDirectionAndWhatTheyLeaveOut) {
+  const auto page = [](const char* early, const char* late, const std::string& rest) {
+    std::string csv = "participant,demonstration,choice,side,position\n";
+    for (int p = 0; p < 10; ++p) {
+      csv += fmt::format("p{0},a,{1},left,1\np{0},b,{2},right,2\n", p, p == 0 ? late : early, late);
+    }
+    ReadOptions options;
+    options.allow_missing = true;
+    const AnswersTable table = test::table_of(csv + rest, options);
+    return report_markdown(analyse_table(table, {}), table, {});
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string rises = page("cable", "pinch", "q,a,pinch,,\nq,b,pinch,,2\n");
+  // From 2 of 11 to 10 of 10.
+  EXPECT_TRUE(has(rises, "answers for pinch changes by +81.8 percentage points")) << rises;
+  EXPECT_TRUE(has(rises, "Of 2 answers the side is not known"));
+  EXPECT_TRUE(has(rises, "Of 1 answer the place in the session is not known"));
+  const std::string falls = page("pinch", "cable", "");
+  EXPECT_TRUE(has(falls, "answers for pinch changes by -90.0 percentage points")) << falls;
+  EXPECT_FALSE(has(falls, "not known"));
 }
 
 TEST(TidyCsv, ReadsBackToTheSameTable) {
@@ -296,6 +322,16 @@ TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   const std::string html = report_html(report, table, figures);
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_NE(html.find("data:image/svg+xml;base64,PHN2Zy8+"), std::string::npos);
+}
+
+TEST(Figures, SayWhatTheyHaveNoRoomFor) {
+  std::string csv = "demonstration,pinch,cable\n";
+  for (int i = 0; i < 61; ++i) csv += fmt::format("d{},3,1\n", i);
+  const std::string more = " 60 of 61 demonstrations; the tables hold all.";
+  const AnswersTable many = test::table_of(csv),
+                     few = test::table_of("demonstration,pinch,cable\na,3,1\n");
+  EXPECT_TRUE(make_figures(analyse_table(many, {})).front().caption.ends_with(more));
+  EXPECT_TRUE(make_figures(analyse_table(few, {})).front().caption.ends_with("of all."));
 }
 
 TEST(Gnuplot, QuotedTextIsInert) {

@@ -270,8 +270,8 @@ TEST(Freeze, ThePreregistrationTellsTheDesignsFigures) {
         fmt::format("| 16 | {:.4g} |", rule["looks"][0]["p_at_most"].get<double>()),
         std::string("32 participants at most"), std::string("3 demonstrations"),
         std::string("A session has 3 trials"), std::string("left more than 5 times"),
-        std::string("alpha = 0.01"), options.config.texts.at("question"),
-        options.clips.begin()->second.mp4.left->sha256(),
+        std::string("alpha = 0.01"), std::string("Intervals are Wilson's of demonstrations that"),
+        options.config.texts.at("question"), options.clips.begin()->second.mp4.left->sha256(),
         std::string("Pinch joints look more realistic."), options.utc}) {
     EXPECT_NE(text.find(figure), std::string::npos) << figure << "\n" << text;
   }

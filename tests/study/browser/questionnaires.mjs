@@ -97,6 +97,26 @@ for (const [width, height] of [[1366, 768], [1280, 720]]) {
   }
 }
 
+test('an answer that is taken back is not kept', () => withStudy({
+  questionnaire_before: [
+    { name: 'age', kind: 'number', text: 'How old are you?', min: 18, max: 120, whole: true, required: true },
+    { name: 'note', kind: 'text', text: 'Anything else?', longest: 200 },
+  ],
+}, async (server, context) => {
+  const page = await open(context, server.address);
+  await begin(page);
+  await page.fill('#question-note', 'my name');
+  await page.click('#next');
+  assert.equal(await page.evaluate(() => document.activeElement.id), 'question-age', 'the age is missing');
+  await page.fill('#question-note', '');
+  await page.fill('#question-age', '44');
+  await page.click('#next');
+  await answerTrials(page);
+  await save(page);
+  const [file] = answersIn(server);
+  assert.deepEqual(Object.keys(file.questionnaires.before), ['age']);
+}));
+
 for (const [width, height] of [[1366, 768], [1280, 720]]) {
   for (const language of ['en', 'sv']) {
     test(`the screen is measured, ${language}, ${width} x ${height}`, () => withStudy({ language, measure_screen: true }, async (server, context) => {
