@@ -15,8 +15,21 @@ namespace pinchlab {
 
 namespace {
 
+// One that the process holds open: /dev/stdout, /dev/fd/3. Such a file is not to be replaced by
+// another, nor is the link, which is the whole machine's.
+bool is_open_already(std::filesystem::path path) {
+  std::error_code none;
+  for (int i = 0; i < 40 && std::filesystem::is_symlink(path, none); ++i) {
+    const std::string folder = std::filesystem::canonical(path.parent_path(), none).string();
+    if (folder.starts_with("/proc/") && folder.ends_with("/fd")) return true;
+    path = path.parent_path() / std::filesystem::read_symlink(path, none);
+  }
+  return false;
+}
+
 // A device or a pipe, say.
 bool is_special(const std::filesystem::path& path) {
+  if (is_open_already(path)) return true;
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
@@ -30,7 +43,8 @@ bool is_same_file(const std::filesystem::path& one, const std::filesystem::path&
   if (one == "-" || other == "-") return one == other;
   std::error_code none;
   const auto whole = [&none](const std::filesystem::path& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
+    return std::filesystem::weakly_canonical(
+        std::filesystem::absolute(where_links_lead(path), none), none);
   };
   return whole(one) == whole(other);
 }
@@ -44,7 +58,7 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
   if (!is_special(path)) {
     partial_.emplace(path.string());
   }
-  file_ = std::fopen(partial_ ? partial_->name().c_str() : path_.c_str(), "wb");
+  file_ = partial_ ? std::fopen(partial_->name().c_str(), "wb") : std::fopen(path_.c_str(), "ab");
   if (file_ == nullptr) {
     fail("cannot be written");
   }

@@ -31,12 +31,28 @@ void make_folders(const fs::path& folder) {
   }
 }
 
+fs::path where_links_lead(const fs::path& path) {
+  constexpr int most_links = 40;  // as the kernel has it
+  fs::path place = path;
+  std::error_code none;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(place, none)); ++i) {
+    if (i == most_links) {
+      throw std::runtime_error(path.string() +
+                               ": is a symbolic link that leads nowhere; name a file");
+    }
+    place = place.parent_path() / fs::read_symlink(place);
+  }
+  return place;
+}
+
 PartialFile::PartialFile(std::string path)
-    : path_(std::move(path)), name_(path_ + std::string(partial_ending)) {
+    : path_(std::move(path)),
+      place_(where_links_lead(path_).string()),
+      name_(place_ + std::string(partial_ending)) {
   if (path_.empty()) {
     throw std::runtime_error("the name of a file to write is empty; give it one");
   }
-  const fs::path folder = fs::path(path_).parent_path();
+  const fs::path folder = fs::path(place_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
     throw std::runtime_error(
         fmt::format("{}: the folder {} does not exist; create it first", path_, folder.string()));
@@ -55,7 +71,7 @@ PartialFile::~PartialFile() {
 
 void PartialFile::keep() {
   std::error_code error;
-  fs::rename(name_, path_, error);
+  fs::rename(name_, place_, error);
   if (error) {
     throw std::runtime_error(path_ + ": cannot be put in place: " + error.message());
   }
