@@ -96,7 +96,8 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
           "apng, webp or gif (with --fps 50) [h264]")
       ->type_name("C")
       ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
-  add_time_limit(command, options.time_limit, "Give up on a clip");
+  add_time_limit(command, options.time_limit,
+                 "Give up on a clip's simulation (an error is measured by several)");
   command.add_option("--jobs", options.jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
@@ -275,7 +276,8 @@ void add_still(CLI::App& app) {
   add_error(*command, options->timing)->excludes(command->get_option("--table"));
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
-  add_time_limit(*command, options->time_limit, "Give up");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a simulation (an error is measured by several)");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
@@ -317,7 +319,8 @@ void add_simulate(CLI::App& app) {
                    "Steps a frame [the scene's]")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
-  add_time_limit(*command, options->time_limit, "Give up");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a simulation (an error is measured by several)");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
       "SEG.csv:  "
@@ -347,7 +350,8 @@ void add_baseline(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
   add_scene(*command, options->scene);
-  add_time_limit(*command, options->time_limit, "Give up on a method");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a method's simulation (an error is measured by several)");
   command->footer(
       "Plain cable joints (cable) are recommended where they break nothing, not even the scene's "
       "error_m, and\nmove as smoothly as pinch joints without contact (pinch_no_contact), under "
