@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The front door: reads the command line and calls one function a command.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -13,6 +15,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/commands.h"
@@ -448,6 +451,15 @@ int run_and_tell(int argc, char** argv) {
   }
 }
 
+// A standard stream that the caller has closed is taken, or the next file that is opened would get
+// its place, and the messages. What is told there is lost; results, as before, cannot be written.
+void take_closed_streams() {
+  for (const auto& [stream, mode] :
+       {std::pair{STDIN_FILENO, O_RDONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+    if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF) ::open("/dev/null", mode);
+  }
+}
+
 // What is left of results on standard output goes out; exit code 1 where that fails, or failed
 // before.
 int with_results_written(int exit_code) {
@@ -464,6 +476,7 @@ int with_results_written(int exit_code) {
 
 int main(int argc, char** argv) {
   using namespace pinchlab;
+  take_closed_streams();
   // What a large World leaves is joined block by block as it is freed, not all at once, when no
   // cache has it any more, by the next large allocation.
   mallopt(M_MXFAST, 0);

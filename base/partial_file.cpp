@@ -2,6 +2,7 @@
 #include "base/partial_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
@@ -59,6 +60,11 @@ PartialFile::PartialFile(std::string path)
   }
   if (fs::is_directory(path_)) {
     throw std::runtime_error(path_ + ": is a folder; give a file's name");
+  }
+  // A store that links lead into is read only, that nobody may change what has its name there.
+  const bool is_link = place_ != path_;
+  if (is_link && ::access(place_.c_str(), F_OK) == 0 && ::access(place_.c_str(), W_OK) != 0) {
+    throw error("cannot be written");
   }
 }
 

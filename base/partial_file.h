@@ -28,7 +28,7 @@ void make_folders(const std::filesystem::path& folder);
 std::filesystem::path where_links_lead(const std::filesystem::path& path);
 
 /// The file is written as name() in the folder of its final path; keep() renames it, the destructor
-/// removes it otherwise. A symbolic link stays one: what it leads to is written.
+/// removes it otherwise. A symbolic link stays one: what it leads to is written, if that may be.
 class PartialFile {
  public:
   /// Throws std::runtime_error if the folder does not exist, or the path is a folder or empty.

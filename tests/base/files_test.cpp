@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -122,6 +123,18 @@ TEST(PartialFile, WritesWhatALinkLeadsTo) {
   EXPECT_FALSE(fs::is_symlink(inner / "file"));
   EXPECT_EQ(files_in(folder.path()), 2U);
   EXPECT_EQ(files_in(inner), 2U);
+}
+
+TEST(PartialFile, ChangesNothingReadOnlyThatALinkLeadsTo) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everything";
+  const TemporaryFolder folder;
+  const fs::path stored = folder.write("stored", "as it was");
+  const std::string link = (folder.path() / "link").string();
+  fs::create_symlink(stored, link);
+  fs::permissions(stored, fs::perms::owner_read);
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(link); }),
+            link + ": cannot be written: Permission denied; name a place that you may write to");
+  EXPECT_EQ(read_whole(stored), "as it was");
 }
 
 TEST(PartialFile, TellsOfLinksThatLeadNowhere) {

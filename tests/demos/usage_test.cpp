@@ -113,6 +113,23 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
   EXPECT_FALSE(fs::exists(folder / "clips"));
 }
 
+// Or the next file that is opened would take its place, and the messages.
+TEST(Usage, AClosedStreamTakesNoFilesPlace) {
+  const fs::path folder = folder_with_scene();
+  const auto run = [&folder](const char* to) {
+    return std::system(fmt::format("cd '{}' && '{}' simulate 01-small.json --until 0.51 --out {}",
+                                   folder.string(), PINCHLAB_PROGRAM, to)
+                           .c_str());
+  };
+  EXPECT_EQ(run("open.csv 2> err.txt"), 0);
+  EXPECT_EQ(run("closed.csv <&- >&- 2>&-"), 0);
+  EXPECT_EQ(text_of(folder / "closed.csv"), text_of(folder / "open.csv"));
+  EXPECT_NE(run("- >&- 2> err.txt"), 0);
+  EXPECT_NE(text_of(folder / "err.txt").find("\nstandard output: cannot be written: Bad file"),
+            std::string::npos)
+      << text_of(folder / "err.txt");
+}
+
 TEST(Usage, ALinkStaysOne) {
   const fs::path folder = folder_with_scene();
   fs::create_symlink("there.csv", folder / "link.csv");
