@@ -15,7 +15,7 @@ bool is_same_file(const std::filesystem::path& one, const std::filesystem::path&
 
 /// A file that appears under its name only when complete. "-" is standard output, and what exists
 /// and is no ordinary file (/dev/null, a pipe, /dev/stdout whatever that is) is written directly,
-/// after what is there. Every function throws
+/// on from where it is. Every function throws
 /// std::runtime_error, with the name and the reason, where the file cannot be written.
 class OutputFile {
  public:

@@ -86,10 +86,12 @@ TEST(OutputFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
 // As root a link in /dev would be gone for the whole machine.
 TEST(OutputFile, GoesOnWithAFileThatIsOpenAlready) {
   const TemporaryFolder folder;
-  const fs::path file = folder.write("file", "before, ");
+  const fs::path file = folder.path() / "file";
   const fs::path link = folder.path() / "stdout";
-  std::FILE* const open = std::fopen(file.c_str(), "ab");
+  std::FILE* const open = std::fopen(file.c_str(), "wb");
   ASSERT_NE(open, nullptr);
+  std::fputs("before, ", open);
+  std::fflush(open);
   fs::create_symlink("/proc/self/fd/" + std::to_string(::fileno(open)), link);
   {
     OutputFile out(link);
