@@ -445,6 +445,9 @@ int run_and_tell(int argc, char** argv) {
                  "memory is short for this; ask for less at a time (fewer or smaller pictures, "
                  "fewer --jobs), or allow the program more memory\n");
     return 1;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "%s: %s\n", error.path1().c_str(), error.code().message().c_str());
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -130,6 +130,15 @@ TEST(Usage, AClosedStreamTakesNoFilesPlace) {
       << text_of(folder / "err.txt");
 }
 
+TEST(Usage, WhatTheDiskSaysBeginsWithItsPlace) {
+  const fs::path folder = scratch_folder();
+  fs::create_directory(folder / "answers");
+  fs::create_symlink("round.json", folder / "answers" / "round.json");
+  const RunResult run = run_program(folder, {"analyse", "answers", "--out", "report"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "answers/round.json: Too many levels of symbolic links\n");
+}
+
 TEST(Usage, ALinkStaysOne) {
   const fs::path folder = folder_with_scene();
   fs::create_symlink("there.csv", folder / "link.csv");
