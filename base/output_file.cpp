@@ -17,7 +17,7 @@ namespace pinchlab {
 namespace {
 
 // The descriptor of what the process holds open, by /dev/stdout, say, or /dev/fd/3. What is opened
-// anew by such a name has a place of its own to write at; and neither is that file to be replaced by
+// anew by such a name has a place of its own to write at. Neither is that file to be replaced by
 // another, nor the link, which is the whole machine's.
 std::optional<int> open_descriptor(std::filesystem::path path) {
   std::error_code none;
