@@ -95,7 +95,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   }
   config.is_pilot = options.pilot;
   check_address(options.server.host, options.server.port);
-  make_answers_folder(options.answers);  // before clips, which may take minutes
+  check_answers_folder(options.answers);  // before clips, which may take minutes
   desk_options.clips = prepare(config, stimuli, options.clips, options.no_webm);
   desk_options.answers = options.answers;
   if (options.has_seed) {
@@ -399,7 +399,7 @@ void simulate_participants(SimulateOptions& options, const Stimuli& stimuli) {
   desk_options.config.one_time_links = false;
   desk_options.config.recruiting.reset();
   desk_options.config.participant_limit = 0;
-  make_answers_folder(options.answers);
+  check_answers_folder(options.answers);
   desk_options.clips = prepare(desk_options.config, stimuli, options.clips, true);
   desk_options.answers = options.answers;
   desk_options.seed = options.simulation.seed = options.seed;
