@@ -85,9 +85,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   DeskOptions desk_options;
   desk_options.config = read_or_default(options.config);
   Config& config = desk_options.config;
-  if (options.participants > 0) {
-    config.participant_limit = options.participants;
-  }
+  if (options.participants > 0) config.participant_limit = options.participants;
   if (config.one_time_links && config.participant_limit == 0) {
     throw std::invalid_argument(
         "one-time links need to know for how many: give --participants, or participant_limit in "
