@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The front door: reads the command line and calls one function a command.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -13,6 +15,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/commands.h"
@@ -96,7 +99,8 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
           "apng, webp or gif (with --fps 50) [h264]")
       ->type_name("C")
       ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
-  add_time_limit(command, options.time_limit, "Give up on a clip");
+  add_time_limit(command, options.time_limit,
+                 "Give up on a clip's simulation (an error is measured by several)");
   command.add_option("--jobs", options.jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
@@ -275,7 +279,8 @@ void add_still(CLI::App& app) {
   add_error(*command, options->timing)->excludes(command->get_option("--table"));
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
-  add_time_limit(*command, options->time_limit, "Give up");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a simulation (an error is measured by several)");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
@@ -317,7 +322,8 @@ void add_simulate(CLI::App& app) {
                    "Steps a frame [the scene's]")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
-  add_time_limit(*command, options->time_limit, "Give up");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a simulation (an error is measured by several)");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
       "SEG.csv:  "
@@ -347,7 +353,8 @@ void add_baseline(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
   add_scene(*command, options->scene);
-  add_time_limit(*command, options->time_limit, "Give up on a method");
+  add_time_limit(*command, options->time_limit,
+                 "Give up on a method's simulation (an error is measured by several)");
   command->footer(
       "Plain cable joints (cable) are recommended where they break nothing, not even the scene's "
       "error_m, and\nmove as smoothly as pinch joints without contact (pinch_no_contact), under "
@@ -438,9 +445,21 @@ int run_and_tell(int argc, char** argv) {
                  "memory is short for this; ask for less at a time (fewer or smaller pictures, "
                  "fewer --jobs), or allow the program more memory\n");
     return 1;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "%s: %s\n", error.path1().c_str(), error.code().message().c_str());
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
+  }
+}
+
+// A standard stream that the caller has closed is taken, or the next file that is opened would get
+// its place, and the messages. What is told there is lost; results, as before, cannot be written.
+void take_closed_streams() {
+  for (const auto& [stream, mode] :
+       {std::pair{STDIN_FILENO, O_RDONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+    if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF) ::open("/dev/null", mode);
   }
 }
 
@@ -460,6 +479,7 @@ int with_results_written(int exit_code) {
 
 int main(int argc, char** argv) {
   using namespace pinchlab;
+  take_closed_streams();
   // What a large World leaves is joined block by block as it is freed, not all at once, when no
   // cache has it any more, by the next large allocation.
   mallopt(M_MXFAST, 0);

@@ -2,6 +2,7 @@
 #pragma once
 // Answers that come in twice would count twice.
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>

@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 
 class File {
  public:
-  File(const fs::path& path, int flags, const char* what)
-      : path_(path), file_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {
+  /// Errors are about `path`, whatever the name is that it is opened by.
+  File(const fs::path& path, const fs::path& opened, int flags, const char* what)
+      : path_(path), file_(::open(opened.c_str(), flags | O_CLOEXEC, 0600)) {
     if (file_ < 0) {
       fail(path, what);
     }
@@ -70,14 +71,15 @@ fs::path folder_of(const fs::path& path) {
 }
 
 void sync_folder(const fs::path& path) {
-  File(folder_of(path), O_RDONLY | O_DIRECTORY, "cannot be opened").sync();
+  const fs::path folder = folder_of(path);
+  File(folder, folder, O_RDONLY | O_DIRECTORY, "cannot be opened").sync();
 }
 
 }  // namespace
 
 void write_durably(const fs::path& path, std::string_view bytes) {
   PartialFile partial(path.string());
-  File file(partial.name(), O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
+  File file(path, partial.name(), O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
   file.write(bytes);
   file.sync();
   file.close();
@@ -86,7 +88,7 @@ void write_durably(const fs::path& path, std::string_view bytes) {
         fmt::format("{}: the disk holds something else than was written", path.string()));
   }
   partial.keep();
-  sync_folder(path);
+  sync_folder(partial.name());
 }
 
 void remove_durably(const fs::path& path) {

@@ -9,11 +9,28 @@
 #include <utility>
 
 #include "base/durable_file.h"
+#include "base/text_checks.h"
 #include "base/why_not_written.h"
 
 namespace pinchlab {
 
 namespace {
+
+// The descriptor of what the process holds open, by /dev/stdout, say, or /dev/fd/3. What is opened
+// anew by such a name has a place of its own to write at. Neither is that file to be replaced by
+// another, nor the link, which is the whole machine's.
+std::optional<int> open_descriptor(std::filesystem::path path) {
+  std::error_code none;
+  const std::filesystem::path mine = std::filesystem::canonical("/proc/self/fd", none);
+  for (int i = 0; i < 40 && std::filesystem::is_symlink(path, none); ++i) {
+    if (!mine.empty() && std::filesystem::canonical(path.parent_path(), none) == mine) {
+      const std::optional<long> number = parse_whole(path.filename().string(), 0, 1'000'000);
+      return number ? std::optional(static_cast<int>(*number)) : std::nullopt;
+    }
+    path = path.parent_path() / std::filesystem::read_symlink(path, none);
+  }
+  return std::nullopt;
+}
 
 // A device or a pipe, say.
 bool is_special(const std::filesystem::path& path) {
@@ -30,7 +47,8 @@ bool is_same_file(const std::filesystem::path& one, const std::filesystem::path&
   if (one == "-" || other == "-") return one == other;
   std::error_code none;
   const auto whole = [&none](const std::filesystem::path& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none), none);
+    return std::filesystem::weakly_canonical(
+        std::filesystem::absolute(where_links_lead(path), none), none);
   };
   return whole(one) == whole(other);
 }
@@ -41,10 +59,15 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(path) {
     file_ = stdout;
     return;
   }
-  if (!is_special(path)) {
+  if (const std::optional<int> open = open_descriptor(path)) {
+    const int mine = ::dup(*open);
+    file_ = mine < 0 ? nullptr : ::fdopen(mine, "wb");
+  } else if (is_special(path)) {
+    file_ = std::fopen(path_.c_str(), "wb");
+  } else {
     partial_.emplace(path.string());
+    file_ = std::fopen(partial_->name().c_str(), "wb");
   }
-  file_ = std::fopen(partial_ ? partial_->name().c_str() : path_.c_str(), "wb");
   if (file_ == nullptr) {
     fail("cannot be written");
   }
@@ -80,7 +103,7 @@ void OutputFile::finish() {
 }
 
 void write_result(const std::filesystem::path& path, std::string_view text) {
-  if (path != "-" && !is_special(path)) return write_durably(path, text);
+  if (path != "-" && !open_descriptor(path) && !is_special(path)) return write_durably(path, text);
   OutputFile out(path);
   out.write(text);
   out.finish();

@@ -14,7 +14,8 @@ namespace pinchlab {
 bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other);
 
 /// A file that appears under its name only when complete. "-" is standard output, and what exists
-/// and is no ordinary file (/dev/null, a pipe) is written directly. Every function throws
+/// and is no ordinary file (/dev/null, a pipe, /dev/stdout whatever that is) is written directly,
+/// on from where it is. Every function throws
 /// std::runtime_error, with the name and the reason, where the file cannot be written.
 class OutputFile {
  public:

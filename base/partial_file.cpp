@@ -2,6 +2,7 @@
 #include "base/partial_file.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <fstream>
@@ -31,18 +32,39 @@ void make_folders(const fs::path& folder) {
   }
 }
 
+fs::path where_links_lead(const fs::path& path) {
+  constexpr int most_links = 40;  // as the kernel has it
+  fs::path place = path;
+  std::error_code none;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(place, none)); ++i) {
+    if (i == most_links) {
+      throw std::runtime_error(path.string() +
+                               ": is a symbolic link that leads nowhere; name a file");
+    }
+    place = place.parent_path() / fs::read_symlink(place);
+  }
+  return place;
+}
+
 PartialFile::PartialFile(std::string path)
-    : path_(std::move(path)), name_(path_ + std::string(partial_ending)) {
+    : path_(std::move(path)),
+      place_(where_links_lead(path_).string()),
+      name_(place_ + std::string(partial_ending)) {
   if (path_.empty()) {
     throw std::runtime_error("the name of a file to write is empty; give it one");
   }
-  const fs::path folder = fs::path(path_).parent_path();
+  const fs::path folder = fs::path(place_).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
     throw std::runtime_error(
         fmt::format("{}: the folder {} does not exist; create it first", path_, folder.string()));
   }
   if (fs::is_directory(path_)) {
     throw std::runtime_error(path_ + ": is a folder; give a file's name");
+  }
+  // A store that links lead into is read only, that nobody may change what has its name there.
+  const bool is_link = place_ != path_;
+  if (is_link && ::access(place_.c_str(), F_OK) == 0 && ::access(place_.c_str(), W_OK) != 0) {
+    throw error("cannot be written");
   }
 }
 
@@ -55,7 +77,7 @@ PartialFile::~PartialFile() {
 
 void PartialFile::keep() {
   std::error_code error;
-  fs::rename(name_, path_, error);
+  fs::rename(name_, place_, error);
   if (error) {
     throw std::runtime_error(path_ + ": cannot be put in place: " + error.message());
   }

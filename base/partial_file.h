@@ -23,8 +23,12 @@ inline constexpr std::string_view partial_ending = ".partial";
 /// std::runtime_error with its name, the reason and the cure.
 void make_folders(const std::filesystem::path& folder);
 
+/// The path itself, or where it leads to in the end if it is a symbolic link, there or not yet.
+/// Throws std::runtime_error where links go round.
+std::filesystem::path where_links_lead(const std::filesystem::path& path);
+
 /// The file is written as name() in the folder of its final path; keep() renames it, the destructor
-/// removes it otherwise.
+/// removes it otherwise. A symbolic link stays one: what it leads to is written, if that may be.
 class PartialFile {
  public:
   /// Throws std::runtime_error if the folder does not exist, or the path is a folder or empty.
@@ -42,7 +46,7 @@ class PartialFile {
   std::runtime_error error(std::string_view what) const;
 
  private:
-  std::string path_, name_;
+  std::string path_, place_, name_;  // the place: without links
   bool kept_ = false;
 };
 

@@ -127,7 +127,8 @@ std::string pointer_token(const std::string& key) {
 json parse_strict_json(std::string_view text, std::size_t max_depth) {
   // To the library a byte of zero is the end of the text, whatever comes after it.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
-    throw JsonError(line_and_column(text, zero + 1), "not JSON: a byte of zero");
+    throw JsonError(line_and_column(text, zero + 1),
+                    "not JSON: a byte of zero; save the file as UTF-8");
   }
   Builder builder(text, max_depth);
   json::sax_parse(text, &builder);

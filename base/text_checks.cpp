@@ -54,6 +54,16 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+bool has_control_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (byte < 0x20 || byte == 0x7F) return true;
+    const bool may_be = byte == 0xC2 && i + 1 < text.size();
+    if (may_be && static_cast<unsigned char>(text[i + 1]) < 0xA0) return true;
+  }
+  return false;
+}
+
 std::string why_not_a_name(std::string_view name) {
   if (name.empty()) return "it is empty";
   if (name.size() > 128) return "it is longer than 128 bytes";
@@ -61,8 +71,7 @@ std::string why_not_a_name(std::string_view name) {
   for (size_t i = 0; i < name.size();) {
     const size_t length = utf8_length(name.substr(i));
     if (length == 0) return "it is not valid UTF-8 (save the file as UTF-8)";
-    const auto lead = static_cast<unsigned char>(name[i]);
-    if (lead < 0x20 || lead == 0x7F) return "it holds a control character";
+    if (has_control_character(name.substr(i, length))) return "it holds a control character";
     i += length;
   }
   return "";

@@ -13,6 +13,10 @@ namespace pinchlab {
 /// "`a`, `b` or `c`", for messages that list what would be right.
 std::string one_of(std::span<const std::string> words);
 
+/// Whether UTF-8 text has a control character: below U+0020, or U+007F to U+009F, which terminals
+/// obey, too.
+bool has_control_character(std::string_view text);
+
 /// Why `name` cannot name a participant, a demonstration or a group ("" if it can): names have 1 to
 /// 128 bytes of valid UTF-8, no control characters and no blanks at the ends.
 std::string why_not_a_name(std::string_view name);

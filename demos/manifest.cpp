@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string_view>
 
 #include "base/output_file.h"
+#include "base/read_file.h"
 #include "base/sha256.h"
 
 namespace pinchlab {
@@ -52,10 +51,9 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(path)) {
     return {};
   }
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  const ordered_json value = ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!in || !value.is_object() || value.value("format", ordered_json()) != format_name ||
+  const ordered_json value =
+      ordered_json::parse(read_whole(path), nullptr, /*allow_exceptions=*/false);
+  if (!value.is_object() || value.value("format", ordered_json()) != format_name ||
       !value.contains("clips") || !value["clips"].is_array() ||
       !std::ranges::all_of(value["clips"], is_entry)) {
     throw std::runtime_error(

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -101,7 +102,10 @@ void write_png(const std::string& path, int width, int height, const std::uint8_
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  errno = 0;
   if (png_image_write_to_stdio(&image, file.get(), 0, stored.data(), 0, nullptr) == 0) {
+    if (errno != 0)
+      throw partial.error("cannot be written");  // the disk's reason, not "Write Error"
     throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, image.message));
   }
   if (std::fclose(file.release()) != 0) throw partial.error("cannot be written");

@@ -37,7 +37,7 @@ bool check_finite(const Scene& scene, World& world) {
     }
     world.failure = fmt::format(
         "step {} (t = {} s): velocity of body '{}' is not finite{}; method {}", world.step,
-        world.time(), scene.bodies[b].name, cables, to_string(world.configuration.method));
+        world.time(), scene.bodies[b].name, cables, to_string(world.configuration));
     return false;
   }
   return true;
@@ -59,7 +59,7 @@ bool check_distances(const Scene& scene, World& world) {
           "of "
           "the half width of cable '{}'; method {}",
           world.step, world.time(), scene.bodies[b].name, distance, cable.name,
-          to_string(world.configuration.method));
+          to_string(world.configuration));
       return false;
     }
   }
@@ -87,7 +87,7 @@ bool check_positions(const Scene& scene, World& world) {
   }
   if (bodies) what = fmt::format("a span of cable '{}'", scene.cables[c].name);
   world.failure = fmt::format("step {} (t = {} s): {} is not finite; method {}", world.step,
-                              world.time(), what, to_string(world.configuration.method));
+                              world.time(), what, to_string(world.configuration));
   return false;
 }
 

@@ -85,9 +85,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   DeskOptions desk_options;
   desk_options.config = read_or_default(options.config);
   Config& config = desk_options.config;
-  if (options.participants > 0) {
-    config.participant_limit = options.participants;
-  }
+  if (options.participants > 0) config.participant_limit = options.participants;
   if (config.one_time_links && config.participant_limit == 0) {
     throw std::invalid_argument(
         "one-time links need to know for how many: give --participants, or participant_limit in "
@@ -95,6 +93,7 @@ void serve(const ServeOptions& options, const Stimuli& stimuli) {
   }
   config.is_pilot = options.pilot;
   check_address(options.server.host, options.server.port);
+  check_answers_folder(options.answers);  // before clips, which may take minutes
   desk_options.clips = prepare(config, stimuli, options.clips, options.no_webm);
   desk_options.answers = options.answers;
   if (options.has_seed) {
@@ -398,6 +397,7 @@ void simulate_participants(SimulateOptions& options, const Stimuli& stimuli) {
   desk_options.config.one_time_links = false;
   desk_options.config.recruiting.reset();
   desk_options.config.participant_limit = 0;
+  check_answers_folder(options.answers);
   desk_options.clips = prepare(desk_options.config, stimuli, options.clips, true);
   desk_options.answers = options.answers;
   desk_options.seed = options.simulation.seed = options.seed;

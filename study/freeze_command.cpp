@@ -44,7 +44,6 @@ constexpr const char* footer =
 void run(const Options& options, const Stimuli& stimuli) {
   FreezeOptions design;
   design.config = read_or_default(options.config);
-  design.clips = prepare(design.config, stimuli, options.clips, options.no_webm);
   design.answers = options.answers;
   if (options.has_seed) design.seed = options.seed;
   if (options.stopping.empty()) {
@@ -59,6 +58,8 @@ void run(const Options& options, const Stimuli& stimuli) {
     design.rules =
         parse_rules(read_json_file(options.rules, largest_file), options.rules.string(), kind);
   }
+  // Clips may take minutes: what is wrong with the files above has been told.
+  design.clips = prepare(design.config, stimuli, options.clips, options.no_webm);
   check_sample(design);
   check_rules(design);
   design.pilot = options.pilot;

@@ -66,13 +66,29 @@ fs::path running_folder(const fs::path& answers) {
   return answers / ".running";
 }
 
+namespace {
+
+void check_made(const fs::path& answers, const std::error_code& problem) {
+  if (!problem) return;
+  throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
+                                       answers.string(), problem.message()));
+}
+
+}  // namespace
+
+void check_answers_folder(const fs::path& answers) {
+  std::error_code none;
+  fs::path there = fs::absolute(answers, none);
+  while (!fs::exists(there, none) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, none)) {
+    check_made(answers, std::make_error_code(std::errc::not_a_directory));
+  }
+}
+
 void make_answers_folder(const fs::path& answers) {
   std::error_code problem;
   fs::create_directories(running_folder(answers), problem);
-  if (problem) {
-    throw std::runtime_error(fmt::format("{}: cannot be made: {}; use another --answers",
-                                         answers.string(), problem.message()));
-  }
+  check_made(answers, problem);
 }
 
 std::uint64_t random_seed() {

@@ -24,6 +24,9 @@ std::filesystem::path running_folder(const std::filesystem::path& answers);
 /// Makes that folder, and `answers`, where they are missing. Throws std::runtime_error.
 void make_answers_folder(const std::filesystem::path& answers);
 
+/// Throws std::runtime_error where it cannot be made since something else is there; makes nothing.
+void check_answers_folder(const std::filesystem::path& answers);
+
 /// A seed from the kernel's random numbers, 0 to 2^48 - 1.
 std::uint64_t random_seed();
 

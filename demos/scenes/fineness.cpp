@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <optional>
 
 #include "base/progress.h"
 
@@ -38,7 +39,8 @@ Scene made_finer(const Scene& scene, int factor) {
 
 Fineness find_fineness(const SceneFile& file, const Scene& scene,
                        const Configuration& configuration, int last,
-                       std::optional<double> time_limit, const std::function<void()>& calls) {
+                       std::optional<double> time_limit,
+                       const std::function<void(int steps_per_frame, int frame)>& measured) {
   Fineness found{1, scene.steps_per_frame, scene.error, std::nullopt};
   if (!(scene.error > 0.0) || !locates_events(configuration)) return found;
   for (;; found.factor *= 2) {
@@ -53,7 +55,7 @@ Fineness find_fineness(const SceneFile& file, const Scene& scene,
       finer.advance_to(frame);
       believed = std::max(believed, 2.0 * largest_distance(player, finer));
       if (believed > scene.error && found.factor < most_fine) break;
-      if (calls) calls();
+      if (measured) measured(found.steps_per_frame, frame);
     }
     if (believed <= scene.error || found.factor == most_fine) {
       found.believed = believed;
@@ -65,9 +67,16 @@ Fineness find_fineness(const SceneFile& file, const Scene& scene,
 Fineness find_fineness_aloud(const SceneFile& file, const Scene& scene,
                              const Configuration& configuration, int last,
                              std::optional<double> time_limit, const std::string& who) {
-  Progress progress("measuring the error of " + who, "frames", last);
-  return find_fineness(file, scene, configuration, last, time_limit,
-                       [&progress] { progress.add(1); });
+  std::optional<Progress> progress;
+  return find_fineness(
+      file, scene, configuration, last, time_limit, [&](int steps_per_frame, int frame) {
+        if (frame == 1) {
+          progress.emplace(
+              fmt::format("measuring the error of {} with {} steps a frame", who, steps_per_frame),
+              "frames", last);
+        }
+        progress->add(1);
+      });
 }
 
 void tell_fineness(const std::string& file, const Fineness& fineness) {

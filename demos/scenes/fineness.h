@@ -32,11 +32,12 @@ struct Fineness {
 Scene made_finer(const Scene& scene, int factor);
 
 /// Doubles the steps, up to 8 times as many, until what the scene asks for is believed of all
-/// frames up to `last`. `calls` is called after each frame that has been measured. Throws as Player
-/// does, and where one simulation takes longer than `time_limit` (s).
+/// frames up to `last`. `measured` is called after each frame, which begin anew with each number of
+/// steps. Throws as Player does, and where one simulation takes longer than `time_limit` (s).
 Fineness find_fineness(const SceneFile& file, const Scene& scene,
                        const Configuration& configuration, int last,
-                       std::optional<double> time_limit, const std::function<void()>& calls = {});
+                       std::optional<double> time_limit,
+                       const std::function<void(int steps_per_frame, int frame)>& measured = {});
 
 /// The same, and tells on standard error how far it is with `who`, such as "drop, pinch".
 Fineness find_fineness_aloud(const SceneFile& file, const Scene& scene,

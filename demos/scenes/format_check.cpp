@@ -9,6 +9,7 @@
 
 #include "base/did_you_mean.h"
 #include "base/strict_json.h"
+#include "base/text_checks.h"
 
 namespace pinchlab {
 namespace {
@@ -135,11 +136,10 @@ void check_text(const json& value, const KeyFormat& key, const std::string& plac
     return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
   };
   const auto length = static_cast<double>(std::ranges::count_if(text, starts_character));
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7f; };
   if (length < key.low || length > key.high) {
     problems.push_back({place, fmt::format("must be {} to {} characters long, not {}", key.low,
                                            key.high, length)});
-  } else if (std::ranges::any_of(text, is_control)) {
+  } else if (has_control_character(text)) {
     problems.push_back({place, "must be one line without control characters"});
   } else if (key.type == KeyType::name && (text.find_first_of(",\"") != std::string::npos ||
                                            text.front() == ' ' || text.back() == ' ')) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/at.h"
 #include "sim/nodes.h"
 #include "sim/scene_error.h"
@@ -31,6 +33,40 @@ bool are_few(const std::vector<Cable>& cables, std::vector<SceneProblem>& proble
   return true;
 }
 
+// What a cable is made of has names of its own in tables.
+void check_names(const NodedCable& made, const SceneContent& to, std::size_t cables,
+                 const std::map<std::string, int>& body_names,
+                 std::vector<SceneProblem>& problems) {
+  const Scene& scene = to.scene;
+  const auto problem = [&](const char* part, const std::string& name) {
+    problems.push_back(
+        {fmt::format("/cables/{}/name", made.cable),
+         fmt::format("a {} of it is called \"{}\" in tables, as something else is; choose another "
+                     "name",
+                     part, name)});
+  };
+  for (int i = 0; i < made.bodies; ++i) {
+    const std::string& name = at(scene.bodies, made.first_body + i).name;
+    const auto other = body_names.find(name);
+    if (other == body_names.end()) continue;
+    if (at(scene.bodies, other->second).carrier >= 0) {  // a shape, which no key names
+      problem("node", name);
+      continue;
+    }
+    problems.push_back(
+        {fmt::format("/bodies/{}/name", other->second),
+         fmt::format("\"{}\" is the name of a node of a cable; choose another", name)});
+  }
+  for (int i = 0; i < made.pieces; ++i) {
+    const std::string& name = at(scene.cables, made.first_piece + i).name;
+    const auto others = scene.cables.begin() + static_cast<std::ptrdiff_t>(cables);
+    if (std::any_of(scene.cables.begin(), others,
+                    [&name](const Cable& other) { return other.name == name; })) {
+      problem("piece", name);
+    }
+  }
+}
+
 }  // namespace
 
 void read_nodes(SceneContent& to, const std::map<std::string, int>& body_names,
@@ -41,13 +77,8 @@ void read_nodes(SceneContent& to, const std::map<std::string, int>& body_names,
     for (const NodedCable& made : spread_nodes(to.scene)) {
       const Cable& cable = at(cables, made.cable);
       if (cable.nodes <= 0) to.chosen_nodes.push_back({cable.name, made.bodies});
+      check_names(made, to, cables.size(), body_names, problems);
       for (int i = 0; i < made.bodies; ++i) {
-        const std::string& name = at(to.scene.bodies, made.first_body + i).name;
-        if (body_names.contains(name)) {
-          problems.push_back(
-              {fmt::format("/bodies/{}/name", body_names.at(name)),
-               fmt::format("\"{}\" is the name of a node of a cable; choose another", name)});
-        }
         BodyLook look;
         look.label = "";
         look.marks = false;

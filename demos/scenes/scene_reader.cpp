@@ -90,6 +90,8 @@ void Reader::claim_shape(const Scene& scene, std::size_t shape) {
   const auto [other, is_new] =
       body_names_.emplace(scene.bodies[shape].name, static_cast<int>(shape));
   if (is_new) return;
+  // Two bodies of one name have shapes of one name; the bodies' is told.
+  if (at(scene.bodies, other->second).carrier >= 0) return;
   problem(fmt::format("/bodies/{}/name", other->second),
           fmt::format("\"{}\" is the name of a shape of body \"{}\"; choose another", other->first,
                       at(scene.bodies, scene.bodies[shape].carrier).name));

@@ -102,14 +102,15 @@ void write_trajectory(const SceneFile& file, const TrajectoryOptions& options) {
   check_error_is_heeded(options.timing, {&options.configuration, 1});
   const int last = last_frame(asked, options.until);
   if (!options.quiet) tell_last_time(file, asked, options.until, last);
+  // Before the work: what cannot be written is told at once.
+  OutputFile bodies(options.out);
+  std::optional<OutputFile> segments;
+  if (options.segments) segments.emplace(*options.segments);
   const Fineness fineness = find_fineness(file, asked, last, options);
   const Scene scene = made_finer(asked, fineness.factor);
   Player player(file, scene, options.configuration);
-  OutputFile bodies(options.out);
   bodies.write("time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n");
-  std::optional<OutputFile> segments;
-  if (options.segments) {
-    segments.emplace(*options.segments);
+  if (segments) {
     segments->write(
         "time_s,cable,segment,from_body,to_body,length_m,rest_length_m,tension_n,pinched,"
         "slipping\n");

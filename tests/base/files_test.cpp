@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <ostream>
+#include <string>
 
 #include "base/durable_file.h"
 #include "base/folder_lock.h"
@@ -78,6 +81,76 @@ TEST(OutputFile, WritesDirectlyToWhatIsNoOrdinaryFile) {
   full.write("x");
   EXPECT_EQ(message_of<std::runtime_error>([&] { full.finish(); }),
             "/dev/full: cannot be written: No space left on device");
+}
+
+// As root a link in /dev would be gone for the whole machine.
+TEST(OutputFile, GoesOnWithAFileThatIsOpenAlready) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "file";
+  const fs::path link = folder.path() / "stdout";
+  std::FILE* const open = std::fopen(file.c_str(), "wb");
+  ASSERT_NE(open, nullptr);
+  std::fputs("before, ", open);
+  std::fflush(open);
+  fs::create_symlink("/proc/self/fd/" + std::to_string(::fileno(open)), link);
+  {
+    OutputFile out(link);
+    out.write("one, ");
+    out.finish();
+  }
+  write_result(link, "two, ");
+  std::fputs("after", open);
+  std::fclose(open);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_whole(file), "before, one, two, after");
+  EXPECT_EQ(files_in(folder.path()), 2U);
+}
+
+TEST(PartialFile, WritesWhatALinkLeadsTo) {
+  const TemporaryFolder folder;
+  const fs::path inner = folder.path() / "inner";
+  fs::create_directory(inner);
+  fs::create_symlink("inner/second", folder.path() / "first");  // relative to where it lies
+  fs::create_symlink("file", inner / "second");
+  for (const char* text : {"not there yet", "there"}) {
+    OutputFile out(folder.path() / "first");
+    out.write(text);
+    out.finish();
+    EXPECT_EQ(read_whole(inner / "file"), text);
+  }
+  write_durably(folder.path() / "first", "durable");
+  EXPECT_EQ(read_whole(inner / "file"), "durable");
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "first"));
+  EXPECT_TRUE(fs::is_symlink(inner / "second"));
+  EXPECT_FALSE(fs::is_symlink(inner / "file"));
+  EXPECT_EQ(files_in(folder.path()), 2U);
+  EXPECT_EQ(files_in(inner), 2U);
+}
+
+TEST(PartialFile, ChangesNothingReadOnlyThatALinkLeadsTo) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everything";
+  const TemporaryFolder folder;
+  const fs::path stored = folder.write("stored", "as it was");
+  const std::string link = (folder.path() / "link").string();
+  fs::create_symlink(stored, link);
+  fs::permissions(stored, fs::perms::owner_read);
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(link); }),
+            link + ": cannot be written: Permission denied; name a place that you may write to");
+  EXPECT_EQ(read_whole(stored), "as it was");
+}
+
+TEST(PartialFile, TellsOfLinksThatLeadNowhere) {
+  const TemporaryFolder folder;
+  const std::string round = (folder.path() / "round").string();
+  const std::string away = (folder.path() / "away").string();
+  fs::create_symlink("round", round);
+  fs::create_symlink("none/a", away);
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(round); }),
+            round + ": is a symbolic link that leads nowhere; name a file");
+  EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(away); }),
+            away + ": the folder " + (folder.path() / "none").string() +
+                " does not exist; create it first");
+  EXPECT_TRUE(fs::is_symlink(round) && fs::is_symlink(away));
 }
 
 TEST(PartialFile, TellsWhereItCannotBe) {
@@ -181,6 +254,8 @@ TEST(OutputFile, KnowsOneFileByItsNames) {
   EXPECT_FALSE(is_same_file(a, folder.path() / "b"));
   fs::create_symlink(folder.path(), folder.path() / "here");
   EXPECT_TRUE(is_same_file(a, folder.path() / "here" / "a"));
+  fs::create_symlink("a", folder.path() / "link");  // a is not there yet
+  EXPECT_TRUE(is_same_file(a, folder.path() / "link"));
 }
 
 TEST(DurableFile, FailureLeavesNothing) {
@@ -189,6 +264,10 @@ TEST(DurableFile, FailureLeavesNothing) {
   fs::create_directory(folder.path() / "a.json");
   EXPECT_THROW(write_durably(folder.path() / "a.json", "x"), std::runtime_error);
   EXPECT_EQ(files_in(folder.path()), 1U);
+  // The name under which it is written for the time being is nobody's concern.
+  const std::string path = (folder.path() / std::string(250, 'a')).string();
+  EXPECT_EQ(message_of<std::runtime_error>([&] { write_durably(path, "x"); }),
+            path + ": cannot be made: File name too long");
 }
 
 TEST(DurableFile, OnlyTheUserReads) {

@@ -32,7 +32,7 @@ TEST(StrictJson, ReadsWhatIsRight) {
 TEST(StrictJson, RefusesTheRest) {
   EXPECT_EQ(mistake(R"({"a": {"b": 1, "b": 2}})"), "/a/b: key given twice; keep one of them");
   EXPECT_EQ(mistake(std::string("{}\n\0, and more", 14)),
-            "line 2, column 1: not JSON: a byte of zero");
+            "line 2, column 1: not JSON: a byte of zero; save the file as UTF-8");
   EXPECT_EQ(mistake(R"([{"a/b~c": 0, "a/b~c": 0}])"),
             "/0/a~1b~0c: key given twice; keep one of them");
   EXPECT_EQ(mistake("[[[]]]", 2), "/0: nested deeper than 2 levels");

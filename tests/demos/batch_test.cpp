@@ -362,6 +362,11 @@ TEST(Batch, ForeignManifestIsNotOverwritten) {
               "clip made anew\n");
     EXPECT_EQ(names_in(folder / "clips"), std::set<std::string>{"manifest.json"});
   }
+  const fs::path folder = folder_with_demos();
+  fs::create_directories(folder / "clips/manifest.json");
+  const RunResult run = run_program(folder, render);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "clips/manifest.json: cannot be read: Is a directory\n");
 }
 
 TEST(FindScenes, FolderStandsForItsNumberedScenesInOrder) {

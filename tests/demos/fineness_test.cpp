@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 
 #include "demos/scenes/build.h"
 #include "sim/joints.h"
@@ -96,6 +97,22 @@ TEST(Fineness, SaysWhereItIsNotReached) {
   EXPECT_NE(lines[0].find("more than the error of 1e-09 m asked for, with 32 steps a frame"),
             std::string::npos)
       << lines[0];
+}
+
+// Each measurement begins anew: what is told of how far it is stays below 100 %.
+TEST(Fineness, TellsHowFarEachMeasurementIs) {
+  Known known = on_a_spring();
+  known.scene.error = 1e-9;
+  SceneFile file;
+  file.scene = known.scene;
+  std::map<int, int> first, last;  // frame, by steps a frame
+  find_fineness(file, known.scene, Method::pinch, 60, std::nullopt, [&](int steps, int frame) {
+    first.emplace(steps, frame);
+    EXPECT_EQ(frame, last.contains(steps) ? last[steps] + 1 : 1);
+    last[steps] = frame;
+  });
+  EXPECT_EQ(first.at(32), 1);
+  EXPECT_EQ(last.at(32), 60);
 }
 
 TEST(Fineness, MeasuresNothingThatNobodyAskedFor) {

@@ -161,5 +161,24 @@ TEST(HelpPages, ManualIsCleanRoff) {
   EXPECT_EQ(text_of(folder / "said.txt"), "");
 }
 
+// Where there is nothing else to run, so that nothing is installed or built either.
+TEST(HelpPages, ScriptsTellWhatTheyDo) {
+  const fs::path folder = scratch_folder();
+  for (const char* tool : {"dirname", "sed"}) {
+    fs::create_symlink(fs::path("/usr/bin") / tool, folder / tool);
+  }
+  for (const char* script : {"demos/run", "study/run", "tests/run"}) {
+    for (const char* flag : {"--help", "-h"}) {
+      const std::string line =
+          fmt::format("PATH='{0}' {1}/{2} {3} > '{0}/out.txt' 2> '{0}/err.txt'", folder.string(),
+                      PINCHLAB_SOURCE_DIR, script, flag);
+      EXPECT_EQ(std::system(line.c_str()), 0) << line;
+      EXPECT_NE(text_of(folder / "out.txt").find(fmt::format("\n  {} ", script)), std::string::npos)
+          << text_of(folder / "out.txt");
+      EXPECT_EQ(text_of(folder / "err.txt"), "");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab

@@ -88,6 +88,71 @@ TEST(Usage, WhatIsOfUseIsNot) {
   }
 }
 
+// Before minutes of work, not after.
+TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
+  const fs::path folder = folder_with_scene();
+  fs::create_directories(folder / "demos");
+  fs::copy(folder / "01-small.json", folder / "demos" / "01-small.json");
+  const std::pair<std::vector<std::string>, const char*> bad[] = {
+      {{"simulate", "01-small.json", "--out", "none/a.csv", "--error", "1e-3", "--time-limit",
+        "1e-6"},
+       "none/a.csv: the folder none does not exist; create it first\n"},
+      {{"study", "serve", "--clips", "clips", "--answers", "01-small.json", "--port", "0"},
+       "01-small.json: cannot be made: Not a directory; use another --answers\n"},
+      {{"study", "freeze", "--clips", "clips", "--answers", "answers", "--out", "frozen",
+        "--stopping", "none.json"},
+       "none.json: cannot be opened: No such file or directory\n"},
+      {{"study", "freeze", "--clips", "clips", "--answers", "answers", "--out", "frozen",
+        "--participants", "4", "--rules", "none.json"},
+       "none.json: cannot be opened: No such file or directory\n"}};
+  for (const auto& [command, message] : bad) {
+    const RunResult run = run_program(folder, command);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_EQ(run.err, message) << fmt::format("{}", fmt::join(command, " "));
+  }
+  EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+// Or the next file that is opened would take its place, and the messages.
+TEST(Usage, AClosedStreamTakesNoFilesPlace) {
+  const fs::path folder = folder_with_scene();
+  const auto run = [&folder](const char* to) {
+    return std::system(fmt::format("cd '{}' && '{}' simulate 01-small.json --until 0.51 --out {}",
+                                   folder.string(), PINCHLAB_PROGRAM, to)
+                           .c_str());
+  };
+  EXPECT_EQ(run("open.csv 2> err.txt"), 0);
+  EXPECT_EQ(run("closed.csv <&- >&- 2>&-"), 0);
+  EXPECT_EQ(text_of(folder / "closed.csv"), text_of(folder / "open.csv"));
+  EXPECT_NE(run("- >&- 2> err.txt"), 0);
+  EXPECT_NE(text_of(folder / "err.txt").find("\nstandard output: cannot be written: Bad file"),
+            std::string::npos)
+      << text_of(folder / "err.txt");
+}
+
+TEST(Usage, WhatTheDiskSaysBeginsWithItsPlace) {
+  const fs::path folder = scratch_folder();
+  fs::create_directory(folder / "answers");
+  fs::create_symlink("round.json", folder / "answers" / "round.json");
+  const RunResult run = run_program(folder, {"analyse", "answers", "--out", "report"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.err, "answers/round.json: Too many levels of symbolic links\n");
+}
+
+TEST(Usage, ALinkStaysOne) {
+  const fs::path folder = folder_with_scene();
+  fs::create_symlink("there.csv", folder / "link.csv");
+  for (const char* both : {"link.csv", "./there.csv"}) {
+    const RunResult same =
+        run_program(folder, {"simulate", "01-small.json", "--out", "link.csv", "--segments", both});
+    EXPECT_EQ(same.exit_code, 2);
+    EXPECT_EQ(same.err, "--out and --segments must be different files\n");
+  }
+  EXPECT_EQ(run_program(folder, {"simulate", "01-small.json", "--out", "link.csv"}).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(folder / "link.csv"));
+  EXPECT_TRUE(text_of(folder / "there.csv").starts_with("time_s,body,"));
+}
+
 TEST(Usage, ATimeBetweenTwoFramesIsSaidToBe) {
   const fs::path folder = folder_with_scene();  // 30 frames a second
   const auto err = [&](const char* until) {
@@ -174,6 +239,11 @@ TEST(Usage, AFullDiskIsToldInOneWay) {
               "standard output: cannot be written: No space left on device\n")
         << command;
   }
+  constexpr rlim_t most = 100;  // bytes a file
+  const RunResult picture =
+      run_program(folder, {"still", "01-small.json", "--time", "1", "--out", "x.png"}, most);
+  EXPECT_EQ(picture.exit_code, 1);
+  EXPECT_EQ(picture.err, "x.png: cannot be written: File too large\n");
 }
 
 }  // namespace

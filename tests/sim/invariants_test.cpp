@@ -170,6 +170,10 @@ TEST(Invariants, BodiesOutOfReachOfNumbersStopTheRun) {
               expected == StepStatus::failed)
         << world.failure;
   }
+  World world = make_world(scene, thesis_configuration());
+  Workspace work;
+  EXPECT_EQ(step(scene, world, work), StepStatus::failed);
+  EXPECT_TRUE(world.failure.ends_with("'; method thesis")) << world.failure;
 }
 
 /// Random falls of free rollers on wrapped pulleys, under every method: nothing may break.

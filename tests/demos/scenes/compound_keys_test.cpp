@@ -158,6 +158,22 @@ TEST(CompoundErrors, NamesAndEnds) {
             "s.json: /bodies/0/name: \"left weight:2\" is the name of a shape of body \"left "
             "weight\"; choose "
             "another");
+  // Places are the file's, not those of the shapes in the scene.
+  scene = compound_scene();
+  scene["bodies"].push_back(scene["bodies"][1]);
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /bodies/3/name: \"left weight\" is the name of /bodies/1 already");
+  scene = compound_scene();
+  scene["cables"].push_back({{"name", "left weight"},
+                             {"half_width_m", 0.01},
+                             {"mass_per_metre_kg", 1},
+                             {"nodes", 1},
+                             {"slack_m", 0.1},
+                             {"start", {{"world_m", {8, 8}}}},
+                             {"end", {{"world_m", {9, 8}}}}});
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /cables/1/name: a node of it is called \"left weight:1\" in tables, as "
+            "something else is; choose another name");
   scene = compound_scene();
   scene["cables"][0]["start"]["point_m"] = {0, 0.4};
   EXPECT_TRUE(error_of(scene.dump()).starts_with("s.json: /cables/0/start/point_m: lies 0.25"));

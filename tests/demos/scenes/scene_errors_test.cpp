@@ -106,6 +106,11 @@ const BadScene bad_scenes[] = {
     // Ranges
     {"/title", R"("")", "s.json: /title: must be 1 to 80 characters long, not 0"},
     {"/title", R"("two\nlines")", "s.json: /title: must be one line without control characters"},
+    {"/title", R"("\u0000")", "s.json: /title: must be one line without control characters"},
+    {"/bodies/0/name", R"("a\u007f")",
+     "s.json: /bodies/0/name: must be one line without control characters"},
+    {"/bodies/0/name", R"("\u009b31m")",
+     "s.json: /bodies/0/name: must be one line without control characters"},
     {"/bodies", "[]", "s.json: /bodies: must have 1 to 10000 entries, not 0"},
     {"/bodies/0/name", R"("a,b")",
      "s.json: /bodies/0/name: a name must have no comma, no quote and no space at its ends"},

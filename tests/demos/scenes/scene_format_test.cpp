@@ -67,12 +67,15 @@ json schema_of(const KeyFormat& key) {
               {"maxItems", key.high}};
     }
     case KeyType::text:
-      return {{"type", "string"}, {"minLength", key.low}, {"maxLength", key.high}};
+      return {{"type", "string"},
+              {"minLength", key.low},
+              {"maxLength", key.high},
+              {"pattern", R"(^[^\u0000-\u001f\u007f-\u009f]*$)"}};
     case KeyType::name:
       return {{"type", "string"},
               {"minLength", key.low},
               {"maxLength", key.high},
-              {"pattern", R"(^(?! )[^,"]*(?<! )$)"}};
+              {"pattern", R"(^(?! )[^,"\u0000-\u001f\u007f-\u009f]*(?<! )$)"}};
     case KeyType::boolean:
       return {{"type", "boolean"}};
     case KeyType::choice:

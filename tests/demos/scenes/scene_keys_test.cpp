@@ -275,6 +275,14 @@ TEST(SceneErrors, CablesWithMassLieOnTheirNodes) {
   scene["bodies"][0]["name"] = "chain:3";
   EXPECT_EQ(error_of(scene.dump()),
             "s.json: /bodies/0/name: \"chain:3\" is the name of a node of a cable; choose another");
+  scene = hanging_scene();
+  scene["cables"].push_back({{"name", "chain:3"},
+                             {"half_width_m", 0.01},
+                             {"start", {{"world_m", {8, 8}}}},
+                             {"end", {{"world_m", {9, 8}}}}});
+  EXPECT_EQ(error_of(scene.dump()),
+            "s.json: /cables/0/name: a piece of it is called \"chain:3\" in tables, as something "
+            "else is; choose another name");
 }
 
 /// The small scene with one joint: `changes` to a rod from its wheel to a weight.
