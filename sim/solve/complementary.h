@@ -16,11 +16,11 @@
 // with limit+ = k T_in + mu N - p_middle and so on (capstan.h). For z >= 0 the matrix has
 //     z' M z = p' J M^-1 J' p + lambda mu N + sigma+ (k - 1) T_in + ...  >= 0
 // where no middle body that rubs comes before an arc: it is copositive, and Lemke's method finds a
-// solution if velocities are that all conditions allow (lemke.h). Doubles mostly find what bears
-// force in it. Its values are found in extended numbers, and so is what bears where doubles find
-// nothing that holds, or what contradicts itself: of a body in a span that bends by 1e-7 they do
-// not tell that the span holds it, and of impulses that are ten million times what they come to
-// velocities lose half of their digits.
+// solution if velocities are that all conditions allow (lemke.h). Of many unknowns doubles mostly
+// find what bears force in it. Its values are found in extended numbers, and so is what bears where
+// doubles find nothing that holds, or impulses that all but cancel one another: of a body in a span
+// that bends by 1e-7 they do not tell that the span holds it, and of impulses that are ten million
+// times what they come to velocities lose half of their digits.
 
 namespace pinchlab {
 
