@@ -99,8 +99,7 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
           "apng, webp or gif (with --fps 50) [h264]")
       ->type_name("C")
       ->check(CLI::IsMember({"h264", "vp9", "ffv1", "apng", "webp", "gif"}));
-  add_time_limit(command, options.time_limit,
-                 "Give up on a clip's simulation (an error is measured by several)");
+  add_simulation_limit(command, options.time_limit, "a clip's");
   command.add_option("--jobs", options.jobs, "Clips made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
@@ -279,8 +278,7 @@ void add_still(CLI::App& app) {
   add_error(*command, options->timing)->excludes(command->get_option("--table"));
   add_theme(*command, options->theme, options->burn_time);
   add_size(*command, options->size, "Pixels of one picture [960x960; in a sheet 480x480]");
-  add_time_limit(*command, options->time_limit,
-                 "Give up on a simulation (an error is measured by several)");
+  add_simulation_limit(*command, options->time_limit, "a");
   command->footer(
       "Examples:\n"
       "  pinchlab still demos/03-drop.json --time 2.5 --out drop.png\n"
@@ -322,8 +320,7 @@ void add_simulate(CLI::App& app) {
                    "Steps a frame [the scene's]")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
-  add_time_limit(*command, options->time_limit,
-                 "Give up on a simulation (an error is measured by several)");
+  add_simulation_limit(*command, options->time_limit, "a");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
       "SEG.csv:  "
@@ -353,8 +350,7 @@ void add_baseline(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "baseline", "Which baseline is fair for a scene: how each method does, and a recommendation");
   add_scene(*command, options->scene);
-  add_time_limit(*command, options->time_limit,
-                 "Give up on a method's simulation (an error is measured by several)");
+  add_simulation_limit(*command, options->time_limit, "a method's");
   command->footer(
       "Plain cable joints (cable) are recommended where they break nothing, not even the scene's "
       "error_m, and\nmove as smoothly as pinch joints without contact (pinch_no_contact), under "

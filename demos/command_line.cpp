@@ -60,6 +60,12 @@ void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std
       ->check(number_in(1e-6, 1e9));
 }
 
+void add_simulation_limit(CLI::App& command, std::optional<double>& seconds,
+                          const std::string& whose) {
+  add_time_limit(command, seconds,
+                 fmt::format("Give up on {} simulation (an error is measured by several)", whose));
+}
+
 std::string unknown_words(const CLI::App& app) {
   const CLI::App* command = &app;  // the innermost that was named
   while (!command->get_subcommands().empty()) command = command->get_subcommands().front();

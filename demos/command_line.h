@@ -21,6 +21,10 @@ void add_size(CLI::App& command, Size& size, const std::string& help);
 /// --time-limit S.
 void add_time_limit(CLI::App& command, std::optional<double>& seconds, const std::string& what);
 
+/// The same of each simulation of `whose`, such as "a clip's".
+void add_simulation_limit(CLI::App& command, std::optional<double>& seconds,
+                          const std::string& whose);
+
 /// What the command line has that no command knows, with the cure, once app.parse() has thrown;
 /// empty if that was for another reason.
 std::string unknown_words(const CLI::App& app);

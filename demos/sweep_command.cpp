@@ -77,8 +77,7 @@ void add_rendering(CLI::App& command, BatchOptions& render, Size& size, bool& bu
       "--report", render.report,
       "Also how each row's scene differs from its baseline, and when, in figures and a "
       "strip of pictures");
-  add_time_limit(command, render.time_limit,
-                 "Give up on a row's simulation (an error is measured by several)");
+  add_simulation_limit(command, render.time_limit, "a row's");
   command.add_option("--jobs", render.jobs, "Rows made at a time [one a core]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
