@@ -34,7 +34,7 @@ struct Happening {
   int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight;
                         // halts, turns: a contact, if it is one
   int cable = -1;       // link_gone, hit; halts, of one
-  int item = -1;        // link; or span
+  int item = -1;        // link; or span; of a group of rows that is caught or let go, how many
   int body = -1;        // hit; halts, turns: whose motor it is, if it is one
   int corner = -1;      // hit: of the body, if it is a polygon
   int orientation = 0;  // hit

@@ -135,7 +135,7 @@ struct alignas(64) CableState {
                    // finest that it is made of; 0: dormant, part of another
   bool closed = false;
   bool elastic = false;  // of finite stiffness
-  bool creeps = false;   // elastic, and rims carry it over stretched where it does not slip
+  bool creeps = false;   // elastic, and rims carry it over stretched: creep.h
   bool rod = false;      // bears force both ways: a piece between nodes, or a joint
   bool piece = false;    // between nodes
   bool fills = false;    // lies in layers on a body that holds an end of it

@@ -147,7 +147,7 @@ bool may_carry(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
   const double mu = at(world.bodies, link.body).cable_friction;
   return cable.creeps && link.orientation != 0 && link.layers.way == 0 &&
-         (mu == infinity || (mu == 0.0 && cable.density == 0.0));
+         (mu == infinity || cable.density == 0.0);
 }
 
 void begin_to_carry(const World& world, CableState& cable, std::size_t i, double slope) {
@@ -163,12 +163,12 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i, double
 
 // The strain at the middle of the interval to come is extrapolated from those at its start and at
 // the start of the one before, so that creep is of second order.
-void lay_down(const World& world, CableState& cable) {
+void lay_down(const World& world, CableState& cable, double time) {
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Rim& rim = cable.rims[i];
     if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);
   }
-  if (slides_without_mass(world, cable)) relax_rims(world, cable);
+  if (slides_without_mass(world, cable)) relax_rims(world, cable, time);
   for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
     const std::size_t before = index(previous_link(cable, static_cast<int>(i)));
     Rim& rim = cable.rims[i];

@@ -5,8 +5,9 @@
 // taken, whatever the tension is where it goes off: the belt on a driven pulley is slower than on
 // the one that drives it,
 //     w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA).
-// On discs and corners that a cable does not slip on. What lies on smooth ones is as stretched as
-// what is beside it (relax.h); elsewhere rims carry as much as they turn.
+// On discs and corners. Where a cable without mass slides over them, what lies there is stretched
+// as it is pulled (relax.h). Such as one with mass may slip on, and layers, carry as much as they
+// turn.
 
 #include <algorithm>
 
@@ -52,8 +53,9 @@ bool may_carry(const World& world, const CableState& cable, std::size_t link);
 void begin_to_carry(const World& world, CableState& cable, std::size_t link, double slope = 1.0);
 
 /// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has
-/// gone off them is forgotten; and sets what will come on in the next.
-void lay_down(const World& world, CableState& cable);
+/// gone off them is forgotten; and sets what will come on in the next. The interval's length is
+/// `time` (s); 0 where it is not over.
+void lay_down(const World& world, CableState& cable, double time = 0.0);
 
 /// m/s, by which the rims at the ends of a segment of a cable that creeps change its material
 /// otherwise than they turn, at the world's velocities.

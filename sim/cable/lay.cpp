@@ -300,7 +300,7 @@ void lay_material(const World& world, Course& course) {
   const auto is_free = [&](std::size_t i) {
     const Link& link = cable.links[i];
     const bool side = is_side(at(cable.links, previous_link(cable, static_cast<int>(i))), link);
-    return !side || (evenly && at(world.bodies, link.body).cable_friction == infinity);
+    return !side || (evenly && may_carry(world, cable, i));
   };
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Link& link = cable.links[i];

@@ -194,9 +194,24 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   return hit;
 }
 
+/// Whether the cable would wrap a corner's circle between what is beside it there: a side to link
+/// `end`, before it with `leaves` and else after it, and a span to or from link `other`.
+bool wraps(const World& world, const Link& other, const Circle& circle, const Link& end,
+           bool leaves) {
+  const double radius = end.orientation * circle.margin;
+  const Vec2 beyond = link_centre(world, other), side = circle.now - link_centre(world, end);
+  if (leaves) {
+    const Tangent span = common_tangent(circle.now, radius, beyond, other.signed_radius());
+    return end.orientation * cross(side, span.direction) >= 0.0;
+  }
+  const Tangent span = common_tangent(beyond, other.signed_radius(), circle.now, radius);
+  return end.orientation * cross(span.direction, -side) >= 0.0;
+}
+
 /// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner
 /// side of the cable; likewise one that arrives, the corner before. A span whose other end has got
-/// into the polygon would meet them for ever, and meets none.
+/// into the polygon would meet them for ever, and meets none; nor does one that would leave the
+/// corner at once, since what holds its other end reaches beyond the side's line.
 Hit test_next_corner(const World& world, const Workspace& work, const CableState& cable,
                      std::size_t s, const Link& end, bool leaves) {
   const int count = static_cast<int>(at(world.bodies, end.body).corners.size());
@@ -212,7 +227,11 @@ Hit test_next_corner(const World& world, const Workspace& work, const CableState
   const Vec2 far = turned((leaves ? segment.head : segment.tail) - at(world.position, end.body),
                           -at(world.angle, end.body));
   const std::vector<Vec2>& corners = at(world.bodies, end.body).corners;
-  hit.found = outside_of(corners, far).distance >= circle.margin * (1.0 - graze);
+  const Link& other =
+      leaves ? cable.links[s] : at(cable.links, previous_link(cable, static_cast<int>(s)));
+  hit.found = outside_of(corners, far).distance >= circle.margin * (1.0 - graze) &&
+              wraps(world, other, circle, end, leaves);
+  hit.beside = locates_events(world.configuration);
   hit.body = end.body;
   hit.corner = circle.corner;
   hit.orientation = end.orientation;

@@ -217,21 +217,19 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   Neighbourhood& course = at(work.neighbourhoods.list, n);
   const std::span<const int> parts = parts_of(work.neighbourhoods, n);
   Diagnostics& d = world.diagnostics;
-  bool balances = false;  // stretches: in next to no time these would slide by round-off's impulses
   for (const int p : parts) {
     const Part& part = at(work.parts.list, p);
-    balances = balances || !at(work.systems, part.system).elastic_ends.empty();
     for (const int c : cables_of(work.parts, part)) {
       if (!part.creeps) break;
-      if (CableState& cable = at(world.cables, c); !cable.rims.empty()) lay_down(world, cable);
+      CableState& cable = at(world.cables, c);
+      if (!cable.rims.empty()) lay_down(world, cable, length);
     }
     const bool even = met && course.located && work.events.empty();
     set_pace(world, work.parts, part,
              note_ways(world, work, part, at(work.trials, p), length, even));
   }
   course.time = work.start.time + length;
-  const double left = course.left - length, rounding = 1e-12 * world.step_length;  // s
-  course.left = left > (balances ? rounding : 0.0) ? left : 0.0;
+  course.left = std::max(course.left - length, 0.0);
   course.moved = true;
   course.happened = !work.events.empty();
   course.violated = !met || work.trial.violated;

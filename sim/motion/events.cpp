@@ -140,6 +140,7 @@ void find_catches(const World& world, Workspace& work, int number) {
   }
   if (!slides) return;
   for (const Group& group : capstan.groups) {
+    key.item = group.end - group.begin;  // others that begin with the same row are none of it
     double before = 0.0, now = 0.0;
     if (group.slack < 0) {
       if (s.elastic_ends.empty()) continue;

@@ -23,9 +23,6 @@ namespace {
 
 // Of a step: bodies move so little in it that only round-off would be corrected.
 constexpr double shortest_corrected = 1e-6;
-// Of a step, whose impulses tell forces: in shorter ones what round-off of positions asks for, as
-// much however short they are, is no small part of them.
-constexpr double shortest_told = 1e-3;
 
 /// Everything that moves of a part, `length` seconds after the interval's start.
 void place_part(World& world, Workspace& work, const Part& part, double length, bool begins) {
@@ -99,8 +96,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     trial.settled = trial.settled && settled;
     trial.froze = trial.froze || set.froze;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
-    const bool tells_forces = t.kick > shortest_told * t.repair;
-    store_solution(work.parts, part, s, set.capstan, tells_forces ? t.kick : 0.0, world);
+    store_solution(work.parts, part, s, set.capstan, t.tells_forces() ? t.kick : 0.0, world);
     part.slides = !set.capstan.runs.empty() || part.can_slip || !s.sleeves.empty();
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, attempt.begins && round == 0);

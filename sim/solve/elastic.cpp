@@ -234,9 +234,9 @@ struct Section {
     if (spring.flexibility == 0.0) return spring;
     for (const int link : {previous_link(cable, i), i}) {
       if (!lies_relaxed(world, cable, link)) continue;
-      const double lies = wrapped_material(world, cable, index(link));
-      spring.flexibility += 0.5 * lies / given.axial_stiffness;
-      spring.clearance += 0.5 * (lies - stored_length(at(cable.links, link)));
+      const Beside lies = lies_beside(world, cable, link, link != i);
+      spring.flexibility += lies.material / given.axial_stiffness;
+      spring.clearance += lies.loose;
     }
     return spring;
   }
@@ -336,6 +336,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
 void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                       const TimeSpan& t, PartSystem& s) {
   const std::span<const int> cables = cables_of(parts, part);
+  s.stretch_waits = t.length > 0.0 && !t.tells_forces();
   for (std::size_t place = 0; place < cables.size(); ++place) {
     const CableState& cable = at(world.cables, cables[place]);
     if (!cable.elastic) continue;

@@ -65,6 +65,10 @@ struct TimeSpan {
   bool straight = false;      // no way is curved to the rows. Where they contradict each other by
                               // that, as a span that is about to be pinched does the friction of
                               // the discs beside it, the linear solution is sound still
+
+  /// Whether impulses tell forces: in a shorter kick what round-off of positions asks for, as much
+  /// however short that is, is no small part of them.
+  bool tells_forces() const { return kick > 1e-3 * repair; }
 };
 
 enum class RowKind : std::int8_t {
@@ -301,7 +305,8 @@ struct PartSystem {
   Vec2 rub_fall = Vec2::Zero();                // m/s, and what gravity adds in it
   std::vector<Eigen::Vector3d> unconstrained;  // free velocities before rows; by solve_with_motors
   std::vector<ElasticEnd> elastic_ends;        // of the rows; empty without elastic cables that may
-                                               // slide. By make_all_elastic
+                                               // slide. By make_all_elastic, as
+  bool stretch_waits = false;                  // impulses do not tell how far these slide
   std::vector<int> row_of_segment;             // cable after cable; -1: none. By
                                                // make_segment_rows, as
   std::vector<int> segment_begin;              // of the part's cables, in row_of_segment

@@ -79,6 +79,12 @@ void balance(const PartSystem& system, SolveScratch& set, const Group& group) {
   balance(system, s, begin, group.end, entering, 0.0);
 }
 
+/// Whether a group stretches, in an interval too short to tell by how much: it slides in the next.
+bool is_waiting(const PartSystem& system, const CapstanScratch& s, const Group& group) {
+  const int first = at(s.members, group.begin);
+  return system.stretch_waits && at(system.elastic_ends, first).compliance > 0.0;
+}
+
 /// Lets slack cable go with the middle body of a pinch that holds it more than the wrapped one.
 void follow_middles(const PartSystem& system, CapstanScratch& s) {
   for (const Friction& friction : system.frictions) {
@@ -115,6 +121,7 @@ void slip_speeds(const PartSystem& system, SolveScratch& set) {
       at(s.speeds, m) = member_speed(system, number);
       tension = tension || bears(at(system.rows, number), 0.0);
     }
+    if (elastic && tension && is_waiting(system, s, group)) continue;
     if (elastic && group.slack < 0) balance(system, set, group);
     for (int m = group.begin; m < group.end; ++m) {
       const double w = at(s.speeds, m);

@@ -23,17 +23,8 @@ Scene atwood(double stiffness, double friction) {
   return scene;
 }
 
-/// The stretch of either span over the material that it had when the step began.
-struct Strains {
-  double left = 0.0, right = 0.0;
-};
-
-Strains step_and_measure(const Scene& scene, World& world, Workspace& work) {
-  const std::vector<Segment> before = world.cables[0].segments;
-  EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
-  const std::vector<Segment>& now = world.cables[0].segments;
-  return {(now[1].length - now[1].rest_length) / before[1].rest_length,
-          (now[2].length - now[2].rest_length) / before[2].rest_length};
+double strain(const Segment& span) {
+  return span.length / span.rest_length - 1.0;
 }
 
 // The cable's stretch S obeys S'' = 2 g - k S (1 / m1 + 1 / m2), k = EA / (2.5 m + pi r): what lies
@@ -78,7 +69,7 @@ TEST(ElasticSlip, AtwoodsWeightsOverASmoothPulleyMoveAsSolved) {
 }
 
 // While it slides, the capstan law holds for the tensions of the kick and for those that the spans'
-// stretches tell at the end of each step.
+// strains tell at the end of each step, if that does not end with next to none.
 TEST(ElasticSlip, TensionsFollowTheCapstanLawWithinAndAtTheEndOfSteps) {
   const double friction = 0.1, ratio = std::exp(friction * std::numbers::pi);
   for (const int steps : {1, 4, 16}) {
@@ -89,12 +80,12 @@ TEST(ElasticSlip, TensionsFollowTheCapstanLawWithinAndAtTheEndOfSteps) {
     Workspace work;
     int slid = 0;
     while (world.time() < 0.6) {
-      const Strains strains = step_and_measure(scene, world, work);
+      EXPECT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
       const CableState& rope = world.cables[0];
-      if (rope.links[1].slip != Slip::forward) continue;
+      if (rope.links[1].slip != Slip::forward || strain(rope.segments[2]) < 1e-4) continue;
       ++slid;
       EXPECT_NEAR(rope.segments[2].tension, ratio * rope.segments[1].tension, 1e-9) << steps;
-      EXPECT_NEAR(strains.right, ratio * strains.left, 1e-12) << steps;
+      EXPECT_NEAR(strain(rope.segments[2]), ratio * strain(rope.segments[1]), 1e-12) << steps;
     }
     EXPECT_GT(slid, 10 * steps);
     EXPECT_EQ(world.diagnostics.fallbacks, 0) << steps;
@@ -119,8 +110,8 @@ TEST(ElasticSlip, MakesNoEnergy) {
 }
 
 // What alternated made a million times the energy at play. At one step a frame spans turn far:
-// balanced as if they went straight, some made half of it. Rims with friction carry what is not
-// stretched, for which up to 2 % comes from nothing in some of these (sim/README.md).
+// balanced as if they went straight, some made half of it. Where rims with friction carried what is
+// not stretched, up to 2 % came from nothing in some of these, at any step.
 TEST(ElasticSlip, RandomRopesDoNotRunAway) {
   std::int64_t unsettled = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
@@ -130,7 +121,7 @@ TEST(ElasticSlip, RandomRopesDoNotRunAway) {
       World world = make_world(scene, measured());
       const Extremes most = play(scene, world, 1.0);
       ASSERT_FALSE(HasFailure()) << seed;
-      EXPECT_LE(most.energy_gain, 0.02 * most.kinetic) << seed << ", " << steps;
+      EXPECT_LE(most.energy_gain, 1e-3 * most.kinetic) << seed << ", " << steps;
       unsettled += world.diagnostics.fallbacks;
     }
   }
