@@ -195,6 +195,24 @@ double wrapped_material(const World& world, const CableState& cable, std::size_t
   return head_material(cable, i, angle) - tail_material(cable, i, angle);
 }
 
+void lay_on_rim(const World& world, CableState& cable, int link, std::span<const double> stretch,
+                double later) {
+  const double angle = body_angle(world, at(cable.links, link));
+  const double before = tail_material(cable, index(link), angle);
+  const RimSpan on = span_on_rim(world, cable, index(link));
+  const double width = (on.head - on.tail) / static_cast<double>(stretch.size());
+  std::vector<Laid>& laid = at(cable.rims, link).laid;
+  laid.assign(1, {on.tail, on.tail, 1.0 - stretch[0]});
+  if (width > 0.0) {
+    for (std::size_t k = 0; k < stretch.size(); ++k) {
+      const double slope = 1.0 - stretch[k], place = on.tail + static_cast<double>(k + 1) * width;
+      laid.back().slope = slope;
+      laid.push_back({place, laid.back().material + width * slope, slope});
+    }
+  }
+  at(cable.links, link).material += before + later - tail_material(cable, index(link), angle);
+}
+
 double energy_carried(const World& world, const CableState& cable, double stiffness) {
   double energy = 0.0;
   for (std::size_t i = 0; i < cable.rims.size(); ++i) {

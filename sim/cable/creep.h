@@ -10,6 +10,8 @@
 // turn.
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "sim/world.h"
 
@@ -69,6 +71,15 @@ struct RimSpan {
   double tail = 0.0, head = 0.0;
 };
 RimSpan span_on_rim(const World& world, const CableState& cable, std::size_t link);
+
+/// Equal parts of what a rim carries, from the tail on: m of stretch in each metre of them.
+constexpr int rim_cells = 24;
+using RimCells = std::array<double, rim_cells>;
+
+/// Lays what has so much stretch in equal parts of a link's rim on it, and moves it along the cable
+/// so that what lies where the cable comes to it is by `later` (m) further along.
+void lay_on_rim(const World& world, CableState& cable, int link, std::span<const double> stretch,
+                double later);
 
 /// Calls f(from, to, slope) for each piece of what a link's rim carries, if it creeps: from where
 /// on it to where (m), and m of material in a metre there.

@@ -3,19 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
+#include "sim/cable/partial_slip.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
 
 namespace {
-
-bool is_smooth(const World& world, const Link& link) {
-  return at(world.bodies, link.body).cable_friction == 0.0;
-}
 
 /// mu theta of what slides over a link, below 0 where it slides backward: ln(T after / T before).
 double turned_by_friction(const World& world, const Link& link) {
@@ -51,12 +50,12 @@ Strains strains_at(const World& world, const CableState& cable, int link) {
   return {strain_of(at(cable.segments, tighter)), std::abs(turned)};
 }
 
+}  // namespace
+
 bool is_pinched_beside(const CableState& cable, int link) {
   const int after = next_link(cable, link);
   return at(cable.segments, link).pinched || (after >= 0 && at(cable.segments, after).pinched);
 }
-
-}  // namespace
 
 bool lies_relaxed(const World& world, const CableState& cable, int number) {
   if (number < 0 || cable.rims.empty()) return false;
@@ -178,39 +177,27 @@ Shares shares_of(const World& world, const CableState& cable, const Sliding& gro
   return shares;
 }
 
-/// Gives a rim so much material (m), evenly, and moves it along the cable so that what lies where
-/// the cable comes to it is by `later` (m) further along.
-void fill(const World& world, CableState& cable, int link, double material, double later) {
-  const double angle = body_angle(world, at(cable.links, link));
-  const double before = tail_material(cable, index(link), angle);
-  const RimSpan on = span_on_rim(world, cable, index(link));
-  const double width = on.head - on.tail, slope = width > 0.0 ? material / width : 1.0;
-  std::vector<Laid>& laid = at(cable.rims, link).laid;
-  laid.assign(1, {on.tail, on.tail, slope});
-  if (width > 0.0) laid.push_back({on.head, on.tail + material, slope});
-  at(cable.links, link).material += before + later - tail_material(cable, index(link), angle);
-}
-
-/// Lays all of a group anew: material_of(span) (m) in each span, and on_rim(link) (m) on rims.
-template <class OfSpan, class OnRim>
-void lay_anew(const World& world, CableState& cable, const Sliding& group,
-              const OfSpan& material_of, const OnRim& on_rim) {
-  double later = 0.0;
-  each(
-      cable, group, [&](int i) { later += material_of(i) - at(cable.segments, i).rest_length; },
-      [&](int i) {
-        const double had = wrapped_material(world, cable, index(i));
-        const double now = on_rim(i);
-        fill(world, cable, i, now, later);
-        later += now - had;
-      });
-  update_wraps_and_rest_lengths(world, cable);
+/// Those of strains that grow or, with `turned` below 0, fall along a rim as e^(mu phi), as much as
+/// `stretch` in the mean.
+RimCells cells_of(const Strains& strains, double turned, double stretch) {
+  RimCells all;
+  double sum = 0.0;
+  for (int k = 0; k < rim_cells; ++k) {
+    const double from_tail = (k + 0.5) / rim_cells;
+    const double from_most = turned > 0.0 ? 1.0 - from_tail : from_tail;
+    const double strain = strains.most * std::exp(-from_most * strains.turned);
+    at(all, k) = strain / (1.0 + strain);
+    sum += at(all, k);
+  }
+  for (double& one : all) one *= sum > 0.0 ? rim_cells * stretch / sum : 0.0;
+  return all;
 }
 
 /// Lets nothing of a slack one be stretched, nor pushed on to a rim: what spans and rims lack comes
 /// from the spans that have some to spare, in proportion.
 void loosen(const World& world, CableState& cable, const Sliding& group) {
   constexpr double rounding = 1e-15;  // of the cable's length
+  constexpr double none = 0.0;        // stretch
   double lacks = 0.0, spare = 0.0;    // m
   each(
       cable, group,
@@ -224,13 +211,41 @@ void loosen(const World& world, CableState& cable, const Sliding& group) {
       });
   if (std::abs(lacks) <= rounding * cable.length || spare == 0.0) return;
   const double left = std::max(1.0 - lacks / spare, 0.0);
-  lay_anew(
-      world, cable, group,
-      [left, &cable](int i) {
+  double later = 0.0;
+  each(
+      cable, group,
+      [&](int i) {
         const Segment& span = at(cable.segments, i);
-        return span.length + left * std::max(span.rest_length - span.length, 0.0);
+        later += span.length + left * std::max(span.rest_length - span.length, 0.0);
+        later -= span.rest_length;
       },
-      [&cable](int i) { return stored_length(at(cable.links, i)); });
+      [&](int i) {
+        const double had = wrapped_material(world, cable, index(i));
+        lay_on_rim(world, cable, i, {&none, 1}, later);
+        later += stored_length(at(cable.links, i)) - had;
+      });
+  update_wraps_and_rest_lengths(world, cable);
+}
+
+/// Lays all of a stretched group anew.
+void lay_anew(const World& world, CableState& cable, const Sliding& group, Shares shares) {
+  double later = 0.0;
+  each(
+      cable, group, [&](int i) { later += shares.of_span(i) - at(cable.segments, i).rest_length; },
+      [&](int i) {
+        const Link& link = at(cable.links, i);
+        const double had = wrapped_material(world, cable, index(i));
+        const Strains strains = shares.pass(i);
+        const double stretch = strains.stretch();
+        if (strains.turned == 0.0) {
+          lay_on_rim(world, cable, i, {&stretch, 1}, later);
+        } else {
+          lay_on_rim(world, cable, i, cells_of(strains, turned_by_friction(world, link), stretch),
+                     later);
+        }
+        later += stored_length(link) * (1.0 - stretch) - had;
+      });
+  update_wraps_and_rest_lengths(world, cable);
 }
 
 /// Energy (m, over EA) of so much material (m) on a way (m).
@@ -269,11 +284,9 @@ void settle(const World& world, CableState& cable, const Sliding& group, double 
   if (group.count < 2 && !group.around) return;
   const Course course = course_of(world, cable, group);
   if (course.material >= course.way) return loosen(world, cable, group);
-  Shares shares = shares_of(world, cable, group, course);
+  const Shares shares = shares_of(world, cable, group, course);
   if (course.smooth || !makes_energy(cable, group, shares, time)) {
-    return lay_anew(
-        world, cable, group, [&shares](int i) { return shares.of_span(i); },
-        [&shares](int i) { return shares.of_rim(i); });
+    return lay_anew(world, cable, group, shares);
   }
   // Then over smooth rims only.
   Sliding part{group.first, 0};
@@ -310,6 +323,7 @@ void relax_rims(const World& world, CableState& cable, double time) {
       group = {next_link(cable, i), 0};
     }
   }
+  slide_in_part(world, cable);
 }
 
 }  // namespace pinchlab

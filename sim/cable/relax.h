@@ -5,17 +5,26 @@
 // beside it, whatever slides and turns. A rim of the radius R and the angle theta has of material
 //     R (theta - ln((1 + e1) / (1 + e0)) / mu)
 // for the strains e0 and e1 at its ends (the integral of R dphi / (1 + e0 exp(mu phi))); so much it
-// is given, evenly. Spans and rims between places that hold the cable share what material they have
-// in all: e0 of the first follows from that.
+// is given, each part of it as it is stretched there. Spans and rims between places that hold the
+// cable share what material they have in all: e0 of the first follows from that.
 //
 // To share anew may move material from more tension to less, which takes energy. The balance of
 // spans by sliding speeds (solve/slip_speeds.cpp) leaves rims as they are, and so moves too much;
 // what goes back may take as much energy as friction has had of that sliding. Where it would take
 // more, rough rims keep what they have.
 
+#include "base/at.h"
 #include "sim/world.h"
 
 namespace pinchlab {
+
+/// Whether cable slides over a link's body without friction.
+inline bool is_smooth(const World& world, const Link& link) {
+  return at(world.bodies, link.body).cable_friction == 0.0;
+}
+
+/// Whether a link's cable goes into a pinch before it or after it.
+bool is_pinched_beside(const CableState& cable, int link);
 
 /// Whether what lies at a link (or -1) is so stretched. Beside a pinch it stays as it is.
 bool lies_relaxed(const World& world, const CableState& cable, int link);
@@ -33,8 +42,8 @@ struct Beside {
 Beside lies_beside(const World& world, const CableState& cable, int link, bool after);
 
 /// Stretches all so at an interval's end, wraps and rest lengths being up to date, as they are
-/// afterwards. Where all is slack nothing stays stretched, and rims hold no more than they turn.
-/// The interval has lasted `time` (s).
+/// afterwards, and what sticks as partial_slip.h has it. Where all is slack nothing stays
+/// stretched, and rims hold no more than they turn. The interval has lasted `time` (s).
 void relax_rims(const World& world, CableState& cable, double time);
 
 }  // namespace pinchlab

@@ -217,8 +217,10 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
   Neighbourhood& course = at(work.neighbourhoods.list, n);
   const std::span<const int> parts = parts_of(work.neighbourhoods, n);
   Diagnostics& d = world.diagnostics;
+  bool balances = false;  // stretches: no time that round-off leaves of a step is an interval
   for (const int p : parts) {
     const Part& part = at(work.parts.list, p);
+    balances = balances || !at(work.systems, part.system).elastic_ends.empty();
     for (const int c : cables_of(work.parts, part)) {
       if (!part.creeps) break;
       CableState& cable = at(world.cables, c);
@@ -229,7 +231,8 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
              note_ways(world, work, part, at(work.trials, p), length, even));
   }
   course.time = work.start.time + length;
-  course.left = std::max(course.left - length, 0.0);
+  const double left = course.left - length, rounding = 1e-12 * world.step_length;  // s
+  course.left = left > (balances ? rounding : 0.0) ? left : 0.0;
   course.moved = true;
   course.happened = !work.events.empty();
   course.violated = !met || work.trial.violated;

@@ -370,8 +370,11 @@ bool settle(PartSystem& s, SolveScratch& set) {
   // All contradicted states flip while that makes progress, then one at a time. Remedies come in
   // the order of what they give up: time, what has slid so far, of several solutions the nearest,
   // sliding for the whole step, friction, the solution. After each some states may flip and settle.
-  constexpr int patience = 3, before_dual = 8, before_sticking = 20, before_freezing = 50,
-                before_dropping = 80, most_solves = 150;
+  // Where cable comes to slide over many bodies each of them asks for the next, from either end on.
+  constexpr int patience = 3, before_dual = 8, few_runs = 10;
+  const int more = 2 * std::max(static_cast<int>(set.capstan.runs.size()) - few_runs, 0);
+  const int before_sticking = 20 + more, before_freezing = 50 + more, before_dropping = 80 + more,
+            most_solves = 150 + more;
   const std::size_t all = s.rows.size() + set.capstan.runs.size() + 1;
   std::size_t fewest = all;
   int left = patience;

@@ -177,7 +177,7 @@ TEST(Exact, BlockAndTackleInBalance) {
 // 2 T0 (l + pi R), k = exp(mu pi).
 TEST(Exact, BeltTransmitsUpToItsTorqueLimit) {
   const double mu = 0.4, k = std::exp(mu * pi), t0 = 50.0, l = 3.0;
-  for (const bool creep : {false}) {
+  for (const bool creep : {false, true}) {
     const double ways = creep ? l + pi * R : l;
     const double slack = 2.0 * t0 * ways / ((k + 1.0) * l + (creep ? 2.0 * R * (k - 1.0) / mu : 0));
     const double limit = R * (k - 1.0) * slack;
@@ -202,9 +202,11 @@ TEST(Exact, BeltTransmitsUpToItsTorqueLimit) {
         EXPECT_GT(sum, 2.0 * t0 - 0.01 * t0) << creep;
         EXPECT_LT(sum, (k + 1.0) * slack + 0.01 * t0) << creep;
       } else {
-        // Beyond the limit the excess accelerates the wheel.
+        // Beyond the limit the excess accelerates the wheel. What creeps is behind by what comes on
+        // in a step.
+        const double error = creep ? 0.15 : 0.02;  // of the excess
         const double alpha = (share - 1.0) * limit / (0.5 * 0.25);
-        EXPECT_NEAR(turned, 0.5 * alpha * 4.0, 0.02 * 0.5 * alpha * 4.0) << creep;
+        EXPECT_NEAR(turned, 0.5 * alpha * 4.0, error * 0.5 * alpha * 4.0) << creep;
       }
     }
   }

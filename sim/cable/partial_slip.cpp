@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/cable/partial_slip.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/at.h"
+#include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
+#include "sim/cable/relax.h"
+#include "sim/tangent.h"
+
+namespace pinchlab {
+
+namespace {
+
+/// A rough rim that sticks between two spans.
+class StickingRim {
+ public:
+  StickingRim(const World& world, const CableState& cable, int number)
+      : before_(at(cable.segments, number)),
+        after_(at(cable.segments, next_link(cable, number))),
+        stored_(stored_length(at(cable.links, number))) {
+    const RimSpan on = span_on_rim(world, cable, index(number));
+    const double width = (on.head - on.tail) / rim_cells;
+    each_piece(world, cable, index(number), [&](double from, double to, double slope) {
+      for (int k = std::clamp(static_cast<int>((from - on.tail) / width), 0, rim_cells - 1);
+           k < rim_cells && on.tail + k * width < to; ++k) {
+        const double begins = std::max(from, on.tail + k * width);
+        const double ends = std::min(to, on.tail + (k + 1) * width);
+        at(was_, k) += (1.0 - slope) * std::max(ends - begins, 0.0) / width;
+      }
+    });
+    constexpr double most_told = 600.0;  // ln
+    const Link& link = at(cable.links, number);
+    const double all = at(world.bodies, link.body).cable_friction * link.wrap;
+    const double of_cell = std::min(all, most_told) / rim_cells;
+    const double falls = std::exp(-of_cell), grows = std::exp(of_cell);
+    at(falls_, 0) = std::exp(-0.5 * of_cell);
+    at(grows_, 0) = std::exp(0.5 * of_cell);
+    for (int k = 1; k < rim_cells; ++k) {
+      at(falls_, k) = at(falls_, k - 1) * falls;
+      at(grows_, k) = at(grows_, k - 1) * grows;
+    }
+    for (int k = 0; k < rim_cells; ++k) at(strain_, k) = at(was_, k) / (1.0 - at(was_, k));
+  }
+
+  /// Lets it slide: m of material that the span before it, and the one after it, are given. Whether
+  /// these are more than `rounding` (m).
+  bool slide(double rounding) {
+    const std::array<End, 2> ends = flow();
+    if (std::abs(ends[0].comes) <= rounding && std::abs(ends[1].comes) <= rounding) return false;
+    constexpr int most_rounds = 10;  // by turns
+    const double near = std::max(rounding, 1e-12 * stored_);
+    for (int round = 0; round < most_rounds; ++round) {
+      const bool settled = share(0, near), still = share(1, near);
+      if (round > 0 && settled && still) break;
+    }
+    double comes = 0.0;
+    for (int k = 0; k < rim_cells; ++k) comes += stored_ / rim_cells * (at(now, k) - at(was_, k));
+    given[1] = comes - given[0];
+    return true;
+  }
+
+  RimCells now{};  // after it
+  std::array<double, 2> given{};
+
+ private:
+  struct End {
+    double comes = 0.0;  // m
+    double falls = 0.0;  // by so much for a metre that is given
+  };
+
+  static double strain_with(const Segment& span, double more) {
+    constexpr double least_share = 0.1;  // of its material, that a span keeps
+    const double left = std::max(span.rest_length + more, least_share * span.rest_length);
+    return std::max(span.length / left - 1.0, 0.0);
+  }
+
+  /// What comes to either span with what it is given: what is stretched too little gives to the one
+  /// that pulls it more, what is stretched too much takes from the other. Either way material comes
+  /// to where tension is more.
+  std::array<End, 2> flow() {
+    const double a = strain_with(before_, given[0]), b = strain_with(after_, given[1]);
+    std::array<End, 2> ends;
+    now = was_;
+    for (int k = 0; k < rim_cells; ++k) {
+      const int from_head = rim_cells - 1 - k;
+      const double was = at(strain_, k);
+      const double low_a = a * at(falls_, k), low_b = b * at(falls_, from_head);
+      const double top_a = a * at(grows_, k), top_b = b * at(grows_, from_head);
+      const double low = std::max(low_a, low_b), top = std::max(low, std::min(top_a, top_b));
+      if (was >= low && was <= top) continue;
+      const bool gives = was < low, tail = gives ? low_a > low_b : top_a < top_b;
+      const double is = gives ? low : top;
+      at(now, k) = is / (1.0 + is);
+      End& end = ends[tail ? 0 : 1];
+      end.comes += stored_ / rim_cells * (at(now, k) - at(was_, k));
+      end.falls += stored_ / rim_cells * is / ((1.0 + is) * (1.0 + is));
+    }
+    ends[0].falls *= falls_with(before_, a);
+    ends[1].falls *= falls_with(after_, b);
+    return ends;
+  }
+
+  /// Gives an end as much as then comes to it, which falls with what it is given: by Newton's steps
+  /// within what is known to be less and more. Whether that was so already.
+  bool share(std::size_t end, double near) {
+    constexpr int most_rounds = 60;
+    double less = -infinity, more = infinity;
+    double& gives = given[end];
+    for (int round = 0; round < most_rounds; ++round) {
+      const End now_there = flow()[end];
+      const double left = now_there.comes - gives;
+      if (std::abs(left) <= near) return round == 0;
+      (left > 0.0 ? less : more) = gives;
+      gives += left / (1.0 + now_there.falls);
+      if (gives <= less || gives >= more) gives = 0.5 * (less + more);
+    }
+    return false;
+  }
+
+  /// By how much the logarithm of a span's strain falls for a metre that it is given.
+  static double falls_with(const Segment& span, double strain) {
+    return strain > 0.0 ? (1.0 + strain) * (1.0 + strain) / (strain * span.length) : 0.0;
+  }
+
+  const Segment &before_, &after_;
+  double stored_ = 0.0;  // m
+  RimCells was_{}, strain_{};
+  RimCells falls_{}, grows_{};  // e^(-mu phi), and e^(mu phi), at their middles, phi from the tail
+};
+
+/// Whether such a rim is at a link.
+bool is_sticking(const World& world, const CableState& cable, int number) {
+  const Link& link = at(cable.links, number);
+  const int before = previous_link(cable, number), after = next_link(cable, number);
+  if (before < 0 || after < 0 || at(cable.rims, number).laid.empty()) return false;
+  if (link.pinch_middle || !(link.wrap > 0.0) || link.slip != Slip::stick) return false;
+  return std::isfinite(at(world.bodies, link.body).cable_friction) && !is_smooth(world, link) &&
+         !is_pinched_beside(cable, number) && !is_side(at(cable.links, before), link) &&
+         !is_side(link, at(cable.links, after));
+}
+
+}  // namespace
+
+void slide_in_part(const World& world, CableState& cable) {
+  constexpr double rounding = 1e-15;  // of the cable's length
+  bool any = false;
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    if (!is_sticking(world, cable, i)) continue;
+    StickingRim rim(world, cable, i);
+    if (!rim.slide(rounding * cable.length)) continue;
+    lay_on_rim(world, cable, i, rim.now, rim.given[0]);
+    at(cable.segments, i).rest_length += rim.given[0];
+    at(cable.segments, next_link(cable, i)).rest_length += rim.given[1];
+    any = true;
+  }
+  if (any) update_wraps_and_rest_lengths(world, cable);
+}
+
+}  // namespace pinchlab
