@@ -80,8 +80,10 @@ bool pinched_beside(const CableState& cable, std::size_t segment, int body) {
 /// Of a cable, those since update_segments.
 std::span<const Release> releases_of(const World& world, const Workspace& work,
                                      const CableState& cable) {
-  const int number = static_cast<int>(&cable - world.cables.data());
-  const auto [begin, end] = std::ranges::equal_range(work.released, number, {}, &Release::cable);
+  const Release key{static_cast<int>(&cable - world.cables.data()), -1, 0};
+  const auto [begin, end] =
+      std::equal_range(work.released.begin(), work.released.end(), key,
+                       [](const Release& p, const Release& q) { return p.cable < q.cable; });
   return {begin, end};
 }
 
