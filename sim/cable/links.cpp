@@ -23,14 +23,22 @@ std::ptrdiff_t offset(std::size_t i) {
   return static_cast<std::ptrdiff_t>(i);
 }
 
-/// What the rim of the later of two links on a body carries becomes part of the earlier one's.
+/// What the rim of the later of two links on a body carries becomes part of the earlier one's, from
+/// where that ends on. If a pinch between them had some material to itself, the next span has it.
 void take_over(CableState& cable, int link, int later) {
   if (cable.rims.empty() || at(cable.rims, link).laid.empty()) return;
-  const double shift = at(cable.links, later).material - at(cable.links, link).material;
+  const Rim& other = at(cable.rims, later);
+  if (other.laid.empty()) return;
   std::vector<Laid>& all = at(cable.rims, link).laid;
-  for (const Laid& laid : at(cable.rims, later).laid) {
-    if (laid.place > all.back().place)
+  const double end = all.back().place;
+  const double shift = all.back().material - laid_material(other, end);
+  all.back().slope = other.comes_on_at_tail;
+  for (const Laid& laid : other.laid) {
+    if (laid.place <= end) {
+      all.back().slope = laid.slope;
+    } else {
       all.push_back({laid.place, laid.material + shift, laid.slope});
+    }
   }
 }
 
