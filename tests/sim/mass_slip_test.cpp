@@ -155,7 +155,7 @@ TEST(MassSlip, AStretchedRopeSwingsOnSecondOrder) {
   using Made = std::pair<Scene (*)(int, double), double>;
   for (const auto& [make, mu] :
        {Made{swinging_over_drum, 0.0}, {swinging_over_drum, 0.1}, {slipping_tackle, 0.0}}) {
-    const auto run_of = [&](int steps) {
+    const auto run_of = [make = make, mu = mu](int steps) {
       Scene scene = make(steps, mu);
       scene.cables[0].axial_stiffness = 600.0;
       return run_measured(scene, 0.4);
