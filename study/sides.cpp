@@ -72,7 +72,7 @@ class Arrangement {
       : random_(random), n_(orders[0].front().size()), step_(step) {
     const std::size_t rounds = orders[0].size();
     places_.resize(rounds / step_ * n_);
-    for (std::size_t who : {0, 1}) {
+    for (std::size_t who : {0U, 1U}) {
       for (std::size_t round = 0; round < rounds; ++round) {
         for (const std::size_t demonstration : orders[who][round]) {
           const std::size_t variable = round / step_ * n_ + demonstration;
