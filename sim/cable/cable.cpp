@@ -361,7 +361,7 @@ void update_segments(World& world, Workspace& work) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
     if (is_idle(work.parts, c)) continue;
     const bool moved = update_cable(world, world.cables[c], true, is_known(work));
-    if (!world.cables[c].rims.empty()) lay_down(world, world.cables[c]);
+    lay_down(world, world.cables[c]);
     work.spans_moved = work.spans_moved || moved;
   }
 }

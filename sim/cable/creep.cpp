@@ -164,6 +164,7 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i, double
 // The strain at the middle of the interval to come is extrapolated from those at its start and at
 // the start of the one before, so that creep is of second order.
 void lay_down(const World& world, CableState& cable, double time) {
+  if (cable.rims.empty()) return;
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Rim& rim = cable.rims[i];
     if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);

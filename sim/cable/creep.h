@@ -56,7 +56,7 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t link, dou
 
 /// Ends an interval: what has come on to rims keeps the strain that it came on with, and what has
 /// gone off them is forgotten; and sets what will come on in the next. The interval's length is
-/// `time` (s); 0 where it is not over.
+/// `time` (s); 0 where it is not over. Nothing is done to a cable of which no rim carries anything.
 void lay_down(const World& world, CableState& cable, double time = 0.0);
 
 /// m/s, by which the rims at the ends of a segment of a cable that creeps change its material

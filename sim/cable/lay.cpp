@@ -373,7 +373,7 @@ void lay_cable(const Scene& scene, const World& world, double allowed, std::size
   if (cable.fills) drop_turns_of_bare_rims(world, course);
   lay_material(world, course);
   update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
+  lay_down(world, cable);
   for (Segment& segment : cable.segments) begin_here(segment);
 }
 

@@ -92,7 +92,7 @@ void remove_link(World& world, CableState& cable, int link) {
     }
   }
   update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
+  lay_down(world, cable);
 }
 
 bool needed(const CableState& cable, std::size_t i) {
@@ -217,7 +217,7 @@ void insert_link(World& world, CableState& cable, std::size_t segment, int body,
   added.material += arrives - tail_material(cable, position, body_angle(world, added));
   begin_to_carry(world, cable, position);
   update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
+  lay_down(world, cable);
 }
 
 namespace {
@@ -285,7 +285,7 @@ void insert_pinches(World& world, CableState& cable, std::span<const NewPinch> p
     hold_where_pressed(world, cable, middle);
   }
   update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
+  lay_down(world, cable);
 }
 
 }  // namespace pinchlab

@@ -193,6 +193,21 @@ RimCells cells_of(const Strains& strains, double turned, double stretch) {
   return all;
 }
 
+/// Lays all of a group anew: material_of(span) (m) in each span, and on each rim, which is moved by
+/// `later` (m), what lay_rim(link, later) lays there; it returns how much (m of material).
+template <class MaterialOf, class LayRim>
+void lay_anew(const World& world, CableState& cable, const Sliding& group,
+              const MaterialOf& material_of, const LayRim& lay_rim) {
+  double later = 0.0;
+  each(
+      cable, group, [&](int i) { later += material_of(i) - at(cable.segments, i).rest_length; },
+      [&](int i) {
+        const double had = wrapped_material(world, cable, index(i));
+        later += lay_rim(i, later) - had;
+      });
+  update_wraps_and_rest_lengths(world, cable);
+}
+
 /// Lets nothing of a slack one be stretched, nor pushed on to a rim: what spans and rims lack comes
 /// from the spans that have some to spare, in proportion.
 void loosen(const World& world, CableState& cable, const Sliding& group) {
@@ -211,41 +226,34 @@ void loosen(const World& world, CableState& cable, const Sliding& group) {
       });
   if (std::abs(lacks) <= rounding * cable.length || spare == 0.0) return;
   const double left = std::max(1.0 - lacks / spare, 0.0);
-  double later = 0.0;
-  each(
-      cable, group,
+  lay_anew(
+      world, cable, group,
       [&](int i) {
         const Segment& span = at(cable.segments, i);
-        later += span.length + left * std::max(span.rest_length - span.length, 0.0);
-        later -= span.rest_length;
+        return span.length + left * std::max(span.rest_length - span.length, 0.0);
       },
-      [&](int i) {
-        const double had = wrapped_material(world, cable, index(i));
+      [&](int i, double later) {
         lay_on_rim(world, cable, i, {&none, 1}, later);
-        later += stored_length(at(cable.links, i)) - had;
+        return stored_length(at(cable.links, i));
       });
-  update_wraps_and_rest_lengths(world, cable);
 }
 
-/// Lays all of a stretched group anew.
-void lay_anew(const World& world, CableState& cable, const Sliding& group, Shares shares) {
-  double later = 0.0;
-  each(
-      cable, group, [&](int i) { later += shares.of_span(i) - at(cable.segments, i).rest_length; },
-      [&](int i) {
+/// Stretches all of a group that is stretched by its shares.
+void lay_stretched(const World& world, CableState& cable, const Sliding& group, Shares shares) {
+  lay_anew(
+      world, cable, group, [&](int i) { return shares.of_span(i); },
+      [&](int i, double later) {
         const Link& link = at(cable.links, i);
-        const double had = wrapped_material(world, cable, index(i));
         const Strains strains = shares.pass(i);
-        const double stretch = strains.stretch();
+        const double a_metre = strains.stretch();
         if (strains.turned == 0.0) {
-          lay_on_rim(world, cable, i, {&stretch, 1}, later);
+          lay_on_rim(world, cable, i, {&a_metre, 1}, later);
         } else {
-          lay_on_rim(world, cable, i, cells_of(strains, turned_by_friction(world, link), stretch),
+          lay_on_rim(world, cable, i, cells_of(strains, turned_by_friction(world, link), a_metre),
                      later);
         }
-        later += stored_length(link) * (1.0 - stretch) - had;
+        return stored_length(link) * (1.0 - a_metre);
       });
-  update_wraps_and_rest_lengths(world, cable);
 }
 
 /// Energy (m, over EA) of so much material (m) on a way (m).
@@ -286,7 +294,7 @@ void settle(const World& world, CableState& cable, const Sliding& group, double 
   if (course.material >= course.way) return loosen(world, cable, group);
   const Shares shares = shares_of(world, cable, group, course);
   if (course.smooth || !makes_energy(cable, group, shares, time)) {
-    return lay_anew(world, cable, group, shares);
+    return lay_stretched(world, cable, group, shares);
   }
   // Then over smooth rims only.
   Sliding part{group.first, 0};

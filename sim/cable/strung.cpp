@@ -68,7 +68,7 @@ void insert(World& world, CableState& cable, std::size_t segment, int node, doub
   cable.segments[seam ? 0 : position + 1].previous_head = old.previous_head;
   count_changes(world, cable, 1);
   update_wraps_and_rest_lengths(world, cable);
-  if (!cable.rims.empty()) lay_down(world, cable);
+  lay_down(world, cable);
 }
 
 /// Puts a node into a segment, at that material coordinate (m) as the segment's tail counts it.

@@ -223,8 +223,7 @@ void finish_interval(const Scene& scene, World& world, Workspace& work, int n, d
     balances = balances || !at(work.systems, part.system).elastic_ends.empty();
     for (const int c : cables_of(work.parts, part)) {
       if (!part.creeps) break;
-      CableState& cable = at(world.cables, c);
-      if (!cable.rims.empty()) lay_down(world, cable, length);
+      lay_down(world, at(world.cables, c), length);
     }
     const bool even = met && course.located && work.events.empty();
     set_pace(world, work.parts, part,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elastic cables without mass on smooth drums, and round corners.
+// Elastic cables without mass on drums, smooth and rough, and round corners.
 
 #include <fmt/format.h>
 
