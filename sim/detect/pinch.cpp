@@ -11,6 +11,7 @@
 #include "sim/cable/joins.h"
 #include "sim/cable/links.h"
 #include "sim/cable/strung.h"
+#include "sim/detect/span_hits.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
 #include "sim/touch.h"
@@ -69,28 +70,33 @@ Contact* nearest_of_pair(World& world, Contact* one) {
                             [](const Contact& p, const Contact& q) { return p.gap < q.gap; });
 }
 
-/// Whether the other body lies over a free span beside link i, on the cable's outer side. Nearer
-/// than the cable's width it would press the span against the link's body, so it must keep that
-/// distance already before it hits the span. The body that holds the span's far end cannot hit it.
-bool over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
-                        std::size_t i, int other) {
+/// m, by which what the other body touches with, a centre or a corner's, is over the centre line of
+/// a free span beside link i, on the cable's outer side. Infinity: it is not.
+/// Nearer than the cable's width it would press the span against the link's body, so it must keep
+/// that distance already before it hits the span. The body that holds the span's far end cannot hit
+/// it.
+double over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
+                          std::size_t i, int other) {
   const bool circles = contact.touch == Touch::circles;
   const Vec2 place = circles ? at(world.position, other) : nearest_place(world, contact, other);
-  const auto lies_over = [&](int s, int far_end) {
-    if (holds_span(world, cable, at(cable.links, far_end), other)) return false;
+  double least = infinity;
+  const auto look = [&](int s, int far_end) {
+    if (holds_span(world, cable, at(cable.links, far_end), other)) return;
     const Segment& segment = at(cable.segments, s);
     const Vec2 x = place - segment.tail;
     const double along = segment.direction.dot(x);
-    const double side = cross(segment.direction, x) * cable.links[i].orientation;
-    return !segment.pinched && along > 0.0 && along < segment.length && side < 0.0;
+    const double over = -cross(segment.direction, x) * cable.links[i].orientation;
+    if (segment.pinched || !(along > 0.0 && along < segment.length && over > 0.0)) return;
+    least = std::min(least, over);
   };
   const int link = static_cast<int>(i);
   const int before = previous_link(cable, link), after = next_link(cable, link);
   const Link &tail = at(cable.links, before), &head = at(cable.links, after);
-  if ((tail.moored || !is_side(tail, cable.links[i])) && lies_over(link, before)) return true;
-  if ((head.moored || !is_side(cable.links[i], head)) && lies_over(after, after)) return true;
-  if (tail.moored && lies_over(before, previous_link(cable, before))) return true;
-  return head.moored && lies_over(next_link(cable, after), next_link(cable, after));
+  if (tail.moored || !is_side(tail, cable.links[i])) look(link, before);
+  if (head.moored || !is_side(cable.links[i], head)) look(after, after);
+  if (tail.moored) look(before, previous_link(cable, before));
+  if (head.moored) look(next_link(cable, after), next_link(cable, after));
+  return least;
 }
 
 /// Whether direction u from the body's centre surely misses the cable on link i, of less than half
@@ -142,6 +148,20 @@ void note_cable_held(const World& world, const CableState& cable, const Link& li
   }
   const double mu = friction_in_pinch(world, cable, presser);
   contact.pressed_friction = std::max(contact.pressed_friction, mu);
+}
+
+/// Keeps a polygon and what is over a free span beside it apart. Where the span lies along a side,
+/// what stands there on it presses it, which is no hit: it is in it by no more than round-off.
+void keep_off_span(const World& world, const CableState& cable, const Link& link, int other,
+                   double over, Contact& contact) {
+  constexpr double rounding = 1e-6;  // of the half width, far above what grazes (span_hits.h)
+  if (over == infinity) return;
+  const double apart = over - rim_radius(at(world.bodies, other));
+  if (std::abs(apart - cable.half_width) <= rounding * cable.half_width) {
+    note_cable_held(world, cable, link, other, contact);
+  } else {
+    note_cable_between(world, cable, link, contact);
+  }
 }
 
 /// Whether what touches a side of the polygon of link i, which ends at the link's corner, does so
@@ -196,18 +216,21 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
               (before_other && at(cable.segments, after).pinched))) {
     return;  // the pinch is there
   }
-  if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, contact, i, other)) {
+  if (cable.least_gap > 0.0 && over_adjacent_span(world, cable, contact, i, other) < infinity) {
     note_cable_between(world, cable, link, contact);
   }
   if (few && (after_other || before_other || off_arc(cable, i, u))) return;
   const double least = arc_of_direction(cable, i, u), turn = 2.0 * std::numbers::pi;
-  // A body that has just lost its own link lies at the very end of the arc: events are met far
-  // nearer than this, and no frame shows it.
-  const double end = locates_events(world.configuration) ? 1e-6 : 0.0;  // rad
+  // What lies beyond the very end of the arc by the angle x is that much in the span,
+  //     D x^2 / 2,    D the distance of the centres,
+  // and has a link of its own where that is no graze. Up to twice the angle at which it is one it
+  // presses the end of the arc; so does a body that has just lost its own link. No frame shows it.
+  const double end = locates_events(world.configuration) ? 2.0 * std::sqrt(2.0 * graze) : 0.0;
+  const double wrap = std::max(link.wrap, 0.0);
   for (int k = 0; least + k * turn <= link.wrap + arc_tolerance; ++k) {
     double arc = least + k * turn;
     if (arc < 0.0 && arc > -end) arc = 0.0;
-    if (arc > link.wrap && arc < link.wrap + end) arc = link.wrap;
+    if (arc > wrap && arc < wrap + end) arc = wrap;
     if (after_other && arc < near_end) continue;
     if (before_other && link.wrap - arc < near_end) continue;
     if (link.layers.way != 0) {  // they are held as they lie
@@ -215,7 +238,7 @@ void find_pinches_on(const World& world, const CableState& cable, Contact& conta
       return;
     }
     if (!note_cable_between(world, cable, link, contact)) return;
-    if (arc >= 0.0 && arc <= link.wrap && presses(world, cable, contact)) {
+    if (arc >= 0.0 && arc <= wrap && presses(world, cable, contact)) {
       found.push_back({static_cast<int>(i), arc, other});
     }
   }
@@ -337,8 +360,9 @@ void configure_pinches(World& world, Workspace& work) {
           find_pinches_on(world, cable, contact, i, other, u, found);
         } else if (presses_arc(world, cable, contact, i, u)) {
           note_cable_held(world, cable, link, other, contact);
-        } else if (over_adjacent_span(world, cable, contact, i, other)) {
-          note_cable_between(world, cable, link, contact);
+        } else {
+          const double over = over_adjacent_span(world, cable, contact, i, other);
+          keep_off_span(world, cable, link, other, over, contact);
         }
       }
     }

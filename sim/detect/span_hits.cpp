@@ -18,10 +18,6 @@ namespace pinchlab {
 
 namespace {
 
-/// Overlap below which a body only grazes the cable, as a share of its radius and the half width:
-/// round-off must not make links.
-constexpr double graze = 1e-10;
-
 /// The same share, of what has been in touch: far above what touching bodies overlap by, which is
 /// within_reach of the part's extent.
 constexpr double in_touch = 1e-6;

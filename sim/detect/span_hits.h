@@ -13,6 +13,10 @@ struct Happening;
 struct SpanPair;
 struct Workspace;
 
+/// Overlap below which a body only grazes the cable, as a share of its radius and the half width:
+/// round-off must not make links.
+constexpr double graze = 1e-10;
+
 /// Gives every body that has met a free span a link on it. A body meets a span when its margin
 /// reaches the span's centre line with the body's centre beside the span, or when its centre has
 /// crossed the span within the step, however fast. The cable runs round the side on which the body

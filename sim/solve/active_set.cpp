@@ -33,7 +33,7 @@ void bound_friction(PartSystem& s, const SolveScratch& set) {
     bool slack = false;
     if (friction.run >= 0) {
       const Run& run = at(set.capstan.runs, friction.run);
-      slack = !at(s.rows, run.row_in).on && !at(s.rows, run.row_out).on;
+      slack = run.lets_go || (!at(s.rows, run.row_in).on && !at(s.rows, run.row_out).on);
     }
     friction.bound = bound_in_force(friction, slack);
     if (friction.bound == 0.0 || friction.dropped) row.on = false;
@@ -247,6 +247,15 @@ void stick_friction(PartSystem& s, CapstanScratch& capstan) {
   stick_rubbing(s);
 }
 
+/// On a smooth body cable that is slack on one side of what presses it can only be pulled by the
+/// other: where that would push it, and gets slack and taut by turns, it is as slack as the first.
+void let_go(const PartSystem& s, CapstanScratch& capstan) {
+  for (Run& run : capstan.runs) {
+    const bool turns = at(s.rows, run.row_in).flipped > 0 || at(s.rows, run.row_out).flipped > 0;
+    run.lets_go = run.frictionless && turns;
+  }
+}
+
 /// Everything that friction has changed in this step sticks for the rest of it. Sticking neither
 /// makes energy nor moves material; only the bound on its force is exceeded, for one step.
 void freeze_friction(PartSystem& s, CapstanScratch& capstan) {
@@ -383,6 +392,7 @@ bool settle(PartSystem& s, SolveScratch& set) {
   for (int solves = 1; solves <= most_solves; ++solves) {
     if (solves == before_sticking) {
       stick_friction(s, set.capstan);
+      let_go(s, set.capstan);
       fewest = all;
       left = patience;
     }

@@ -134,6 +134,15 @@ int last_of_run(const CableState& cable, int first, bool link_by_link, int& seen
   }
 }
 
+/// Lets those stick that have friction, whatever that must bear.
+void hold_rough(CapstanScratch& s) {
+  for (Run& run : s.runs) {
+    if (run.frictionless) continue;
+    run.slip = Slip::stick;
+    run.frozen = true;
+  }
+}
+
 /// Takes friction off all runs that may slide.
 void smooth(CapstanScratch& s) {
   for (Passage& passage : s.passages) {
@@ -203,6 +212,7 @@ void find_runs(const World& world, const Parts& parts, const Part& part, PartSys
     s.cable_begin.push_back(static_cast<int>(s.segments.size()));
   }
   if (scratch.smooth) smooth(s);
+  if (scratch.held) hold_rough(s);
 }
 
 namespace {
@@ -389,6 +399,7 @@ Shortage shortage_of(const Group& group, const PartSystem& system, const Capstan
     shortage.speed -= coefficient * row.speed;
     shortage.clearance += coefficient * row.clearance;
     shortage.gives = shortage.gives || row.diagonal > 0.0;
+    if (row.stretches) shortage.clearance = infinity;
   };
   if (group.slack >= 0) {
     for (int k = group.slack_begin; k < group.slack_end; ++k) {

@@ -33,6 +33,7 @@ struct Run {
   bool frozen = false;      // sticks for this step, whatever its bounds
   bool joins = false;       // slides between two segments of one group, by make_groups
   bool follows = false;     // slack, with a middle body that holds it better, by slip_speeds
+  bool lets_go = false;     // what presses it holds as little as where all is slack
   int passages_begin = 0, passages_end = 0;
 };
 
@@ -47,7 +48,7 @@ struct Group {
 /// What a group, or the slack rest of one, has to spare.
 struct Shortage {
   double speed = 0.0;      // m/s, at which it gets less
-  double clearance = 0.0;  // m
+  double clearance = 0.0;  // m; infinity: it stretches
   bool gives = false;      // impulses on it move something
 };
 

@@ -173,6 +173,7 @@ void make_row_at_instant(const Cable& given, const TimeSpan& t, double impulse, 
   at(s.free_velocity, bodies.a) += impulse * response.ra;
   at(s.free_velocity, bodies.b) += impulse * response.rb;
   const double damper = given.damping * t.kick;  // kg
+  row.stretches = true;
   row.idle = damper == 0.0;
   row.on = row.clamped = !row.idle;
   row.bias = 0.0;

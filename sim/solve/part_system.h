@@ -117,6 +117,7 @@ struct Row {
   bool is_new = true;       // segment: its bodies are not yet seen
   bool turns = false;       // segment: its levers turn with a body, moved or not
   bool has_third = false;   // of PartSystem::thirds, at `item`
+  bool stretches = false;   // segment, at an instant: by forces, which do nothing then
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
   int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1

@@ -101,9 +101,13 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
   forget_flips(s);
   for (Friction& friction : s.frictions) friction.dropped = true;
   for (SleevePlace& sleeve : s.sleeves) sleeve.dropped = true;
+  const auto is_frictionless = [](const Run& run) { return run.frictionless; };
+  const std::vector<Run>& runs = set.capstan.runs;
+  set.held = std::any_of(runs.begin(), runs.end(), is_frictionless);
   Part held = part;
-  held.may_slide = false;
+  held.may_slide = set.held;
   const bool held_settled = solve_direct(world, parts, held, s, set);
+  set.held = false;
   // A motor may wind in what cannot slide any more, and throw what hardly bends the cable.
   const bool throws = !s.motors.empty() && greatest_speed(s.velocity) > thrown * fastest;
   if (!throws && !makes_energy(s, set)) return held_settled;

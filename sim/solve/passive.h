@@ -24,10 +24,10 @@ bool makes_energy(const PartSystem& system, const SolveScratch& scratch);
 
 /// As solve_direct. Constraints, Coulomb's law and the capstan law only ever take energy from
 /// motion as it flows; taken over a whole kick they may make some, where they turn the way of
-/// sliding, or where the states did not settle. Then nothing slides on cables and bare surfaces do
-/// not rub: what is left is a projection. Where even that makes energy, its matrix is next to
-/// singular, and sweeps that start from no impulse stop short of the solution: each of them only
-/// takes energy.
+/// sliding, or where the states did not settle. Then cables slide on smooth bodies alone and bare
+/// surfaces do not rub: what is left is a projection. Where even that makes energy, its matrix is
+/// next to singular, and sweeps that start from no impulse stop short of the solution: each of them
+/// only takes energy.
 bool solve_passively(const World& world, const Parts& parts, const Part& part, PartSystem& system,
                      SolveScratch& scratch);
 

@@ -115,7 +115,7 @@ inline void set_segment_values(const Segment& segment, bool plain, const TimeSpa
   row.flipped = 0;
   row.friction = -1;
   row.presser = -1;
-  row.clamped = false;
+  row.clamped = row.stretches = false;
   row.curved = 0.0;
   row.compliance = 0.0;
   const double clearance = clearance_left(segment, plain);

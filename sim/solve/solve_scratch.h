@@ -90,6 +90,7 @@ struct SolveScratch {
   double missing = 0.0;      // m/s, whose equations it misses by so much at most
   bool suspicious = false;   // a row may contradict the last solution
   bool smooth = false;       // friction that slides is left out; what sticks for good does
+  bool held = false;         // nothing slides but what has no friction
   double step_length = 0.0;  // s, by which round-off of positions becomes speed
   double reach = infinity;   // m, TimeSpan::reach
   CapstanScratch capstan;    // empty without finite friction on a cable

@@ -426,5 +426,45 @@ INSTANTIATE_TEST_SUITE_P(Clamp, Feed,
                                             ::testing::Values(0.3, 0.2),
                                             ::testing::Values(1, 4, 16)));
 
+/// A cart on a rail, which the rope from it to another one pulls along over a drum without wrap; a
+/// roller lies on it, so far beside the drum's top.
+Scene wringer(const Vec2& at, double beside) {
+  constexpr double roller = 0.3;
+  Scene scene;
+  const double height = std::sqrt(std::pow(R + roller + w, 2) - beside * beside);
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, r, 3.0));
+  scene.bodies.push_back(body("roller", BodyKind::rail, beside, height, roller, 5.0));
+  scene.bodies[1].rail_axis = {0.0, 1.0};
+  for (const double x : {-3.0, 3.0}) {
+    scene.bodies.push_back(body(x < 0.0 ? "left" : "right", BodyKind::rail, x, R, 0.1, 1.0));
+    scene.bodies.back().rail_axis = {1.0, 0.0};
+    scene.bodies.back().velocity = {1.0, 0.0};
+  }
+  scene.bodies[0].angular_velocity = -1.0 / R;
+  scene.bodies[1].angular_velocity = 1.0 / (roller + w);
+  for (Body& one : scene.bodies) one.position += at;
+  scene.cables.push_back(cable(on(2), {{0, -1, 0}}, on(3), w));
+  return scene;
+}
+
+// Wherever it is in the plane, so that the drum's arc is longer or shorter than nothing by
+// round-off, and when what it presses is next to the arc's end, in the span by less than a graze: a
+// roller that lies on a cable rolls on it. It slid on it without friction, in half of these.
+TEST(Pinch, ARollerPressesTheEndOfAnArcToo) {
+  for (const Vec2& place : {Vec2(0.0, 0.0), Vec2(3.0, 3.0), Vec2(0.1, 0.7), Vec2(-2.3, 1.9)}) {
+    for (const double beside : {0.0, 1e-7, 1e-6, 3e-6, 1e-5, -1e-6, -1e-5}) {
+      Scene scene = wringer(place, beside);
+      scene.bodies[1].angular_velocity = 0.0;  // it is taken along
+      World world = make_world(scene, Method::pinch);
+      run(scene, world, 60);
+      const double rolled = (world.angle[1] - scene.bodies[1].angle) * (0.3 + w);
+      const double come = world.position[3].x() - scene.bodies[3].position.x();
+      EXPECT_NEAR(rolled, come, 1e-6) << place.transpose() << ", " << beside;
+      EXPECT_NEAR(-(world.angle[0] - scene.bodies[0].angle) * R, come, 1e-6);
+      EXPECT_GT(come, 0.05);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::testing
