@@ -76,7 +76,7 @@ struct alignas(64) Link {
 
 /// A place on a rim that carries an elastic cable, and the material that lies on it up to there.
 struct Laid {
-  double place = 0.0;     // m along the rim: p (alpha - angle), see Link
+  double place = 0.0;     // m along the rim: p (alpha - angle), see Link, and Rim::slides
   double material = 0.0;  // m
   double slope = 1.0;     // m of material in a m of the rim, from here to the next
 };
@@ -85,8 +85,10 @@ struct Laid {
 struct Rim {
   std::vector<Laid> laid;  // ascending; between two the strain is one. Empty: as much as it turns
   double comes_on_at_tail = 1.0, comes_on_at_head = 1.0;  // m of material on a m of rim
-  double slope = 0.0;  // m of material in a m of the segment before, when the interval began; 0:
-                       // not known
+  double slope = 0.0;   // m of material in a m of the segment before, when the interval began; 0:
+                        // not known
+  bool slides = false;  // over the body, as the cable does: places are so far from where that has
+                        // Link::material 0
 };
 
 /// The free span that arrives at the link of the same index from the link before it.

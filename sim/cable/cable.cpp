@@ -44,8 +44,10 @@ double material_at(const CableState& cable, std::size_t i, bool at_head, double 
   const Link& link = cable.links[i];
   if (link.layers.way != 0) return material_in_layers(link, alpha, angle);
   const double place = link.signed_radius() * (alpha - angle);
-  const bool turns = cable.rims.empty() || cable.rims[i].laid.empty();
-  return link.material + (turns ? place : laid_near_end(cable.rims[i], at_head, place));
+  if (cable.rims.empty() || cable.rims[i].laid.empty()) return link.material + place;
+  const Rim& rim = cable.rims[i];
+  if (rim.slides) return laid_near_end(rim, at_head, link.material + place);
+  return link.material + laid_near_end(rim, at_head, place);
 }
 
 double arc_of_direction(const CableState& cable, std::size_t i, const Vec2& u) {
@@ -144,6 +146,16 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
   }
 }
 
+/// By which share of the sum of their radii the circles of a span that crosses over between them,
+/// the one at a (m), may part before it is there. Far above what gaps are right to, which is 1e-12
+/// of a part's extent, coordinates included; less for it to become pinched than to stay so.
+double parting_of(const World& world, const Segment& span, const Link& from, const Link& to,
+                  const Vec2& a) {
+  if (!opposite(from, to) || !locates_events(world.configuration)) return 0.0;
+  const double far = 1e-2 * a.cwiseAbs().maxCoeff() / (from.radius + to.radius);
+  return (span.was_pinched ? 1e-8 : 1e-9) * std::max(1.0, far);
+}
+
 }  // namespace
 
 void update_tangent(const World& world, CableState& cable, std::size_t i) {
@@ -159,10 +171,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   }
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
-  const bool exact = locates_events(world.configuration);  // and so round-off matters
-  // Far above what gaps are right to (1e-12 of the part's extent); less to become pinched than to
-  // stay so.
-  const double parting = !opposite(from, to) || !exact ? 0.0 : segment.was_pinched ? 1e-8 : 1e-9;
+  const double parting = parting_of(world, segment, from, to, a);
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
     const bool arrives = from.orientation == 0;  // at the body, from its rim

@@ -230,8 +230,13 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable);
 /// Whether the cable touches a body that it may slide over.
 bool slides_somewhere(const World& world, const CableState& cable);
 
-/// Whether it does so without mass, by the capstan law alone. What has mass slides as sleeves do
-/// (sleeve.h).
+/// Whether it has mass, and may slide over a link's body.
+inline bool slides_with_mass(const World& world, const CableState& cable, const Link& link) {
+  return cable.density > 0.0 && at(world.bodies, link.body).cable_friction < infinity;
+}
+
+/// Whether it slides over any without mass, by the capstan law alone. What has mass slides as
+/// sleeves do (sleeve.h).
 inline bool slides_without_mass(const World& world, const CableState& cable) {
   return cable.density == 0.0 && slides_somewhere(world, cable);
 }

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/partial_slip.h"
 #include "sim/cable/relax.h"
 #include "sim/tangent.h"
 
@@ -15,8 +16,9 @@ namespace {
 
 /// Where a segment of the direction alpha meets the link's rim (m along it, forward along the
 /// cable).
-double place_on_rim(const World& world, const Link& link, double alpha) {
-  return link.signed_radius() * (alpha - body_angle(world, link));
+double place_on_rim(const World& world, const CableState& cable, std::size_t i, double alpha) {
+  const Link& link = cable.links[i];
+  return link.signed_radius() * (alpha - body_angle(world, link)) + origin_of_rim(cable, i);
 }
 
 /// What comes on of one strain is one piece, but for round-off.
@@ -64,24 +66,25 @@ void keep(Rim& rim, const RimSpan& span, double radius) {
   if (std::abs(span.tail - rim.laid.front().place) > rounding) move_tail(rim, span.tail);
 }
 
-/// Material that lies in a metre of the rim at its end towards a segment.
+/// Material that lies in a metre of the rim at its end towards a segment. On one that is hardly
+/// touched that is what comes on to it at its other end.
 double slope_at_end(const Rim& rim, bool at_head) {
   const std::vector<Laid>& laid = rim.laid;
-  if (laid.size() < 2) return at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
+  if (laid.size() < 2) return at_head ? rim.comes_on_at_tail : rim.comes_on_at_head;
   return at_head ? laid[laid.size() - 2].slope : laid[0].slope;
 }
 
-/// Material in a metre of what comes off a segment on to a rim: its own strain's, or, through a
-/// pinch, that of the rim beyond.
-double slope_of(const CableState& cable, std::size_t i, std::size_t before) {
-  const Segment& segment = cable.segments[i];
-  if (!segment.pinched) {
-    const bool stretched = segment.length > segment.rest_length && segment.rest_length > 0.0;
-    return stretched ? segment.rest_length / segment.length : 1.0;
-  }
-  const Rim &from = cable.rims[before], &to = cable.rims[i];
-  if (!from.laid.empty() && !cable.links[before].pinch_middle) return slope_at_end(from, true);
-  return to.laid.empty() ? 1.0 : slope_at_end(to, false);
+/// Material in a metre of a span.
+double slope_of(const Segment& span) {
+  const bool stretched = span.length > span.rest_length && span.rest_length > 0.0;
+  return stretched ? span.rest_length / span.length : 1.0;
+}
+
+/// Material in a metre of what a link gives to a pinch beside it.
+double slope_through_pinch(const CableState& cable, int link, bool at_head) {
+  const Rim& rim = at(cable.rims, link);
+  const bool turns = rim.laid.empty() && !at(cable.links, link).pinch_middle;
+  return turns ? 1.0 : slope_at_end(rim, at_head);
 }
 
 /// rad/s of a segment's direction.
@@ -97,7 +100,9 @@ double turning_of(const World& world, const Segment& segment, const Link& from, 
 double creep_at(const World& world, const Link& link, const Rim& rim, bool at_head,
                 double turning) {
   if (rim.laid.empty()) return 0.0;
-  const double speed = link.signed_radius() * (at(world.angular_velocity, link.body) - turning);
+  const double slides = rim.slides ? link.slip_speed : 0.0;
+  const double speed =
+      link.signed_radius() * (at(world.angular_velocity, link.body) - turning) + slides;
   const double soon = at_head ? rim.comes_on_at_head : rim.comes_on_at_tail;
   const Laying laying = laying_at(rim, at_head, soon);
   const bool takes = at_head == (speed < 0.0);
@@ -107,14 +112,21 @@ double creep_at(const World& world, const Link& link, const Rim& rim, bool at_he
 }  // namespace
 
 RimSpan span_on_rim(const World& world, const CableState& cable, std::size_t i) {
-  const Link& link = cable.links[i];
-  const double tail = place_on_rim(world, link, cable.segments[i].alpha);
-  return {tail, std::max(tail, place_on_rim(world, link, alpha_head(cable, i)))};
+  const double tail = place_on_rim(world, cable, i, cable.segments[i].alpha);
+  return {tail, std::max(tail, place_on_rim(world, cable, i, alpha_head(cable, i)))};
 }
 
 Laying laying_at(const Rim& rim, bool at_head, double taken) {
   if (rim.laid.empty()) return {};
   return {taken, slope_at_end(rim, at_head), true};
+}
+
+void shift_material(CableState& cable, int number, double by) {
+  if (!cable.rims.empty() && at(cable.rims, number).slides) {
+    for (Laid& laid : at(cable.rims, number).laid) laid.material += by;
+  } else {
+    at(cable.links, number).material += by;
+  }
 }
 
 double laid_material(const Rim& rim, double place) {
@@ -145,14 +157,14 @@ double place_of_laid(const Rim& rim, double material) {
 
 bool may_carry(const World& world, const CableState& cable, std::size_t i) {
   const Link& link = cable.links[i];
-  const double mu = at(world.bodies, link.body).cable_friction;
-  return cable.creeps && link.orientation != 0 && link.layers.way == 0 &&
-         (mu == infinity || cable.density == 0.0);
+  if (!cable.creeps || link.orientation == 0 || link.layers.way != 0) return false;
+  return !slides_with_mass(world, cable, link) || !is_smooth(world, link);
 }
 
 void begin_to_carry(const World& world, CableState& cable, std::size_t i, double slope) {
   if (!may_carry(world, cable, i)) return;
   if (cable.rims.empty()) cable.rims.resize(cable.links.size());
+  cable.rims[i].slides = slides_with_mass(world, cable, cable.links[i]);
   const RimSpan span = span_on_rim(world, cable, i);
   std::vector<Laid>& laid = cable.rims[i].laid;
   laid.assign(1, {span.tail, span.tail, slope});
@@ -169,16 +181,28 @@ void lay_down(const World& world, CableState& cable, double time) {
     Rim& rim = cable.rims[i];
     if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);
   }
-  if (slides_without_mass(world, cable)) relax_rims(world, cable, time);
-  for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-    const std::size_t before = index(previous_link(cable, static_cast<int>(i)));
-    Rim& rim = cable.rims[i];
-    const double now = slope_of(cable, i, before);
-    const bool extrapolates = !cable.segments[i].pinched && rim.slope > 0.0;
+  if (slides_somewhere(world, cable)) {
+    if (cable.density == 0.0) relax_rims(world, cable, time);
+    slide_in_part(world, cable);
+  }
+  const int first = static_cast<int>(first_segment(cable));
+  const int count = static_cast<int>(cable.segments.size());
+  for (int i = first; i < count; ++i) {
+    const int before = previous_link(cable, i);
+    Rim& rim = at(cable.rims, i);
+    if (at(cable.segments, i).pinched) {
+      rim.slope = rim.comes_on_at_tail = slope_through_pinch(cable, before, true);
+      continue;
+    }
+    const double now = slope_of(at(cable.segments, i));
     const double soon =
-        extrapolates ? std::clamp(1.5 * now - 0.5 * rim.slope, 0.5 * now, 1.0) : now;
+        rim.slope > 0.0 ? std::clamp(1.5 * now - 0.5 * rim.slope, 0.5 * now, 1.0) : now;
     rim.slope = now;
-    rim.comes_on_at_tail = cable.rims[before].comes_on_at_head = soon;
+    rim.comes_on_at_tail = at(cable.rims, before).comes_on_at_head = soon;
+  }
+  for (int i = count - 1; i >= first; --i) {
+    if (!at(cable.segments, i).pinched) continue;
+    at(cable.rims, previous_link(cable, i)).comes_on_at_head = slope_through_pinch(cable, i, false);
   }
 }
 
@@ -211,7 +235,7 @@ void lay_on_rim(const World& world, CableState& cable, int link, std::span<const
       laid.push_back({place, laid.back().material + width * slope, slope});
     }
   }
-  at(cable.links, link).material += before + later - tail_material(cable, index(link), angle);
+  shift_material(cable, link, before + later - tail_material(cable, index(link), angle));
 }
 
 double energy_carried(const World& world, const CableState& cable, double stiffness) {

@@ -6,8 +6,12 @@
 // the one that drives it,
 //     w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA).
 // On discs and corners. Where a cable without mass slides over them, what lies there is stretched
-// as it is pulled (relax.h). Such as one with mass may slip on, and layers, carry as much as they
-// turn.
+// as it is pulled (relax.h). One with mass carries its strain along as it slides, as on a sleeve
+// that turns faster or slower than the body (sleeve.h); on rough bodies it slides in part, too
+// (partial_slip.h). Smooth bodies that it may slip on, and layers, carry as much as they turn: to
+// carry strain along costs energy, and nothing smooth does.
+//
+// Through a pinch goes what comes off the rim at its other side, as that has it, either way.
 
 #include <algorithm>
 #include <array>
@@ -46,6 +50,16 @@ struct Laying {
 /// Of the end where the cable leaves the rim, or with `at_head` false where it comes to it, while
 /// the segment there has `taken` m of material a metre.
 Laying laying_at(const Rim& rim, bool at_head, double taken);
+
+/// Where on a link's rim (m) the place is that its body's direction at the angle 0 is. What lies on
+/// a rim that a cable with mass slides over moves along with the cable, as on a sleeve (sleeve.h):
+/// its places are counted from Link::material, which says how far that has slid.
+inline double origin_of_rim(const CableState& cable, std::size_t link) {
+  return cable.rims[link].slides ? cable.links[link].material : 0.0;
+}
+
+/// Makes what lies at a link material that is further along its cable by so much (m).
+void shift_material(CableState& cable, int link, double by);
 
 /// Whether a link's rim carries its cable over as stretched as that comes on.
 bool may_carry(const World& world, const CableState& cable, std::size_t link);

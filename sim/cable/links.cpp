@@ -31,13 +31,15 @@ void take_over(CableState& cable, int link, int later) {
   if (other.laid.empty()) return;
   std::vector<Laid>& all = at(cable.rims, link).laid;
   const double end = all.back().place;
-  const double shift = all.back().material - laid_material(other, end);
+  const double apart = origin_of_rim(cable, index(link)) - origin_of_rim(cable, index(later));
+  const double shift = all.back().material - laid_material(other, end - apart);
   all.back().slope = other.comes_on_at_tail;
   for (const Laid& laid : other.laid) {
-    if (laid.place <= end) {
+    const double place = laid.place + apart;
+    if (place <= end) {
       all.back().slope = laid.slope;
     } else {
-      all.push_back({laid.place, laid.material + shift, laid.slope});
+      all.push_back({place, laid.material + shift, laid.slope});
     }
   }
 }
@@ -234,7 +236,11 @@ void hold_where_pressed(const World& world, CableState& cable, std::size_t middl
   link.material = pressed - place;
   const bool carries = !cable.rims.empty() && !cable.rims[middle - 1].laid.empty() &&
                        may_carry(world, cable, middle);
-  if (carries) cable.rims[middle].laid = {{place, place, 1.0}};
+  if (!carries) return;
+  Rim& rim = cable.rims[middle];
+  rim.slides = slides_with_mass(world, cable, link);
+  const double from = place + origin_of_rim(cable, middle);
+  rim.laid = {{from, from, 1.0}};
 }
 
 }  // namespace

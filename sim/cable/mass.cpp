@@ -71,10 +71,10 @@ MassedSpan span_of(const World& world, const CableState& cable, std::size_t i) {
   span.pinched = segment.pinched;
   span.distance = segment.pinched ? span.p_b - span.p_a : segment.length;
   if (!cable.rims.empty()) {
-    const Rim& before = at(cable.rims, tail);
-    const double taken = cable.rims[i].slope;  // now, as the interval begins
-    span.laying_a = laying_at(before, true, taken);
-    span.laying_b = laying_at(cable.rims[i], false, taken);
+    const Rim &before = at(cable.rims, tail), &rim = cable.rims[i];
+    const double now = rim.slope;  // as the interval begins
+    span.laying_a = laying_at(before, true, segment.pinched ? before.comes_on_at_head : now);
+    span.laying_b = laying_at(rim, false, now);
   }
   if (cable.fills) let_fill(from, to, span);
   span.length = segment.length;
@@ -99,7 +99,8 @@ void lie_on_rim(const CableState& cable, const Link& link, const Vec2& comes, co
 /// The same piece by piece, of what the rim has carried over as stretched as it came on.
 void lie_as_laid(const World& world, const CableState& cable, std::size_t i, MassedArc& arc) {
   const Link& link = cable.links[i];
-  const double p = link.signed_radius(), angle = body_angle(world, link);
+  const double p = link.signed_radius();
+  const double angle = body_angle(world, link) - origin_of_rim(cable, i) / p;
   arc.kept = true;
   each_piece(world, cable, i, [&](double from, double to, double slope) {
     const double mass = cable.density * slope;  // kg/m

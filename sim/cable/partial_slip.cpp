@@ -137,7 +137,8 @@ bool is_sticking(const World& world, const CableState& cable, int number) {
   const Link& link = at(cable.links, number);
   const int before = previous_link(cable, number), after = next_link(cable, number);
   if (before < 0 || after < 0 || at(cable.rims, number).laid.empty()) return false;
-  if (link.pinch_middle || !(link.wrap > 0.0) || link.slip != Slip::stick) return false;
+  if (link.pinch_middle || !(link.wrap > 0.0)) return false;
+  if (link.slip != Slip::stick && cable.density == 0.0) return false;
   return std::isfinite(at(world.bodies, link.body).cable_friction) && !is_smooth(world, link) &&
          !is_pinched_beside(cable, number) && !is_side(at(cable.links, before), link) &&
          !is_side(link, at(cable.links, after));

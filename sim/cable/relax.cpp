@@ -9,7 +9,6 @@
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/creep.h"
-#include "sim/cable/partial_slip.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
@@ -331,7 +330,6 @@ void relax_rims(const World& world, CableState& cable, double time) {
       group = {next_link(cable, i), 0};
     }
   }
-  slide_in_part(world, cable);
 }
 
 }  // namespace pinchlab

@@ -6,6 +6,7 @@
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
+#include "sim/cable/creep.h"
 #include "sim/compound.h"
 #include "sim/motion/clearance.h"
 #include "sim/solve/active_set.h"
@@ -37,7 +38,7 @@ struct Violation {
 bool is_elastic(const World& world, const Row& row) {
   if (row.kind != RowKind::segment) return false;
   const CableState& cable = at(world.cables, row.index);
-  return cable.elastic && !at(cable.segments, row.item).pinched;
+  return cable.elastic && (row.compliance > 0.0 || !at(cable.segments, row.item).pinched);
 }
 
 Violation violation(const World& world, const PartSystem& s) {
@@ -171,8 +172,8 @@ void refill_pinch(const World& world, CableState& cable, int pinch) {
   if (!opens_before && !opens_after) return;
   const double material = at(cable.segments, pinch).rest_length;
   const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
-  at(cable.links, before).material += share * material;
-  at(cable.links, pinch).material -= (1.0 - share) * material;
+  shift_material(cable, before, share * material);
+  shift_material(cable, pinch, -(1.0 - share) * material);
   update_wraps_and_rest_lengths(world, cable);
 }
 

@@ -222,6 +222,32 @@ TEST_P(Demonstration, MovesAlikeWithEitherDetection) {
   }
 }
 
+// Circles that were pinched are so within what gaps are right to, a share of coordinates: what was
+// pinched a thousand metres from the origin was open, and 05 was off by 5 cm.
+TEST_P(Demonstration, MovesAlikeAwayFromTheOrigin) {
+  const Vec2 away(1000.0, 700.0);
+  Scene moved = scene_;
+  for (Body& body : moved.bodies) body.position += away;
+  for (Wall& wall : moved.walls) {
+    wall.a += away;
+    wall.b += away;
+  }
+  for (Cable& cable : moved.cables) {
+    for (Attachment* end : {&cable.start, &cable.end}) {
+      if (end->body < 0) end->point += away;
+    }
+  }
+  World here = make_world(scene_, Method::pinch), there = make_world(moved, Method::pinch);
+  Workspace work_here, work_there;
+  for (int i = 0; i < scene_.frames_per_second * scene_.steps_per_frame; ++i) {
+    ASSERT_EQ(step(scene_, here, work_here), StepStatus::ok);
+    ASSERT_EQ(step(moved, there, work_there), StepStatus::ok);
+  }
+  for (std::size_t b = 0; b < here.position.size(); ++b) {
+    EXPECT_LT((there.position[b] - away - here.position[b]).norm(), 1e-6) << b;
+  }
+}
+
 TEST_P(Demonstration, AClearedWorkspaceChangesNoBit) {
   for (const Method method : {Method::pinch, scene_.baseline}) {
     World kept = make_world(scene_, method), cleared = kept;

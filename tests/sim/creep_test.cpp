@@ -61,7 +61,7 @@ Drive run_drive(double radius, int steps_per_frame, double mass_per_metre, doubl
 
 // w1 R1 / (w2 R2) = (1 + T1 / EA) / (1 + T2 / EA): of spans of 200 and 100 N at EA = 10 kN, 0.98 %
 // of the speed are lost, at whatever step; and of a belt with mass, which passes every place at one
-// rate; and of one that could slip, but does not as ln 2 is less than mu theta.
+// rate; and of one that could slip, but does not as ln 2 is less than mu theta, with mass or not.
 TEST(Creep, ABeltLosesSpeedByTheRatioOfItsStrains) {
   struct Belt {
     double mass, friction;
@@ -69,7 +69,9 @@ TEST(Creep, ABeltLosesSpeedByTheRatioOfItsStrains) {
   for (const double radius : {0.2, 0.35}) {
     for (const int steps : {1, 4, 16}) {
       for (const auto& [mass, friction] :
-           {Belt{0.0, infinity}, Belt{0.6, infinity}, Belt{0.0, 0.5}}) {
+           {Belt{0.0, infinity}, Belt{0.6, infinity}, Belt{0.0, 0.5}, Belt{0.6, 0.5}}) {
+        // One that vibrates faster than steps follow is damped, and lags by what slides in part.
+        if (mass > 0.0 && friction < infinity && steps == 1) continue;
         const Drive drive = run_drive(radius, steps, mass, friction);
         const double taut = drive.taut / stiffness, slack = drive.slack / stiffness;
         EXPECT_NEAR(drive.loss, 1.0 - (1.0 + slack) / (1.0 + taut), 1e-9);
@@ -233,6 +235,59 @@ TEST(Creep, IsOfSecondOrder) {
   expect(hoist, "hoist");
   expect([](int steps) { return wound_up_swinging(steps, 0.0); }, "wound up");
   expect([](int steps) { return wound_up_swinging(steps, 0.5); }, "wound up, with mass");
+}
+
+/// Weights on a cable that stretches, over a drum that it does not slip on; on its top a roller, or
+/// instead of it as much inertia on the drum.
+Scene under_roller(int steps, bool rolls, bool reversed) {
+  constexpr double half_width = 0.02, drum = 0.2 + half_width, roller = 0.1 + half_width;
+  constexpr double inertia = 0.08, of_roller = 0.005;
+  Scene scene;
+  scene.steps_per_frame = steps;
+  scene.bodies.push_back(body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2, 4.0));
+  scene.bodies[0].inertia = rolls ? inertia : inertia + of_roller * std::pow(drum / roller, 2);
+  scene.bodies.push_back(body("heavy", BodyKind::rail, -drum, -2.0, 0.06, 3.0));
+  scene.bodies.push_back(body("light", BodyKind::rail, drum, -3.0, 0.06, 1.6));
+  if (rolls) {
+    scene.bodies.push_back(body("roller", BodyKind::rail, 0.0, drum + roller, 0.1, 1.0));
+    scene.bodies[3].inertia = of_roller;
+  }
+  scene.cables.push_back(reversed ? cable(on(2), {{0, 1, 0}}, on(1), half_width)
+                                  : cable(on(1), {{0, -1, 0}}, on(2), half_width));
+  scene.cables[0].axial_stiffness = 3000.0;
+  return scene;
+}
+
+// What comes through a pinch is as stretched as it is on the rim that it comes from, whichever way
+// it goes. Taken for what is stretched as beyond it, 4 mm of material gathered in the pinch within
+// a second, and the drum was 2 mrad off at any step.
+TEST(Creep, GoesThroughPinches) {
+  for (const bool reversed : {false, true}) {
+    double coarse = 0.0;  // rad
+    for (const int steps : {4, 16}) {
+      double turned[2] = {0.0, 0.0};
+      for (const bool rolls : {false, true}) {
+        const Scene scene = under_roller(steps, rolls, reversed);
+        World world = make_world(scene, measured());
+        run(scene, world, 60 * steps);
+        turned[rolls ? 1 : 0] = world.angle[0];
+        if (!rolls) continue;
+        const CableState& rope = world.cables[0];
+        ASSERT_EQ(rope.links.size(), 5U);
+        for (const int pinched : {2, 3}) {
+          EXPECT_TRUE(at(rope.segments, pinched).pinched);
+          EXPECT_NEAR(at(rope.segments, pinched).rest_length, 0.0, 1.5e-4 / steps);
+        }
+      }
+      EXPECT_GT(turned[0], 4.0);
+      const double error = std::abs(turned[1] - turned[0]);
+      if (steps == 4) coarse = error;
+      if (steps == 16) {
+        EXPECT_LT(error, std::max(0.1 * coarse, 1e-7)) << reversed;
+      }
+    }
+    EXPECT_LT(coarse, 1e-4) << reversed;
+  }
 }
 
 // What lies on a rim that creeps turns with it, also where the rope's end lies in layers on a drum.

@@ -126,6 +126,20 @@ TEST(MassSlip, WhatSticksMovesAsIfItCouldNotSlip) {
   }
 }
 
+// Where it stretches it creeps alike, too, but for what slides in part: exp(-mu phi) at the middle
+// of a 24th of the rim (partial_slip.h), 4e-6 at least.
+TEST(MassSlip, WhatSticksCreepsAsIfItCouldNotSlip) {
+  const auto run_of = [](double mu, bool creep) {
+    Scene scene = swinging_over_drum(4, mu);
+    scene.cables[0].axial_stiffness = 600.0;
+    scene.cables[0].creep = creep;
+    return run_measured(scene, 0.5);
+  };
+  const Course fast = run_of(infinity, true);
+  EXPECT_LT(largest_difference(fast.end, run_of(1e5, true).end), 1e-5);
+  EXPECT_GT(largest_difference(fast.end, run_of(1e5, false).end), 1e-3);
+}
+
 // Motion, and energy where there is no friction, against a much shorter step and against the start.
 TEST(MassSlip, SwingsOnSecondOrder) {
   for (const auto make : {swinging_over_drum, slipping_tackle}) {
