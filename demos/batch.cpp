@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <set>
@@ -32,12 +33,12 @@ using nlohmann::ordered_json;
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
-  const std::set<std::string> ours = {".mp4", ".webm", ".mkv",  ".apng",     ".webp",   ".gif",
-                                      ".png", ".json", ".html", ".unpadded", ".partial"};
+  constexpr std::array ours = {".mp4", ".webm", ".mkv",  ".apng",     ".webp",   ".gif",
+                               ".png", ".json", ".html", ".unpadded", ".partial"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path& path = entry.path();
-    if (path.extension() == partial_ending && ours.contains(path.stem().extension())) {
-      fs::remove(path);
+    const std::string name = entry.path().filename().string();
+    if (std::ranges::any_of(ours, [&](const char* end) { return is_partial_of(name, end); })) {
+      fs::remove(entry.path());
     }
   }
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -125,6 +127,58 @@ TEST(PartialFile, WritesWhatALinkLeadsTo) {
   EXPECT_FALSE(fs::is_symlink(inner / "file"));
   EXPECT_EQ(files_in(folder.path()), 2U);
   EXPECT_EQ(files_in(inner), 2U);
+}
+
+TEST(PartialFile, TwoWritersOfOneFileDoNotMix) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a";
+  OutputFile first(path), second(path);
+  first.write("first");
+  second.write("second, which is longer");
+  write_durably(path, "third");
+  EXPECT_EQ(read_whole(path), "third");
+  second.finish();
+  EXPECT_EQ(read_whole(path), "second, which is longer");
+  first.finish();
+  EXPECT_EQ(read_whole(path), "first");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+TEST(PartialFile, WhatAKilledProcessLeftMakesRoom) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a");
+  const pid_t process = ::fork();
+  if (process == 0) {
+    const PartialFile file(path);
+    ::raise(SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(process, nullptr, 0), process);
+  EXPECT_TRUE(fs::exists(path + ".partial"));
+  EXPECT_FALSE(fs::exists(path));
+  {
+    const PartialFile file(path);
+    EXPECT_EQ(file.name(), path + ".partial");
+    EXPECT_EQ(PartialFile(path).name(), path + ".2.partial");
+  }
+  EXPECT_TRUE(folder.empty());
+}
+
+TEST(PartialFile, WritesNothingThatLiesUnderItsName) {
+  const TemporaryFolder folder;
+  const fs::path theirs = folder.write("theirs", "as it was");
+  fs::create_symlink(theirs, folder.path() / "a.partial");
+  fs::create_directory(folder.path() / "a.2.partial");
+  write_result(folder.path() / "a", "mine");
+  EXPECT_EQ(read_whole(folder.path() / "a"), "mine");
+  EXPECT_EQ(read_whole(theirs), "as it was");
+}
+
+TEST(PartialFile, NamesTellWhatTheyAreOf) {
+  EXPECT_TRUE(is_partial_of("a.json.partial", "a.json"));
+  EXPECT_TRUE(is_partial_of("a.json.12.partial", ".json"));
+  for (const char* other : {"a.json", "a.jso.partial", "a.json.x.partial", "a.json..partial"}) {
+    EXPECT_FALSE(is_partial_of(other, ".json")) << other;
+  }
 }
 
 TEST(PartialFile, ChangesNothingReadOnlyThatALinkLeadsTo) {
@@ -267,7 +321,7 @@ TEST(DurableFile, FailureLeavesNothing) {
   // The name under which it is written for the time being is nobody's concern.
   const std::string path = (folder.path() / std::string(250, 'a')).string();
   EXPECT_EQ(message_of<std::runtime_error>([&] { write_durably(path, "x"); }),
-            path + ": cannot be made: File name too long");
+            path + ": cannot be written: File name too long");
 }
 
 TEST(DurableFile, OnlyTheUserReads) {
