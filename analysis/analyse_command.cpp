@@ -138,7 +138,7 @@ void add_input_options(CLI::App& command, Arguments& args) {
       .add_option("--repetitions", args.read.repetitions,
                   "Answers that each participant gives to each demonstration (CSV)")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+      ->check(whole_in(1, 100));
   command.add_flag("--allow-missing", args.read.allow_missing,
                    "Accept participants with answers missing");
 }
@@ -169,10 +169,10 @@ void add_statistics_options(CLI::App& command, Arguments& args) {
       ->check(number_in(1e-6, 0.5));
   command.add_option("--bootstrap", args.analyse.bootstrap, "Resamples of the cluster bootstrap")
       ->capture_default_str()
-      ->check(CLI::Range(99, 1000000));
+      ->check(whole_in(99, 1000000));
   command.add_option("--seed", args.analyse.seed, "Seed of all random numbers")
       ->capture_default_str()
-      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+      ->check(whole_in(0, largest_seed));
   command
       .add_option("--function", args.function,
                   "Psychometric function of graded stimuli: logistic, normal or weibull")

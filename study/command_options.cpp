@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/number_option.h"
 #include "study/plan.h"
 
 namespace pinchlab::study {
@@ -10,9 +11,7 @@ namespace pinchlab::study {
 namespace fs = std::filesystem;
 
 CLI::Option* add_seed(CLI::App& command, std::uint64_t& seed, const std::string& help) {
-  return command.add_option("--seed", seed, help)
-      ->type_name("S")
-      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+  return command.add_option("--seed", seed, help)->type_name("S")->check(whole_in(0, largest_seed));
 }
 
 CLI::Option* add_config(CLI::App& command, fs::path& config) {
