@@ -147,6 +147,7 @@ void add_stopping(CLI::App& app) {
   command->callback([question, command, json] {
     refuse_idle_options(*command, *question);
     try {
+      if (!json->empty()) check_can_be_written(*json);
       constexpr int studies = 4000;
       const StoppingAnswer answer = stopping_rule(*question, studies, 1);
       if (*json != "-") print_result(stopping_text(*question, answer));

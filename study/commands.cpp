@@ -289,6 +289,8 @@ void export_study(const ExportOptions& options, const Stimuli& stimuli) {
   }
   if (!options.jatos.empty()) {
     Config config = read_or_default(options.config);
+    check_can_be_written(options.jatos);
+    check_can_be_written(key_path(options.jatos));
     const Clips clips = prepare(config, stimuli, options.clips, options.no_webm);
     export_jatos(config, clips, options.has_seed ? options.seed : random_seed(),
                  options.participants, options.jatos);

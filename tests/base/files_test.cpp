@@ -297,6 +297,19 @@ TEST(StagingFolder, ClearsAwayWhatIsLeftOver) {
   EXPECT_EQ(read_whole(folder.path() / "a"), "1");
 }
 
+TEST(OutputFile, TellsBeforehandWhatCannotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path inside = folder.path() / "none/a";
+  EXPECT_EQ(message_of<std::runtime_error>([&] { check_can_be_written(inside); }),
+            inside.string() + ": the folder " + inside.parent_path().string() +
+                " does not exist; create it first");
+  const fs::path there = folder.write("there", "as it was");
+  for (const fs::path& path : {there, folder.path() / "new", fs::path("-"), fs::path("/dev/null")})
+    EXPECT_NO_THROW(check_can_be_written(path)) << path;
+  EXPECT_EQ(read_whole(there), "as it was");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
 TEST(OutputFile, KnowsOneFileByItsNames) {
   const TemporaryFolder folder;
   const fs::path a = folder.path() / "a";

@@ -109,10 +109,21 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
   const fs::path folder = folder_with_scene();
   fs::create_directories(folder / "demos");
   fs::copy(folder / "01-small.json", folder / "demos" / "01-small.json");
+  nlohmann::json scene = small_scene();
+  scene["title"] = "${name}";
+  std::ofstream(folder / "table.json") << scene;
   const std::pair<std::vector<std::string>, const char*> bad[] = {
       {{"simulate", "01-small.json", "--out", "none/a.csv", "--error", "1e-3", "--time-limit",
         "1e-6"},
        "none/a.csv: the folder none does not exist; create it first\n"},
+      {{"still", "01-small.json", "--time", "2", "--out", "none/a.png"},
+       "none/a.png: the folder none does not exist; create it first\n"},
+      {{"still", "01-small.json", "--time", "0:2", "--out", "01-small.json/#.png"},
+       "01-small.json: is not a folder; name another one\n"},
+      {{"still", "table.json", "--table", "name=a", "--time", "2", "--out", "none/a.svg"},
+       "none/a.svg: the folder none does not exist; create it first\n"},
+      {{"study", "export", "--jatos", "none/a.jzip", "--clips", "clips", "--participants", "4"},
+       "none/a.jzip: the folder none does not exist; create it first\n"},
       {{"study", "serve", "--clips", "clips", "--answers", "01-small.json", "--port", "0"},
        "01-small.json: cannot be made: Not a directory; use another --answers\n"},
       {{"study", "freeze", "--clips", "clips", "--answers", "answers", "--out", "frozen",
