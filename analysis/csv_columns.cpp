@@ -101,6 +101,28 @@ void CsvColumns::check_pilot(std::size_t column, SameStudy& same_study) const {
   same_study.check_pilot(has(column) && pilot_of(at(column), reader_.place()), reader_.place());
 }
 
+void CsvColumns::check_position(std::size_t column, const std::string& participant) {
+  if (!has(column) || at(column).empty()) return;
+  const long position = whole(column, 1, 65535);
+  if (participant.empty()) return;
+  const auto [known, is_new] =
+      line_of_position_.try_emplace({participant, position}, reader_.line());
+  if (is_new) return;
+  fail(fmt::format(
+      "participant `{}` has two answers at position {} (also in line {}), and a copy would count "
+      "twice; take it out, or if it is none let positions count all trials of one participant",
+      participant, position, known->second));
+}
+
+void CsvColumns::check_totals(const std::string& words) {
+  const auto [known, is_new] = line_of_totals_.try_emplace(words, reader_.line());
+  if (is_new) return;
+  fail(
+      fmt::format("says the same as line {}, and a copy would count twice; take it out, or if it "
+                  "is none make one row of the two",
+                  known->second));
+}
+
 void CsvColumns::fail(const std::string& message) const {
   throw InputError(reader_.place(), message);
 }
