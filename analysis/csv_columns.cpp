@@ -2,6 +2,7 @@
 #include "analysis/csv_columns.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -37,6 +38,26 @@ bool has_columns(const fs::path& path, const ReadOptions& options,
   return reader.next(fields) && std::ranges::all_of(names, [&](const std::string& name) {
            return std::ranges::find(fields, name_in_file(options, name)) != fields.end();
          });
+}
+
+void check_mapped_columns(const std::vector<fs::path>& inputs, const ReadOptions& options) {
+  std::vector<std::string> there;
+  std::string place;  // of the first header
+  for (const fs::path& input : inputs) {
+    if (options.columns.empty() || !has_columns(input, options, {})) continue;
+    CsvReader reader(input, options.separator);
+    std::vector<std::string_view> fields;
+    reader.next(fields);
+    if (place.empty()) place = reader.place();
+    there.insert(there.end(), fields.begin(), fields.end());
+  }
+  const std::string all = fmt::format("`{}`", fmt::join(there, "`, `"));
+  for (const auto& [ours, theirs] : options.columns) {
+    if (place.empty() || std::ranges::find(there, theirs) != there.end()) continue;
+    throw InputError(
+        place, fmt::format("--map-column {}={}: there is no column `{}`{}; there are {}", ours,
+                           theirs, theirs, did_you_mean(theirs, there), all));
+  }
 }
 
 CsvColumns::CsvColumns(const fs::path& path, const ReadOptions& options,

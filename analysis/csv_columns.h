@@ -67,6 +67,11 @@ bool pilot_of(std::string_view value, const std::string& place);
 bool has_columns(const std::filesystem::path& path, const ReadOptions& options,
                  const std::vector<std::string>& names);
 
+/// Throws InputError for a name of a column that is mapped to and that no CSV file among the inputs
+/// has.
+void check_mapped_columns(const std::vector<std::filesystem::path>& inputs,
+                          const ReadOptions& options);
+
 /// Who is to be left out, and who of them turned up.
 class Exclusions {
  public:

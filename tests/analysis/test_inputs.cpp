@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/csv_columns.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -128,6 +129,32 @@ TEST(Groups, DefaultByLeadingNumberFileAndColumn) {
   ASSERT_EQ(file.groups.size(), 3U);
   EXPECT_EQ(file.groups[0].name, "first");
   EXPECT_EQ(file.groups[1].demonstrations, (std::vector<std::uint16_t>{1}));
+}
+
+TEST(Columns, ThatAreMappedToAreThere) {
+  const TemporaryFolder folder;
+  const fs::path one = folder.write("one.csv", "subject,demonstration,choice,place\na,1,pinch,1\n");
+  const fs::path other = folder.write("other.csv", "participant,demonstration,choice,rt\n");
+  const auto why_not = [&](const std::string& ours, const std::string& theirs,
+                           const std::vector<fs::path>& inputs) -> std::string {
+    ReadOptions options;
+    options.columns = {{ours, theirs}};
+    try {
+      check_mapped_columns(inputs, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why_not("position", "plase", {one}),
+            one.string() +
+                ":1: --map-column position=plase: there is no column `plase` (did you "
+                "mean `place`?); there are `subject`, `demonstration`, `choice`, "
+                "`place`");
+  EXPECT_EQ(why_not("position", "place", {one}), "");
+  EXPECT_EQ(why_not("reaction_time_s", "rt", {one, other}), "") << "one of them has it";
+  EXPECT_NE(why_not("reaction_time_s", "RT", {one, other}), "");
+  EXPECT_EQ(why_not("reaction_time_s", "RT", {folder.path()}), "") << "told elsewhere";
 }
 
 // One hypothesis under two names is one of the family.

@@ -54,6 +54,10 @@ const BadUse bad_uses[] = {
      "--name: bad name is no name of a computer"},
     {{"study", "serve", "--clips", "clips", "--answers", "answers", "--name", "https://a.org"},
      "--name: https://a.org is no name of a computer"},
+    {{"analyse", "a.csv", "--out", "set", "--map-column", "positon=x"},
+     "--map-column: we have no column `positon` (did you mean `position`?)"},
+    {{"analyse", "a.csv", "--out", "set", "--map-column", "side=x", "--map-column", "group=x"},
+     "--map-column: `x` is mapped to twice"},
     // No whole number, or no number at all
     {{"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "1.5"},
      "--steps-per-frame: 1.5 is not a whole number from 1 to 1000000"},
