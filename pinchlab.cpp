@@ -425,6 +425,9 @@ int run(int argc, char** argv) {
     if (const std::string unknown = unknown_words(app); !unknown.empty()) {
       throw std::invalid_argument(unknown);
     }
+    if (const std::string twice = given_too_often(error); !twice.empty()) {
+      throw std::invalid_argument(twice);
+    }
     app.exit(error);
     return 2;
   }

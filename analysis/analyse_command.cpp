@@ -95,7 +95,8 @@ Rate rate_of(const char* flag, const std::string& text, double most_fixed, doubl
 CLI::Validator rate_up_to(double most) {
   return {[most](const std::string& text) {
             if (text == "free") return std::string();
-            return number_in(0.0, most)(text);
+            if (number_in(0.0, most)(text).empty()) return std::string();
+            return fmt::format("{} is neither `free` nor a number from 0 to {}", text, most);
           },
           ""};
 }

@@ -92,6 +92,15 @@ std::vector<ClipPlan> plans_to_make(const std::vector<ClipPlan>& plans, const Ma
   return to_make;
 }
 
+// An error that names the file by what it is called while it is made.
+std::string with_own_name(const ClipPlan& plan, std::string error) {
+  const std::string made = made_as(plan);
+  if (const std::size_t place = error.find(made); place != std::string::npos) {
+    error.replace(place, made.size(), plan.file);
+  }
+  return error;
+}
+
 struct Outcome {
   int signal = 0, made = 0, failed = 0;
 };
@@ -188,7 +197,10 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const BatchOptions& options
           [&](std::size_t i, const std::string& entry) {
             outcome.made += files.add(i, ordered_json::parse(entry));
           },
-      .failed = [&](std::size_t i, const std::string& error) { fail(plans[i].file, error); },
+      .failed =
+          [&](std::size_t i, const std::string& error) {
+            fail(plans[i].file, with_own_name(plans[i], error));
+          },
       .idle = [&] { progress.add(0); }};
   outcome.signal = run_in_processes(work, jobs, events);
   if (outcome.signal == 0) {
@@ -380,6 +392,7 @@ int render_batch(const BatchOptions& options) {
                   options.out.string()));
   remove_partial_files(options.out);
   Manifest manifest = read_manifest(options.out);
+  check_can_be_written(options.out / "manifest.json");
   const auto is_gone = [&](const ordered_json& entry) {
     return !fs::exists(options.out / entry["file"].get<std::string>());
   };

@@ -71,6 +71,10 @@ const BadUse bad_uses[] = {
     {{"power", "--share", "0,7"}, "--share: 0,7 is not a number"},
     {{"simulate", "01-small.json", "--out", "a.csv", "--until", "soon"},
      "--until: soon is not a number"},
+    {{"simulate", "01-small.json", "--out", "a.csv", "--until", "1", "--until", "2"},
+     "--until: is given 2 times; give it once"},
+    {{"analyse", "a.csv", "--out", "set", "--lapse", "no"},
+     "--lapse: no is neither `free` nor a number from 0 to 0.5"},
     // Without the option's name nobody knows which is meant
     {{"render", "01-small.json", "--slow", "1"}, "--slow: 1 is not FROM-TO:FACTOR"},
     {{"render", "01-small.json", "--freeze", "1"}, "--freeze: 1 is not TIME:SECONDS"},
@@ -142,6 +146,27 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
     EXPECT_EQ(run.err, message) << fmt::format("{}", fmt::join(command, " "));
   }
   EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+// Nobody makes a file there, not even root.
+TEST(Usage, AFolderThatTakesNoFilesIsToldAtOnce) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(folder, {"render", "01-small.json", "--out", "/proc/self"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(run.err.starts_with("/proc/self/manifest.json: cannot be written: ")) << run.err;
+  EXPECT_EQ(run.err.find("not made"), std::string::npos) << run.err;
+}
+
+TEST(Usage, FilesAreToldByTheNamesThatTheyGet) {
+  const fs::path folder = folder_with_scene();
+  const pid_t process =
+      start_program(folder, {"render", "01-small.json", "--size", "64x64", "--out", "clips"}, 1000);
+  const RunResult run = wait_for_program(folder, process);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("01-small.pinch.mp4: not made: clips/01-small.pinch.mp4: cannot be "),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(run.err.find("unpadded"), std::string::npos) << run.err;
 }
 
 // Or the next file that is opened would take its place, and the messages.
