@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/command_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <stdexcept>
 
 #include "base/number_option.h"
+#include "base/output_file.h"
 #include "study/plan.h"
 
 namespace pinchlab::study {
@@ -39,6 +43,12 @@ CLI::Option* add_answers(CLI::App& command, fs::path& answers) {
   return command.add_option("--answers", answers, "Folder for the answers, made if missing")
       ->type_name("DIR")
       ->required();
+}
+
+void refuse_to_overwrite(const fs::path& config, const fs::path& out, const char* what) {
+  if (!is_same_file(out, config)) return;
+  throw std::invalid_argument(
+      fmt::format("{}: is the configuration; give the {} another name", out.string(), what));
 }
 
 }  // namespace pinchlab::study

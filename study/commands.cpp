@@ -215,12 +215,8 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
     if (is_same_file(csv, options->json)) {
       throw std::invalid_argument("--csv and --json must be different files");
     }
-    for (const fs::path& out : {csv, options->json}) {
-      if (!out.empty() && is_same_file(out, options->config)) {
-        throw std::invalid_argument(
-            fmt::format("{}: is the configuration; give the plan another name", out.string()));
-      }
-    }
+    refuse_to_overwrite(options->config, csv, "plan");
+    refuse_to_overwrite(options->config, options->json, "plan");
     Config config = read_or_default(options->config);
     if (config.demonstrations.empty()) {
       config.demonstrations = stimuli.demonstrations();
@@ -289,8 +285,8 @@ void export_study(const ExportOptions& options, const Stimuli& stimuli) {
   }
   if (!options.jatos.empty()) {
     Config config = read_or_default(options.config);
-    check_can_be_written(options.jatos);
-    check_can_be_written(key_path(options.jatos));
+    refuse_to_overwrite(options.config, options.jatos, "archive");
+    check_export(config, options.jatos);
     const Clips clips = prepare(config, stimuli, options.clips, options.no_webm);
     export_jatos(config, clips, options.has_seed ? options.seed : random_seed(),
                  options.participants, options.jatos);

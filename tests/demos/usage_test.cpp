@@ -120,6 +120,7 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
   nlohmann::json scene = small_scene();
   scene["title"] = "${name}";
   std::ofstream(folder / "table.json") << scene;
+  std::ofstream(folder / "a.key.json") << "{}";
   const std::pair<std::vector<std::string>, const char*> bad[] = {
       {{"simulate", "01-small.json", "--out", "none/a.csv", "--error", "1e-3", "--time-limit",
         "1e-6"},
@@ -132,6 +133,8 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
        "none/a.svg: the folder none does not exist; create it first\n"},
       {{"study", "export", "--jatos", "none/a.jzip", "--clips", "clips", "--participants", "4"},
        "none/a.jzip: the folder none does not exist; create it first\n"},
+      {{"study", "export", "--jatos", "a.jzip", "--clips", "clips", "--participants", "4"},
+       "a.key.json: is there already, and answers to its archive need it; choose another name\n"},
       {{"study", "serve", "--clips", "clips", "--answers", "01-small.json", "--port", "0"},
        "01-small.json: cannot be made: Not a directory; use another --answers\n"},
       {{"study", "freeze", "--clips", "clips", "--answers", "answers", "--out", "frozen",
@@ -146,6 +149,18 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
     EXPECT_EQ(run.err, message) << fmt::format("{}", fmt::join(command, " "));
   }
   EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Usage, AConfigurationIsNotOverwritten) {
+  const fs::path folder = scratch_folder();
+  const std::string config = R"({"format": "pinchlab-study 1", "demonstrations": ["a"]})";
+  std::ofstream(folder / "study.json") << config;
+  const RunResult run =
+      run_program(folder, {"study", "export", "--jatos", "./study.json", "--clips", "clips",
+                           "--participants", "4", "--config", "study.json"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "./study.json: is the configuration; give the archive another name\n");
+  EXPECT_EQ(text_of(folder / "study.json"), config);
 }
 
 // Nobody makes a file there, not even root.
