@@ -96,6 +96,13 @@ PartialFile::PartialFile(std::string path, mode_t mode)
   if (fs::is_directory(path_)) {
     throw std::runtime_error(path_ + ": is a folder; give a file's name");
   }
+  std::error_code none;
+  const fs::file_type there = fs::status(place_, none).type();
+  if (there != fs::file_type::regular && there != fs::file_type::not_found &&
+      there != fs::file_type::none) {
+    throw std::runtime_error(path_ +
+                             ": is a device or a pipe, and not to be replaced; give a file's name");
+  }
   // A store that links lead into is read only, that nobody may change what has its name there.
   const bool is_link = place_ != path_;
   if (is_link && ::access(place_.c_str(), F_OK) == 0 && ::access(place_.c_str(), W_OK) != 0) {

@@ -42,7 +42,7 @@ bool is_partial_of(std::string_view name, std::string_view path);
 class PartialFile {
  public:
   /// Makes it, empty, with this mode less the umask. Throws std::runtime_error if it cannot be
-  /// made, the folder does not exist, or the path is a folder or empty.
+  /// made, the folder does not exist, or the path is a folder, a device, a pipe or empty.
   explicit PartialFile(std::string path, mode_t mode = 0666);
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;

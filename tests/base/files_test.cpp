@@ -173,6 +173,19 @@ TEST(PartialFile, WritesNothingThatLiesUnderItsName) {
   EXPECT_EQ(read_whole(theirs), "as it was");
 }
 
+// As root they would be gone for the whole machine.
+TEST(PartialFile, ReplacesNoDevices) {
+  const TemporaryFolder folder;
+  const std::string link = folder.file("link.png"), pipe = folder.file("pipe");
+  fs::create_symlink("/dev/null", link);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {link, pipe}) {
+    EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(path); }),
+              path + ": is a device or a pipe, and not to be replaced; give a file's name");
+  }
+  EXPECT_EQ(files_in(folder.path()), 2U);
+}
+
 TEST(PartialFile, NamesTellWhatTheyAreOf) {
   EXPECT_TRUE(is_partial_of("a.json.partial", "a.json"));
   EXPECT_TRUE(is_partial_of("a.json.12.partial", ".json"));
