@@ -48,7 +48,7 @@ void add_fps(CLI::App& command, Timing& timing) {
       .add_option("--fps", timing.frames_per_second,
                   "Frames a second [the scene's]; the steps get no longer than the scene's")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000));
+      ->check(whole_in(1, 1000));
 }
 
 CLI::Option* add_error(CLI::App& command, Timing& timing) {
@@ -102,7 +102,7 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
   add_simulation_limit(command, options.time_limit, "a clip's");
   command.add_option("--jobs", options.jobs, "Clips made at a time [one a core]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_in(1, 1024));
   add_theme(command, options.theme, options.burn_time);
 }
 
@@ -312,14 +312,15 @@ void add_simulate(CLI::App& app) {
           "--until", options->until,
           "The last row is the last frame's up to this time, s [the clip's last frame, which is at "
           "its duration less that of a frame]")
-      ->type_name("S");
+      ->type_name("S")
+      ->check(number());
   add_fps(*command, options->timing);
   add_error(*command, options->timing);
   command
       ->add_option("--steps-per-frame", options->timing.steps_per_frame,
                    "Steps a frame [the scene's]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1'000'000));
+      ->check(whole_in(1, 1'000'000));
   add_simulation_limit(*command, options->time_limit, "a");
   command->footer(
       "TRAJ.csv: time_s,body,x_m,y_m,angle_rad,vx_m_s,vy_m_s,omega_rad_s\n"
@@ -423,6 +424,9 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     if (const std::string unknown = unknown_words(app); !unknown.empty()) {
       throw std::invalid_argument(unknown);
+    }
+    if (const std::string twice = given_too_often(error); !twice.empty()) {
+      throw std::invalid_argument(twice);
     }
     app.exit(error);
     return 2;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "analysis/report.h"
 #include "base/input_error.h"
@@ -123,6 +124,29 @@ std::vector<const Row*> rows_of(const std::vector<DemonstrationResult>& demonstr
   return rows;
 }
 
+// Groups with the same members are one hypothesis by several names: it counts once.
+void adjust_groups(const std::vector<Group>& groups, std::vector<GroupResult>& results) {
+  std::vector<Row*> rows;
+  std::vector<double> flips;
+  std::map<std::vector<std::uint16_t>, size_t> place;  // in the family, by members
+  for (size_t i = 0; i < groups.size(); ++i) {
+    if (!place.emplace(groups[i].demonstrations, rows.size()).second) continue;
+    rows.push_back(&results[i].row);
+    const Estimate& p = results[i].pooled.sign_flip.p;
+    flips.push_back(p ? p.value : 1.0);
+  }
+  adjust_family(rows);
+  const std::vector<double> adjusted = holm(flips);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const size_t same = place.at(groups[i].demonstrations);
+    results[i].p_sign_flip_holm = adjusted[same];
+    results[i].row.p_holm = rows[same]->p_holm;
+    results[i].row.p_bh = rows[same]->p_bh;
+    results[i].row.read.p_holm = rows[same]->read.p_holm;
+    results[i].row.read.p_bh = rows[same]->read.p_bh;
+  }
+}
+
 Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) {
   check_options(options);
   Report report;
@@ -138,15 +162,7 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   std::vector<Row*> rows;
   for (DemonstrationResult& result : report.demonstrations) rows.push_back(&result.row);
   adjust_family(rows);
-  rows.clear();
-  std::vector<double> flips;
-  for (GroupResult& result : report.groups) {
-    rows.push_back(&result.row);
-    flips.push_back(result.pooled.sign_flip.p ? result.pooled.sign_flip.p.value : 1.0);
-  }
-  adjust_family(rows);
-  const std::vector<double> adjusted = holm(flips);
-  for (size_t i = 0; i < adjusted.size(); ++i) report.groups[i].p_sign_flip_holm = adjusted[i];
+  adjust_groups(table.groups, report.groups);
 
   report.side_bias = side_bias(table, options.seed);
   report.order_effect = order_effect(table, options.seed);

@@ -2,6 +2,7 @@
 #include "analysis/analyse_command.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,11 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "analysis/csv_columns.h"
 #include "analysis/csv_inputs.h"
 #include "analysis/design_check.h"
 #include "analysis/report.h"
 #include "analysis/scale_report.h"
 #include "analysis/threshold_report.h"
+#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/number_option.h"
 #include "base/text_checks.h"
@@ -50,6 +53,7 @@ struct Arguments {
 
 // "ours=theirs" pairs of --map-column, each for a column of ours.
 std::map<std::string, std::string> column_map(const std::vector<std::string>& pairs) {
+  const std::vector<std::string> known = input_columns();
   std::map<std::string, std::string> columns;
   for (const std::string& pair : pairs) {
     const size_t equals = pair.find('=');
@@ -58,11 +62,16 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
                                  fmt::format("`{}` is not of the form OURS=THEIRS", pair));
     }
     const std::string ours = pair.substr(0, equals);
-    if (!is_input_column(ours)) {
+    if (std::ranges::find(known, ours) == known.end()) {
       throw CLI::ValidationError("--map-column",
-                                 fmt::format("there is no column `{}`; see --help", ours));
+                                 fmt::format("we have no column `{}`{}; ours are `{}`", ours,
+                                             did_you_mean(ours, known), fmt::join(known, "`, `")));
     }
-    if (!columns.emplace(ours, pair.substr(equals + 1)).second) {
+    const std::string theirs = pair.substr(equals + 1);
+    if (std::ranges::any_of(columns, [&](const auto& other) { return other.second == theirs; })) {
+      throw CLI::ValidationError("--map-column", fmt::format("`{}` is mapped to twice", theirs));
+    }
+    if (!columns.emplace(ours, theirs).second) {
       throw CLI::ValidationError("--map-column", fmt::format("column `{}` is mapped twice", ours));
     }
   }
@@ -86,7 +95,8 @@ Rate rate_of(const char* flag, const std::string& text, double most_fixed, doubl
 CLI::Validator rate_up_to(double most) {
   return {[most](const std::string& text) {
             if (text == "free") return std::string();
-            return number_in(0.0, most)(text);
+            if (number_in(0.0, most)(text).empty()) return std::string();
+            return fmt::format("{} is neither `free` nor a number from 0 to {}", text, most);
           },
           ""};
 }
@@ -138,7 +148,7 @@ void add_input_options(CLI::App& command, Arguments& args) {
       .add_option("--repetitions", args.read.repetitions,
                   "Answers that each participant gives to each demonstration (CSV)")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100));
+      ->check(whole_in(1, 100));
   command.add_flag("--allow-missing", args.read.allow_missing,
                    "Accept participants with answers missing");
 }
@@ -169,10 +179,10 @@ void add_statistics_options(CLI::App& command, Arguments& args) {
       ->check(number_in(1e-6, 0.5));
   command.add_option("--bootstrap", args.analyse.bootstrap, "Resamples of the cluster bootstrap")
       ->capture_default_str()
-      ->check(CLI::Range(99, 1000000));
+      ->check(whole_in(99, 1000000));
   command.add_option("--seed", args.analyse.seed, "Seed of all random numbers")
       ->capture_default_str()
-      ->check(CLI::Range(std::uint64_t{0}, largest_seed));
+      ->check(whole_in(0, largest_seed));
   command
       .add_option("--function", args.function,
                   "Psychometric function of graded stimuli: logistic, normal or weibull")
@@ -387,6 +397,7 @@ void run(Arguments& args) {
   check_columns(args);
   const Given given = given_inputs(args);
   refuse_idle_options(args, given);
+  check_mapped_columns(args.inputs, args.read);
   take_design(args);
   if (given.kind == Kind::levels) return analyse_levels(args);
   if (given.kind == Kind::comparisons) return analyse_comparisons(args);

@@ -133,8 +133,8 @@ struct ReadOptions {
 AnswersTable read_answers(const std::vector<std::filesystem::path>& inputs,
                           const ReadOptions& options);
 
-/// Is this the name of a column that CSV inputs can have?
-bool is_input_column(const std::string& name);
+/// Columns that CSV inputs can have, of whatever kind.
+std::vector<std::string> input_columns();
 
 /// The name of the group that holds every demonstration.
 inline constexpr const char* all_group = "all";

@@ -17,6 +17,7 @@
 #include "analysis/power.h"
 #include "analysis/sequential.h"
 #include "base/input_error.h"
+#include "base/number_option.h"
 #include "base/output_file.h"
 #include "base/text_checks.h"
 
@@ -25,13 +26,17 @@ namespace {
 
 // What a study is simulated from.
 void add_truth(CLI::App& command, PowerQuestion& truth, const char* share) {
-  command.add_option("--share", truth.share, share)->required();
+  command.add_option("--share", truth.share, share)->required()->check(number());
   command.add_option("--alpha", truth.alpha, "Significance level, two-sided")
-      ->capture_default_str();
-  command.add_option("--trials", truth.trials, "Answers of one participant")->capture_default_str();
+      ->capture_default_str()
+      ->check(number());
+  command.add_option("--trials", truth.trials, "Answers of one participant")
+      ->capture_default_str()
+      ->check(whole_in(1, 1000));
   command
       .add_option("--icc", truth.icc, "Intraclass correlation of one participant's answers, 0 to 1")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number());
 }
 
 std::vector<std::int64_t> looks_of(const std::string& text) {
@@ -87,7 +92,8 @@ void add_power(CLI::App& app) {
       "An earlier study's report.json names its intraclass correlation under `pooled`.");
   add_truth(*command, *question, "True share of answers for one method, 0 to 1");
   command->add_option("--power", question->power, "Probability of finding the difference")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number());
   command->callback([question, command] {
     refuse_idle_correlation(*command, *question);
     try {
@@ -129,7 +135,8 @@ void add_stopping(CLI::App& app) {
           "[obrien-fleming]")
       ->check(CLI::IsMember(rules));
   command->add_option("--bayes-factor", question->bayes_factor, "Stop from it on, and from 1 / it")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(number());
   add_truth(*command, question->truth, "True share to try it with, 0 to 1");
   auto json = std::make_shared<std::filesystem::path>();
   command
@@ -140,6 +147,7 @@ void add_stopping(CLI::App& app) {
   command->callback([question, command, json] {
     refuse_idle_options(*command, *question);
     try {
+      if (!json->empty()) check_can_be_written(*json);
       constexpr int studies = 4000;
       const StoppingAnswer answer = stopping_rule(*question, studies, 1);
       if (*json != "-") print_result(stopping_text(*question, answer));

@@ -32,12 +32,13 @@ enum Column {
   participant,
   demonstration,
   kind,
-  pilot
+  pilot,
+  position
 };
 const std::vector<std::string> column_names{"left",       "right", "choice",      "left_wins",
                                             "right_wins", "ties",  "participant", "demonstration",
-                                            "kind",       "pilot"};
-const std::vector<std::string> other_columns{"group", "position", "reaction_time_s", "preference"};
+                                            "kind",       "pilot", "position"};
+const std::vector<std::string> other_columns{"group", "reaction_time_s", "preference"};
 
 constexpr long most_answers = 1000000000;
 
@@ -82,6 +83,12 @@ void read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
     csv.check_pilot(pilot, same_study);
     if (!csv.is_main(kind)) continue;
     rows.push_back(row_of(csv));
+    const Row& row = rows.back();
+    csv.check_position(position, row.participant);
+    if (row.left_wins + row.right_wins + row.ties > 1) {
+      csv.check_totals(fmt::format("{}\n{}\n{}\n{}\n{} {} {}", row.participant, row.demonstration,
+                                   row.left, row.right, row.left_wins, row.right_wins, row.ties));
+    }
     distinct.has_rows_of(rows.back().participant, path.string());
   }
 }

@@ -2,6 +2,7 @@
 #include "analysis/csv_columns.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -37,6 +38,26 @@ bool has_columns(const fs::path& path, const ReadOptions& options,
   return reader.next(fields) && std::ranges::all_of(names, [&](const std::string& name) {
            return std::ranges::find(fields, name_in_file(options, name)) != fields.end();
          });
+}
+
+void check_mapped_columns(const std::vector<fs::path>& inputs, const ReadOptions& options) {
+  std::vector<std::string> there;
+  std::string place;  // of the first header
+  for (const fs::path& input : inputs) {
+    if (options.columns.empty() || !has_columns(input, options, {})) continue;
+    CsvReader reader(input, options.separator);
+    std::vector<std::string_view> fields;
+    reader.next(fields);
+    if (place.empty()) place = reader.place();
+    there.insert(there.end(), fields.begin(), fields.end());
+  }
+  const std::string all = fmt::format("`{}`", fmt::join(there, "`, `"));
+  for (const auto& [ours, theirs] : options.columns) {
+    if (place.empty() || std::ranges::find(there, theirs) != there.end()) continue;
+    throw InputError(
+        place, fmt::format("--map-column {}={}: there is no column `{}`{}; there are {}", ours,
+                           theirs, theirs, did_you_mean(theirs, there), all));
+  }
 }
 
 CsvColumns::CsvColumns(const fs::path& path, const ReadOptions& options,
@@ -99,6 +120,28 @@ bool CsvColumns::is_main(std::size_t column) const {
 
 void CsvColumns::check_pilot(std::size_t column, SameStudy& same_study) const {
   same_study.check_pilot(has(column) && pilot_of(at(column), reader_.place()), reader_.place());
+}
+
+void CsvColumns::check_position(std::size_t column, const std::string& participant) {
+  if (!has(column) || at(column).empty()) return;
+  const long position = whole(column, 1, 65535);
+  if (participant.empty()) return;
+  const auto [known, is_new] =
+      line_of_position_.try_emplace({participant, position}, reader_.line());
+  if (is_new) return;
+  fail(fmt::format(
+      "participant `{}` has two answers at position {} (also in line {}), and a copy would count "
+      "twice; take it out, or if it is none let positions count all trials of one participant",
+      participant, position, known->second));
+}
+
+void CsvColumns::check_totals(const std::string& words) {
+  const auto [known, is_new] = line_of_totals_.try_emplace(words, reader_.line());
+  if (is_new) return;
+  fail(
+      fmt::format("says the same as line {}, and a copy would count twice; take it out, or if it "
+                  "is none make one row of the two",
+                  known->second));
 }
 
 void CsvColumns::fail(const std::string& message) const {

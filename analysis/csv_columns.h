@@ -3,7 +3,9 @@
 // A CSV file with known columns, read record by record.
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/answers_table.h"
@@ -36,6 +38,11 @@ class CsvColumns {
   /// Of a column `pilot`: holds the record against those before it.
   void check_pilot(std::size_t column, SameStudy& same_study) const;
 
+  /// Of a column `position`: throws InputError where the participant has an answer there already.
+  void check_position(std::size_t column, const std::string& participant);
+  /// Throws InputError if another record stands for the same answers in the same words.
+  void check_totals(const std::string& words);
+
   [[noreturn]] void fail(const std::string& message) const;
 
  private:
@@ -44,6 +51,9 @@ class CsvColumns {
   std::vector<int> place_;
   std::vector<std::string_view> fields_;
   std::size_t width_ = 0;
+  // Lines of the records before, by what no two of them may have in common.
+  std::map<std::pair<std::string, long>, std::size_t> line_of_position_;
+  std::map<std::string, std::size_t> line_of_totals_;
 };
 
 /// The name that one of our columns has in the files.
@@ -56,6 +66,11 @@ bool pilot_of(std::string_view value, const std::string& place);
 /// Does the first line of a CSV file have all of these columns? False for other kinds of files.
 bool has_columns(const std::filesystem::path& path, const ReadOptions& options,
                  const std::vector<std::string>& names);
+
+/// Throws InputError for a name of a column that is mapped to and that no CSV file among the inputs
+/// has.
+void check_mapped_columns(const std::vector<std::filesystem::path>& inputs,
+                          const ReadOptions& options);
 
 /// Who is to be left out, and who of them turned up.
 class Exclusions {

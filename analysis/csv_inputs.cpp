@@ -299,11 +299,12 @@ bool has_counts(const std::filesystem::path& path, const ReadOptions& options) {
   return has_columns(path, options, {"pinch"}) && !has_columns(path, options, {"participant"});
 }
 
-bool is_input_column(const std::string& name) {
-  const auto named = [&](const ColumnName& column) { return name == column.name; };
-  const bool graded = name == "level" || name == "correct" || name == "trials";
-  return graded || std::any_of(tidy_columns.begin(), tidy_columns.end(), named) ||
-         std::any_of(count_columns.begin(), count_columns.end(), named);
+std::vector<std::string> input_columns() {
+  std::vector<std::string> names;
+  for (const ColumnName& column : tidy_columns) names.emplace_back(column.name);
+  names.insert(names.end(), {"pinch", "cable", "level", "correct", "trials", "left", "right",
+                             "left_wins", "right_wins", "ties"});
+  return names;
 }
 
 void read_csv_input(const std::filesystem::path& path, const ReadOptions& options,

@@ -67,7 +67,8 @@ std::vector<Block> methods_blocks(const Report& report) {
   part.add(Paragraph{
       fmt::format("Chi-square tests against one half, df 1, without continuity correction; exact "
                   "binomial tests two-sided; "
-                  "Holm and Benjamini–Hochberg over the demonstrations, and over the groups; the "
+                  "Holm and Benjamini–Hochberg over the demonstrations, and over the groups, of "
+                  "those with the same members one; the "
                   "Bayes factor compares a share "
                   "with the prior Beta(1, 1) (uniform) to a share of 1/2; Rao–Scott first-order "
                   "correction with participants as "

@@ -26,12 +26,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-enum Column { level, correct, trials, choice, participant, demonstration, kind, pilot };
-const std::vector<std::string> column_names{"level",       "correct",       "trials", "choice",
-                                            "participant", "demonstration", "kind",   "pilot"};
+enum Column { level, correct, trials, choice, participant, demonstration, kind, pilot, position };
+const std::vector<std::string> column_names{"level",  "correct",     "trials",
+                                            "choice", "participant", "demonstration",
+                                            "kind",   "pilot",       "position"};
 // What the tidy form may hold besides, which no threshold depends on.
-const std::vector<std::string> other_columns{"group",           "side", "position",
-                                             "reaction_time_s", "left", "right"};
+const std::vector<std::string> other_columns{"group", "side", "reaction_time_s", "left", "right"};
 
 struct NaturalLess {
   bool operator()(const std::string& a, const std::string& b) const { return natural_less(a, b); }
@@ -86,7 +86,14 @@ bool read_csv(const fs::path& path, const ReadOptions& options, Exclusions& excl
     csv.check_pilot(pilot, same_study);
     if (!csv.is_main(kind)) continue;
     distinct.has_rows_of(person, path.string());
-    add(cells, csv.name(demonstration), person, cell_of(csv, options));
+    csv.check_position(position, person);
+    const std::string series = csv.name(demonstration);
+    const LevelCell cell = cell_of(csv, options);
+    if (cell.trials > 1) {
+      csv.check_totals(
+          fmt::format("{}\n{}\n{} {} {}", person, series, cell.level, cell.trials, cell.hits));
+    }
+    add(cells, series, person, cell);
   }
   return csv.has(correct);
 }

@@ -18,6 +18,7 @@
 using namespace pinchlab::analysis;
 using pinchlab::number_in;
 using pinchlab::StagingFolder;
+using pinchlab::whole_in;
 
 namespace {
 
@@ -164,10 +165,10 @@ int main(int argc, char** argv) {
       [&](CLI::App& app) {
         app.add_option("--studies", settings.studies, "Simulated studies a condition")
             ->capture_default_str()
-            ->check(CLI::Range(100, 1000000));
+            ->check(whole_in(100, 1000000));
         app.add_option("--resamples", settings.resamples, "Bootstrap resamples a study")
             ->capture_default_str()
-            ->check(CLI::Range(99, 100000));
+            ->check(whole_in(99, 100000));
         app.add_option("--alpha", settings.alpha, "Level at which each test rejects")
             ->capture_default_str()
             ->check(number_in(0.001, 0.5));

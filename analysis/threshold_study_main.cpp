@@ -9,9 +9,11 @@
 
 #include "analysis/result_main.h"
 #include "analysis/threshold_study.h"
+#include "base/number_option.h"
 #include "base/partial_file.h"
 
 using namespace pinchlab::analysis;
+using pinchlab::whole_in;
 
 namespace {
 
@@ -92,11 +94,11 @@ int main(int argc, char** argv) {
       [&](CLI::App& app) {
         app.add_option("--studies", settings.studies, "Simulated studies a condition")
             ->capture_default_str()
-            ->check(CLI::Range(100, 1000000));
+            ->check(whole_in(100, 1000000));
         app.add_option("--resamples", settings.resamples,
                        "Bootstrap resamples a study (0: none, which is much faster)")
             ->capture_default_str()
-            ->check(CLI::Range(0, 10000));
+            ->check(whole_in(0, 10000));
       },
       [&] { run(settings); });
 }

@@ -25,7 +25,7 @@ class File {
  public:
   /// Errors are about `path`, whatever the name is that it is opened by.
   File(const fs::path& path, const fs::path& opened, int flags, const char* what)
-      : path_(path), file_(::open(opened.c_str(), flags | O_CLOEXEC, 0600)) {
+      : path_(path), file_(::open(opened.c_str(), flags | O_CLOEXEC)) {
     if (file_ < 0) {
       fail(path, what);
     }
@@ -78,8 +78,8 @@ void sync_folder(const fs::path& path) {
 }  // namespace
 
 void write_durably(const fs::path& path, std::string_view bytes) {
-  PartialFile partial(path.string());
-  File file(path, partial.name(), O_WRONLY | O_CREAT | O_TRUNC, "cannot be made");
+  PartialFile partial(path.string(), 0600);
+  File file(path, partial.name(), O_WRONLY, "cannot be made");
   file.write(bytes);
   file.sync();
   file.close();

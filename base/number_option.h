@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// A check of options for programs that read their command line with CLI11. Nothing of the library
-// needs it.
+// Checks of options for programs that read their command line with CLI11. Nothing of the library
+// needs them.
 
 #include <fmt/format.h>
 
@@ -22,6 +22,25 @@ inline CLI::Validator number_in(double low, double high) {
             return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
           },
           fmt::format("{:g} to {:g}", low, high)};
+}
+
+/// A finite number whose range is looked at elsewhere.
+inline CLI::Validator number() {
+  return {[](const std::string& text) {
+            return parse_number(text) ? std::string() : fmt::format("{} is not a number", text);
+          },
+          ""};
+}
+
+/// A whole number from low to high, ends included. CLI11's own Range says of 1.5 that it is not in
+/// the range, and reads 010 as 8.
+inline CLI::Validator whole_in(long low, long high) {
+  return {[low, high](const std::string& text) {
+            const std::optional<long> value = parse_whole(text, low, high);
+            if (value && std::to_string(*value) == text) return std::string();
+            return fmt::format("{} is not a whole number from {} to {}", text, low, high);
+          },
+          fmt::format("{} to {}", low, high)};
 }
 
 }  // namespace pinchlab

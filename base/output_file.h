@@ -36,6 +36,10 @@ class OutputFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Throws std::runtime_error where a file cannot be written, as writing it would: before long work.
+/// Leaves nothing.
+void check_can_be_written(const std::filesystem::path& path);
+
 /// Writes a whole result: to standard output where `path` is "-", into what exists and is no
 /// ordinary file, and elsewhere so that it survives (write_durably). Throws std::runtime_error.
 void write_result(const std::filesystem::path& path, std::string_view text);

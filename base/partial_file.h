@@ -3,6 +3,8 @@
 // START HERE for files: what is written gets its name only when it is whole. OutputFile,
 // write_durably and every writer of pictures, videos and archives do it by this class.
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
@@ -27,12 +29,21 @@ void make_folders(const std::filesystem::path& folder);
 /// Throws std::runtime_error where links go round.
 std::filesystem::path where_links_lead(const std::filesystem::path& path);
 
+/// Whether `name` is one under which PartialFile writes `path`, or any file whose name ends so:
+/// "a.json.partial" and "a.json.2.partial" of "a.json" and of ".json".
+bool is_partial_of(std::string_view name, std::string_view path);
+
 /// The file is written as name() in the folder of its final path; keep() renames it, the destructor
 /// removes it otherwise. A symbolic link stays one: what it leads to is written, if that may be.
+///
+/// The name is its final one with ".partial", or ".2.partial" and so on where others write that
+/// file at the same time; the last to be kept stays. A lock that goes with the process tells what
+/// is in use from what is left over, which makes room.
 class PartialFile {
  public:
-  /// Throws std::runtime_error if the folder does not exist, or the path is a folder or empty.
-  explicit PartialFile(std::string path);
+  /// Makes it, empty, with this mode less the umask. Throws std::runtime_error if it cannot be
+  /// made, the folder does not exist, or the path is a folder, a device, a pipe or empty.
+  explicit PartialFile(std::string path, mode_t mode = 0666);
   ~PartialFile();
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
@@ -46,7 +57,10 @@ class PartialFile {
   std::runtime_error error(std::string_view what) const;
 
  private:
+  int make(mode_t mode);
+
   std::string path_, place_, name_;  // the place: without links
+  int lock_ = -1;                    // a descriptor of the file
   bool kept_ = false;
 };
 

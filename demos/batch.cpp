@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
 #include <set>
@@ -32,12 +33,12 @@ using nlohmann::ordered_json;
 
 // What an interrupted run left. Only safe under the lock.
 void remove_partial_files(const fs::path& folder) {
-  const std::set<std::string> ours = {".mp4", ".webm", ".mkv",  ".apng",     ".webp",   ".gif",
-                                      ".png", ".json", ".html", ".unpadded", ".partial"};
+  constexpr std::array ours = {".mp4", ".webm", ".mkv",  ".apng",     ".webp",   ".gif",
+                               ".png", ".json", ".html", ".unpadded", ".partial"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const fs::path& path = entry.path();
-    if (path.extension() == partial_ending && ours.contains(path.stem().extension())) {
-      fs::remove(path);
+    const std::string name = entry.path().filename().string();
+    if (std::ranges::any_of(ours, [&](const char* end) { return is_partial_of(name, end); })) {
+      fs::remove(entry.path());
     }
   }
 }
@@ -89,6 +90,15 @@ std::vector<ClipPlan> plans_to_make(const std::vector<ClipPlan>& plans, const Ma
                        [&](const ClipPlan& plan) { return stale.contains(plan.file); });
   std::ranges::stable_sort(to_make, std::ranges::greater(), panels_to_draw);
   return to_make;
+}
+
+// An error that names the file by what it is called while it is made.
+std::string with_own_name(const ClipPlan& plan, std::string error) {
+  const std::string made = made_as(plan);
+  if (const std::size_t place = error.find(made); place != std::string::npos) {
+    error.replace(place, made.size(), plan.file);
+  }
+  return error;
 }
 
 struct Outcome {
@@ -187,7 +197,10 @@ Outcome make_all(const std::vector<ClipPlan>& plans, const BatchOptions& options
           [&](std::size_t i, const std::string& entry) {
             outcome.made += files.add(i, ordered_json::parse(entry));
           },
-      .failed = [&](std::size_t i, const std::string& error) { fail(plans[i].file, error); },
+      .failed =
+          [&](std::size_t i, const std::string& error) {
+            fail(plans[i].file, with_own_name(plans[i], error));
+          },
       .idle = [&] { progress.add(0); }};
   outcome.signal = run_in_processes(work, jobs, events);
   if (outcome.signal == 0) {
@@ -379,6 +392,7 @@ int render_batch(const BatchOptions& options) {
                   options.out.string()));
   remove_partial_files(options.out);
   Manifest manifest = read_manifest(options.out);
+  check_can_be_written(options.out / "manifest.json");
   const auto is_gone = [&](const ordered_json& entry) {
     return !fs::exists(options.out / entry["file"].get<std::string>());
   };

@@ -97,14 +97,14 @@ Made write_video(const ClipPlan& plan, const std::string& path, const std::funct
   VideoWriter video(path, plan.video);
   FrameHash frames;
   std::vector<std::uint8_t> turned;
-  const double aspect = static_cast<double>(plan.video.width) /
-                        (static_cast<double>(players.size()) * plan.video.height);  // of a panel
+  const double width = static_cast<double>(plan.video.width) / static_cast<double>(players.size());
+  const double height = plan.video.height;  // px, of a panel
   for (const std::int64_t step : plan.steps) {
     for (std::size_t i = 0; i < players.size(); ++i) {
       players[i].advance_to_step(step * factors[i]);
       compose(plan.scene, scenery, players[i].world(), pictures[i]);
-      if (i > 0) pictures[i].add(divider(scenery, aspect));
-      if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time(), aspect));
+      if (i > 0) pictures[i].add(divider(scenery, width, height));
+      if (plan.burn_time) pictures[i].add(time_label(scenery, players[i].time(), width / height));
     }
     const std::uint8_t* rgba = canvas.draw(panels);
     if (plan.upside_down) {

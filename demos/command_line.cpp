@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <regex>
 #include <stdexcept>
 
 #include "base/did_you_mean.h"
@@ -91,6 +92,14 @@ std::string unknown_words(const CLI::App& app) {
                        did_you_mean(word, known), full_name(*command));
   }
   return "";
+}
+
+std::string given_too_often(const CLI::ParseError& error) {
+  static const std::regex message("(.*): At Most 1 required but received ([0-9]+)");
+  std::smatch found;
+  const std::string text = error.what();
+  if (!std::regex_match(text, found, message)) return "";
+  return fmt::format("{}: is given {} times; give it once", found.str(1), found.str(2));
 }
 
 std::optional<std::filesystem::path> find_demos_folder() {

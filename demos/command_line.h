@@ -29,6 +29,10 @@ void add_simulation_limit(CLI::App& command, std::optional<double>& seconds,
 /// empty if that was for another reason.
 std::string unknown_words(const CLI::App& app);
 
+/// What is wrong where app.parse() has thrown because an option is there more often than it may be;
+/// empty if that was for another reason.
+std::string given_too_often(const CLI::ParseError& error);
+
 /// What commands take when no scene is named: demos/ of the current folder, or else the one that
 /// was installed with the program. Nothing where there is neither; demos_folder then throws
 /// std::runtime_error.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/legibility.h"
 #include "demos/scenes/fineness.h"
@@ -93,6 +94,7 @@ void write_series(const Sweep& sweep, const std::string& method, const StillOpti
   if (ending != ".png" && ending != ".svg" && ending != ".pdf") {
     throw std::invalid_argument(options.out.string() + ": --out must end in .png, .svg or .pdf");
   }
+  check_can_be_written(options.out);
   const std::vector<VectorFrame> sheet = pictures_of(sweep, method, options);
   const int columns = static_cast<int>(sweep.table.rows.size());
   if (ending != ".png") {

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "base/output_file.h"
 #include "base/progress.h"
 #include "demos/legibility.h"
 #include "demos/scenes/fineness.h"
@@ -120,12 +121,6 @@ void write_vector_still(const SceneFile& file, const StillOptions& options, Vect
 /// Every frame a file of its own, its number in the place of the #, in a folder that is made.
 void write_sequence(const SceneFile& file, const StillOptions& options,
                     const std::vector<int>& frames, const Scenery& scenery) {
-  if (options.methods.size() > 1) {
-    throw std::invalid_argument(
-        "a # in --out writes one picture a file; name one --method instead of --both");
-  }
-  std::error_code failed;  // then the first file says that there is no such folder
-  std::filesystem::create_directories(options.out.parent_path(), failed);
   const std::string name = options.out.filename().string();
   const std::size_t place = name.find('#');
   Canvas canvas(options.width, options.height);
@@ -209,6 +204,10 @@ void write_still(const SceneFile& file, const StillOptions& options) {
         "{}: --out must end in {}", options.out.string(),
         sequence ? ".png where a # stands for the frame's number" : ".png, .svg or .pdf"));
   }
+  if (sequence && options.methods.size() > 1) {
+    throw std::invalid_argument(
+        "a # in --out writes one picture a file; name one --method instead of --both");
+  }
   if (ending == ".png" && !sequence) {
     check_sheet_size(frames.size() * options.methods.size(), options,
                      options.methods.size() > 1
@@ -216,6 +215,8 @@ void write_still(const SceneFile& file, const StillOptions& options) {
                          : "a # in --out's name gives each frame a file of its own; or take fewer "
                            "times or a smaller --size");
   }
+  if (sequence && options.out.has_parent_path()) make_folders(options.out.parent_path());
+  check_can_be_written(options.out);
   const Scenery scenery = set_scenery_aloud(file, file.scene, options);
   tell_hard_to_see(file.path.string(),
                    hard_to_see(file.scene, scenery, options.width, options.height));

@@ -60,7 +60,7 @@ void add_rendering(CLI::App& command, BatchOptions& render, Size& size, bool& bu
       .add_option("--fps", render.timing.frames_per_second,
                   "Frames a second [the scene's]; the steps get no longer than the scene's")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000));
+      ->check(whole_in(1, 1000));
   command
       .add_option_function<std::string>(
           "--codec", [&render](const std::string& name) { render.codec = codec_from_string(name); },
@@ -80,7 +80,7 @@ void add_rendering(CLI::App& command, BatchOptions& render, Size& size, bool& bu
   add_simulation_limit(command, render.time_limit, "a row's");
   command.add_option("--jobs", render.jobs, "Rows made at a time [one a core]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole_in(1, 1024));
 }
 
 void add_sweep(CLI::App& app) {

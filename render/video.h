@@ -49,7 +49,7 @@ std::string describe(const VideoSettings& settings);
 
 /// Writes a video: frame i is shown at i / frames_per_second. The same frames give the same bytes
 /// in every run on any processor. The file appears under its name only when finish() returns; until
-/// then it is `path` + ".partial", which is removed if the writer is destroyed unfinished.
+/// then it is a PartialFile, which is removed if the writer is destroyed unfinished.
 ///
 /// Throws as check_video does, and std::runtime_error where the file cannot be written.
 class VideoWriter {

@@ -21,4 +21,8 @@ CLI::Option* add_no_webm(CLI::App& command, bool& no_webm);
 CLI::Option* add_clips(CLI::App& command, std::filesystem::path& clips);
 CLI::Option* add_answers(CLI::App& command, std::filesystem::path& answers);
 
+/// Throws std::invalid_argument where `out`, which is for `what`, is the configuration.
+void refuse_to_overwrite(const std::filesystem::path& config, const std::filesystem::path& out,
+                         const char* what);
+
 }  // namespace pinchlab::study

@@ -18,6 +18,7 @@
 #include "base/answer_file.h"
 #include "base/counted.h"
 #include "base/design_file.h"
+#include "base/number_option.h"
 #include "base/output_file.h"
 #include "base/progress.h"
 #include "study/answers.h"
@@ -138,7 +139,7 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
   command->add_option("--port", options->server.port, "Port to listen on; 0: any that is free")
       ->type_name("N")
       ->capture_default_str()
-      ->check(CLI::Range(0, 65535));
+      ->check(whole_in(0, 65535));
   command
       ->add_option("--host", options->server.host,
                    "Address to listen on; 0.0.0.0: all, for participants on other computers")
@@ -160,13 +161,13 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
       ->add_option("--participants", options->participants,
                    "Most that may take part [the configuration's, or no limit]")
       ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_in(1, 100000));
   command
       ->add_option("--release-after", options->release_after,
                    "Minutes without a sign of a participant, after which the place goes to another")
       ->type_name("MIN")
       ->capture_default_str()
-      ->check(CLI::Range(1, 60 * 24 * 365));
+      ->check(whole_in(1, 60 * 24 * 365));
   add_seed(*command, options->seed, "Seed of the plan [the answers folder's, or a random one]");
   add_config(*command, options->config);
   add_no_webm(*command, options->no_webm);
@@ -197,7 +198,7 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
   command->add_option("--participants", options->participants, "For how many")
       ->type_name("N")
       ->required()
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_in(1, 100000));
   add_seed(*command, options->seed, "Seed of the plan")->required();
   add_config(*command, options->config);
   command->add_option("--csv", options->csv, "File for one row a trial; - is standard output [-]")
@@ -214,12 +215,8 @@ void add_plan(CLI::App& study, const Stimuli& stimuli) {
     if (is_same_file(csv, options->json)) {
       throw std::invalid_argument("--csv and --json must be different files");
     }
-    for (const fs::path& out : {csv, options->json}) {
-      if (!out.empty() && is_same_file(out, options->config)) {
-        throw std::invalid_argument(
-            fmt::format("{}: is the configuration; give the plan another name", out.string()));
-      }
-    }
+    refuse_to_overwrite(options->config, csv, "plan");
+    refuse_to_overwrite(options->config, options->json, "plan");
     Config config = read_or_default(options->config);
     if (config.demonstrations.empty()) {
       config.demonstrations = stimuli.demonstrations();
@@ -288,6 +285,8 @@ void export_study(const ExportOptions& options, const Stimuli& stimuli) {
   }
   if (!options.jatos.empty()) {
     Config config = read_or_default(options.config);
+    refuse_to_overwrite(options.config, options.jatos, "archive");
+    check_export(config, options.jatos);
     const Clips clips = prepare(config, stimuli, options.clips, options.no_webm);
     export_jatos(config, clips, options.has_seed ? options.seed : random_seed(),
                  options.participants, options.jatos);
@@ -333,7 +332,7 @@ void add_export(CLI::App& study, const Stimuli& stimuli) {
   CLI::Option* participants =
       command->add_option("--participants", options->participants, "For how many to plan")
           ->type_name("N")
-          ->check(CLI::Range(1, 10000))
+          ->check(whole_in(1, 10000))
           ->needs(jatos);
   jatos->needs(clips)->needs(participants);
   add_seed(*command, options->seed, "Seed of the plan [a random one]")->needs(jatos);
@@ -427,7 +426,7 @@ void add_simulate(CLI::App& study, const Stimuli& stimuli) {
       ->add_option("--participants", options->simulation.participants, "How many there are to be")
       ->type_name("N")
       ->required()
-      ->check(CLI::Range(1, 10000));
+      ->check(whole_in(1, 10000));
   command->add_option("--truth", options->truth, "How they choose; study/README.md has the keys")
       ->type_name("FILE")
       ->required();

@@ -85,7 +85,7 @@ void Desk::sweep() const {
   for (const fs::path& folder : {options_.answers, running_folder(options_.answers)}) {
     std::vector<fs::path> partial;
     for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-      if (file.path().filename().string().ends_with(".json" + std::string(partial_ending))) {
+      if (is_partial_of(file.path().filename().string(), ".json")) {
         partial.push_back(file.path());
       }
     }

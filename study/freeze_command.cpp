@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/number_option.h"
 #include "base/strict_json.h"
 #include "study/command_options.h"
 #include "study/freeze.h"
@@ -85,7 +86,7 @@ void add_freeze(CLI::App& study, const Stimuli& stimuli) {
   CLI::Option_group* size = command->add_option_group("sample size");
   size->add_option("--participants", options->participants, "How many are analysed, looked at once")
       ->type_name("N")
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_in(1, 100000));
   size->add_option("--stopping", options->stopping, "Rule that `pinchlab stopping --json` wrote")
       ->type_name("FILE.json");
   size->require_option(1);

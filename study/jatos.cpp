@@ -13,6 +13,7 @@
 #include "base/durable_file.h"
 #include "base/input_error.h"
 #include "base/json_object.h"
+#include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/read_file.h"
 #include "base/strict_json.h"
@@ -207,26 +208,6 @@ ordered_json key_of_archive(const Config& config, const PlanOptions& options, co
   return key;
 }
 
-void refuse_what_cannot_be_exported(const Config& config, const PlanOptions& options,
-                                    const fs::path& archive) {
-  if (fs::exists(key_path(archive))) {
-    throw std::runtime_error(
-        fmt::format("{}: is there already, and answers to its archive need it; choose another name",
-                    key_path(archive).string()));
-  }
-  if (!options.methods.empty() || !options.graded.empty()) {
-    throw std::runtime_error(
-        "studies of several methods and of thresholds run on our own server only; use study serve");
-  }
-  if (config.recruiting) {
-    throw std::runtime_error(
-        "recruiting is for study serve, which tells nobody the way back before the answers are "
-        "saved, and lets an id take part once; files on a JATOS server can do neither. Leave it "
-        "out of the configuration: JATOS has study links and an End Redirect URL of its own, and "
-        "keeps the address' parameters with each result");
-  }
-}
-
 // The key, read back.
 // nlohmann's move, which is declared noexcept, checks itself.
 struct Key {  // NOLINT(bugprone-exception-escape)
@@ -381,10 +362,31 @@ fs::path key_path(const fs::path& archive) {
   return fs::path(archive).replace_extension(".key.json");
 }
 
+void check_export(const Config& config, const fs::path& archive) {
+  if (fs::exists(key_path(archive))) {
+    throw std::runtime_error(
+        fmt::format("{}: is there already, and answers to its archive need it; choose another name",
+                    key_path(archive).string()));
+  }
+  if (!config.methods.empty() || !config.graded.empty()) {
+    throw std::runtime_error(
+        "studies of several methods and of thresholds run on our own server only; use study serve");
+  }
+  if (config.recruiting) {
+    throw std::runtime_error(
+        "recruiting is for study serve, which tells nobody the way back before the answers are "
+        "saved, and lets an id take part once; files on a JATOS server can do neither. Leave it "
+        "out of the configuration: JATOS has study links and an End Redirect URL of its own, and "
+        "keeps the address' parameters with each result");
+  }
+  check_can_be_written(archive);
+  check_can_be_written(key_path(archive));
+}
+
 void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                   std::uint64_t participants, const fs::path& archive) {
   const PlanOptions options = plan_options(config);
-  refuse_what_cannot_be_exported(config, options, archive);
+  check_export(config, archive);
   const std::string uuid = random_uuid();
   MediaNames names;
   ZipWriter zip(archive);

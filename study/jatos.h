@@ -21,8 +21,12 @@ namespace pinchlab::study {
 /// Where the key of an archive is: beside it, "study.jzip" has "study.key.json".
 std::filesystem::path key_path(const std::filesystem::path& archive);
 
-/// Writes the archive and its key. `config` names its demonstrations. Throws std::runtime_error,
-/// also if there is a key already, since the answers to its archive could not be read without it.
+/// Throws std::runtime_error where export_jatos would by what is known before there are clips: if
+/// there is a key already, since the answers to its archive could not be read without it, say.
+void check_export(const Config& config, const std::filesystem::path& archive);
+
+/// Writes the archive and its key. `config` names its demonstrations. Throws as check_export does,
+/// and std::runtime_error where they cannot be written.
 void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
                   std::uint64_t participants, const std::filesystem::path& archive);
 

@@ -15,6 +15,7 @@
 #include "analysis/psychometric.h"
 #include "analysis/result_main.h"
 #include "base/answer_file.h"
+#include "base/number_option.h"
 #include "base/partial_file.h"
 #include "study/adaptive.h"
 #include "study/simulate.h"
@@ -220,7 +221,7 @@ int main(int argc, char** argv) {
       [&](CLI::App& app) {
         app.add_option("--participants", settings.participants, "Of each study")
             ->capture_default_str()
-            ->check(CLI::Range(10, 10000));
+            ->check(whole_in(10, 10000));
       },
       [&] { run(settings); });
 }

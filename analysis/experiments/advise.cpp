@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "analysis/experiments/accuracy_scenes.h"
@@ -228,10 +229,22 @@ int best_to_type(const Question& question, const Advice& advice) {
 
 namespace {
 
+/// s that are asked for.
+double seconds_of(const Question& question, const Scene& scene) {
+  const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
+  if (question.seconds <= 0.0) return clip;
+  const double frames = std::round(question.seconds * scene.frames_per_second);
+  if (frames < 1.0 || frames > scene.frame_count) {
+    throw std::invalid_argument(fmt::format(
+        "{}: --time must be {:.3g} to {} s, from a frame to the whole clip, not {}",
+        question.scene.string(), 1.0 / scene.frames_per_second, clip, question.seconds));
+  }
+  return question.seconds;
+}
+
 /// The scene's own solution, as sure as is asked for or can be had.
 void solve(const Question& question, const Scene& scene, Watch& watch, Advice& advice) {
-  const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
-  const double seconds = question.seconds > 0.0 ? question.seconds : clip;
+  const double seconds = seconds_of(question, scene);
   const double frames = std::round(seconds * scene.frames_per_second);
   const auto start = [&](double steps) {
     watch.start(fmt::format("solving {} at {} steps a frame", scene.name, advice.reference_steps),
@@ -333,8 +346,7 @@ void add_advise_command(CLI::App& app) {
       ->type_name("M")
       ->required()
       ->check(number_in(1e-12, 1e3));
-  command
-      ->add_option("--time", question->seconds, "How much of the scene counts, s [the whole clip]")
+  command->add_option("--time", question->seconds, "How much of the clip counts, s [all of it]")
       ->type_name("S")
       ->check(number_in(0.05, 600.0));
   add_time_limit(*command, question->time_limit, "Give up");

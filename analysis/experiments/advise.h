@@ -40,7 +40,8 @@ int best_to_type(const Question& question, const Advice& advice);
 
 /// Refines the scene's own solution until it is eight times as sure as the wanted error, or as
 /// fine as allowed, then tries all configurations; tells on standard error how far it is. Throws
-/// SceneFileError, GivenUp, or std::runtime_error where the scene's own solution is not finite.
+/// SceneFileError, GivenUp, std::invalid_argument for a time that the scene does not have, or
+/// std::runtime_error where the scene's own solution is not finite.
 Advice advise(const Question& question);
 
 /// The advice in words, with the table of what was tried.

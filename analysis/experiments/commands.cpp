@@ -74,7 +74,7 @@ void add_loads(CLI::App& command, Options& options) {
           fmt::format("How often the scene is repeated [{}]", fmt::join(options.loads, ",")))
       ->type_name("N,...")
       ->delimiter(',')
-      ->check(CLI::Range(1, 100000));
+      ->check(whole_in(1, 100000));
 }
 
 void add_experiment(CLI::App& bench, const Experiment& experiment) {
@@ -103,7 +103,7 @@ void add_render(CLI::App& bench) {
   add_size(*command, *size, "Pixels of a frame, even [960x960]");
   command->add_option("--frames", run->frames, "Frames to measure [all of the clip]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1'000'000));
+      ->check(whole_in(1, 1'000'000));
   command->add_option("--out", run->out, "Folder for a table and a page as well")->type_name("DIR");
   command->footer(
       "Examples:\n"
@@ -133,16 +133,16 @@ void add_population(CLI::App& bench) {
       ->type_name("DIR");
   command->add_option("--scenes", run->scenes, "How many of discs [2000]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(whole_in(1, 1000000));
   command
       ->add_option("--shapes", run->shapely_scenes,
                    "How many of polygons, compounds and cables with mass, of cables that stretch, "
                    "of ropes that hang, and of what is thrown over edges [1000]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(whole_in(1, 1000000));
   command->add_option("--first", run->first, "Seed of the first, to look at some by themselves [1]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(whole_in(1, 1000000));
   command->footer(
       "Examples:\n"
       "  pinchlab bench population --scenes 100 --out /tmp/population\n"

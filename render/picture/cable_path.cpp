@@ -440,4 +440,22 @@ std::vector<std::size_t> append_cable_path(const Scene& scene, const World& worl
   return PathBuilder(scene, world, cable, smallest_sag, points).build();
 }
 
+void append_seam(const World& world, const Link& link, double half_width,
+                 std::vector<StripPoint>& points) {
+  const Layers& layers = link.layers;
+  if (layers.way == 0 || link.orientation == 0) return;
+  const double covered =  // rad, of all but the last turn
+      thickness_of_layers(link) / layers.growth - 2.0 * std::numbers::pi;
+  if (covered <= 0.0) return;
+  const double start = from_x_axis(at(world.angle, link.body) + link.orientation * layers.begins);
+  const int pieces = static_cast<int>(std::ceil(covered / most_turn));
+  for (int k = 0; k <= pieces; ++k) {
+    const double turned = covered * k / pieces, radius = layers.radius(turned) + half_width;
+    const Vec2 e = unit_vector(start + layers.way * link.orientation * turned);
+    const Vec2 tangent = layers.way * e - link.orientation * layers.growth / radius * left(e);
+    points.push_back({tangent_point(link_centre(world, link), link.orientation * radius, e),
+                      tangent.normalized(), 0.0});
+  }
+}
+
 }  // namespace pinchlab

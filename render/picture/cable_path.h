@@ -29,4 +29,9 @@ std::vector<std::size_t> append_cable_path(const Scene& scene, const World& worl
                                            const CableState& cable, double smallest_sag,
                                            std::vector<StripPoint>& points);
 
+/// Appends the line along which the turns on a drum that fills touch one another, from the inside
+/// out; nothing where there is none.
+void append_seam(const World& world, const Link& link, double half_width,
+                 std::vector<StripPoint>& points);
+
 }  // namespace pinchlab

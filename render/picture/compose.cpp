@@ -154,6 +154,7 @@ class Composer {
       return;
     }
     const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
+    for (const Link& link : cable.links) add_seam(link, strip);
     std::vector<std::size_t> begins =
         append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
     begins.push_back(picture_.points.size());
@@ -162,6 +163,18 @@ class Composer {
       strip.count = begins[i + 1] - begins[i];
       picture_.add(strip);
     }
+  }
+
+  /// Lies under a cable where its turns on a drum that fills touch: pixels that two of them share
+  /// would let the paper through.
+  void add_seam(const Link& link, const Strip& cable) {
+    Strip seam;
+    seam.first = picture_.points.size();
+    append_seam(world_, link, cable.half_width, picture_.points);
+    seam.count = picture_.points.size() - seam.first;
+    seam.half_width = 0.5 * cable.half_width;
+    seam.fill = cable.edge;
+    if (seam.count > 0) picture_.add(seam);
   }
 
   /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a

@@ -18,10 +18,12 @@ View frame_of(const View& view, double aspect) {
 
 }  // namespace
 
-Stroke divider(const Scenery& scenery, double aspect) {
-  const View frame = frame_of(scenery.view, aspect);
+Stroke divider(const Scenery& scenery, double width, double height) {
+  const View frame = frame_of(scenery.view, width / height);
   const Colour colour = scenery.theme.support;
-  return {frame.low, {frame.low.x(), frame.high.y()}, 2.0 * scenery.line(), 0.0, colour, colour};
+  const double pixel = (frame.high.x() - frame.low.x()) / width;
+  const double half_width = std::max(2.0 * scenery.line(), pixel);  // half of it is seen
+  return {frame.low, {frame.low.x(), frame.high.y()}, half_width, 0.0, colour, colour};
 }
 
 Label time_label(const Scenery& scenery, double time, double aspect) {

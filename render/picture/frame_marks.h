@@ -11,7 +11,8 @@ namespace pinchlab {
 /// other three.
 Label time_label(const Scenery& scenery, double time, double aspect);
 
-/// A thin line along the left side of a frame, which parts it from another on its left.
-Stroke divider(const Scenery& scenery, double aspect);
+/// A line along the left side of a frame of so many px, which parts it from another on its left: as
+/// thin as the scene's lines, of which a whole pixel is seen.
+Stroke divider(const Scenery& scenery, double width, double height);
 
 }  // namespace pinchlab

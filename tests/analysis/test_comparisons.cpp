@@ -285,6 +285,51 @@ TEST(Levels, NoAnswerCountsTwice) {
   EXPECT_EQ(read_levels({table, later}, {}).series[0].observers[0].cells.size(), 2U);
 }
 
+// What is the same by chance may be there twice; what is the same row may not.
+TEST(Comparisons, NoRowCountsTwice) {
+  const test::TemporaryFolder folder;
+  const auto why_not = [&](const std::string& head, const std::string& rows) -> std::string {
+    try {
+      read_comparisons({folder.write("a.csv", head + "\n" + rows)}, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string single = "participant,left,right,choice,position";
+  EXPECT_NE(why_not(single, "p,a,b,a,1\np,b,a,b,2\np,a,b,a,1\n")
+                .find("a.csv:4: participant `p` has two answers at position 1 (also in line 2)"),
+            std::string::npos);
+  EXPECT_EQ(why_not(single, "p,a,b,a,1\np,a,b,a,2\nq,a,b,a,1\np,a,b,a,\np,a,b,a,\n"), "");
+  EXPECT_NE(why_not(single, "p,a,b,a,0\n").find("position `0` is not a whole number from 1"),
+            std::string::npos);
+  const std::string totals = "left,right,left_wins,right_wins";
+  EXPECT_NE(why_not(totals, "a,b,5,3\nb,a,5,3\na,b,5,3\n").find("a.csv:4: says the same as line 2"),
+            std::string::npos);
+  EXPECT_EQ(why_not(totals, "a,b,5,3\nb,a,5,3\na,b,5,4\na,b,1,0\na,b,1,0\n"), "");
+}
+
+TEST(Levels, NoRowCountsTwice) {
+  const test::TemporaryFolder folder;
+  const auto why_not = [&](const std::string& head, const std::string& rows) -> std::string {
+    try {
+      read_levels({folder.write("a.csv", head + "\n" + rows)}, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string single = "participant,level,correct,position";
+  EXPECT_NE(why_not(single, "p,0.5,1,1\np,0.5,1,2\np,0.5,1,1\n")
+                .find("a.csv:4: participant `p` has two answers at position 1 (also in line 2)"),
+            std::string::npos);
+  EXPECT_EQ(why_not(single, "p,0.5,1,1\np,0.5,1,2\nq,0.5,1,1\np,0.5,1,\np,0.5,1,\n"), "");
+  const std::string totals = "level,trials,correct";
+  EXPECT_NE(why_not(totals, "1,10,9\n2,10,10\n1,10,9\n").find("a.csv:4: says the same as line 2"),
+            std::string::npos);
+  EXPECT_EQ(why_not(totals, "1,10,9\n1,10,8\n2,1,1\n2,1,1\n"), "");
+}
+
 TEST(Levels, ReadsAnswerFilesOfGradedClips) {
   const test::TemporaryFolder folder;
   for (const char* who : {"p1", "p2"}) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <set>
+#include <tuple>
 
+#include "analysis/csv_columns.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -127,6 +129,60 @@ TEST(Groups, DefaultByLeadingNumberFileAndColumn) {
   ASSERT_EQ(file.groups.size(), 3U);
   EXPECT_EQ(file.groups[0].name, "first");
   EXPECT_EQ(file.groups[1].demonstrations, (std::vector<std::uint16_t>{1}));
+}
+
+TEST(Columns, ThatAreMappedToAreThere) {
+  const TemporaryFolder folder;
+  const fs::path one = folder.write("one.csv", "subject,demonstration,choice,place\na,1,pinch,1\n");
+  const fs::path other = folder.write("other.csv", "participant,demonstration,choice,rt\n");
+  const auto why_not = [&](const std::string& ours, const std::string& theirs,
+                           const std::vector<fs::path>& inputs) -> std::string {
+    ReadOptions options;
+    options.columns = {{ours, theirs}};
+    try {
+      check_mapped_columns(inputs, options);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why_not("position", "plase", {one}),
+            one.string() +
+                ":1: --map-column position=plase: there is no column `plase` (did you "
+                "mean `place`?); there are `subject`, `demonstration`, `choice`, "
+                "`place`");
+  EXPECT_EQ(why_not("position", "place", {one}), "");
+  EXPECT_EQ(why_not("reaction_time_s", "rt", {one, other}), "") << "one of them has it";
+  EXPECT_NE(why_not("reaction_time_s", "RT", {one, other}), "");
+  EXPECT_EQ(why_not("reaction_time_s", "RT", {folder.path()}), "") << "told elsewhere";
+}
+
+// One hypothesis under two names is one of the family.
+TEST(Groups, WithTheSameMembersCountOnce) {
+  const TemporaryFolder folder;
+  const auto groups_of = [&](const std::string& file) {
+    ReadOptions options;
+    options.groups_file = folder.write("groups.csv", "demonstration,group\n" + file);
+    return analyse_table(test::table_of(test::thesis_counts_csv(), options), {}).groups;
+  };
+  const auto once = groups_of("1,first\n2,first\n7,other\n");
+  const auto twice = groups_of("1,first\n2,first\n7,other\n2,again\n1,again\n");
+  ASSERT_EQ(once.size(), 3U);
+  ASSERT_EQ(twice.size(), 4U);
+  const auto p_of = [](const std::vector<GroupResult>& groups, const std::string& name) {
+    const auto found = std::ranges::find(groups, name, [](const auto& g) { return g.row.name; });
+    return std::tuple(found->row.p_holm, found->row.p_bh, found->row.read.p_holm.value,
+                      found->p_sign_flip_holm);
+  };
+  for (const char* name : {"first", "other", "all"}) {
+    EXPECT_EQ(p_of(twice, name), p_of(once, name)) << name;
+  }
+  EXPECT_EQ(p_of(twice, "again"), p_of(twice, "first"));
+  // Where a group is all that there is, nothing is adjusted.
+  const auto all =
+      groups_of("1,whole\n2,whole\n3,whole\n4,whole\n5,whole\n6,whole\n7,whole\n8,whole\n");
+  EXPECT_EQ(all[0].row.p_holm, all[0].row.p_chi_square);
+  EXPECT_EQ(p_of(all, "whole"), p_of(all, "all"));
 }
 
 TEST(Exclusions, LeaveOutAndAreKept) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <ostream>
 #include <string>
@@ -127,6 +129,71 @@ TEST(PartialFile, WritesWhatALinkLeadsTo) {
   EXPECT_EQ(files_in(inner), 2U);
 }
 
+TEST(PartialFile, TwoWritersOfOneFileDoNotMix) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a";
+  OutputFile first(path), second(path);
+  first.write("first");
+  second.write("second, which is longer");
+  write_durably(path, "third");
+  EXPECT_EQ(read_whole(path), "third");
+  second.finish();
+  EXPECT_EQ(read_whole(path), "second, which is longer");
+  first.finish();
+  EXPECT_EQ(read_whole(path), "first");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+TEST(PartialFile, WhatAKilledProcessLeftMakesRoom) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a");
+  const pid_t process = ::fork();
+  if (process == 0) {
+    const PartialFile file(path);
+    ::raise(SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(process, nullptr, 0), process);
+  EXPECT_TRUE(fs::exists(path + ".partial"));
+  EXPECT_FALSE(fs::exists(path));
+  {
+    const PartialFile file(path);
+    EXPECT_EQ(file.name(), path + ".partial");
+    EXPECT_EQ(PartialFile(path).name(), path + ".2.partial");
+  }
+  EXPECT_TRUE(folder.empty());
+}
+
+TEST(PartialFile, WritesNothingThatLiesUnderItsName) {
+  const TemporaryFolder folder;
+  const fs::path theirs = folder.write("theirs", "as it was");
+  fs::create_symlink(theirs, folder.path() / "a.partial");
+  fs::create_directory(folder.path() / "a.2.partial");
+  write_result(folder.path() / "a", "mine");
+  EXPECT_EQ(read_whole(folder.path() / "a"), "mine");
+  EXPECT_EQ(read_whole(theirs), "as it was");
+}
+
+// As root they would be gone for the whole machine.
+TEST(PartialFile, ReplacesNoDevices) {
+  const TemporaryFolder folder;
+  const std::string link = folder.file("link.png"), pipe = folder.file("pipe");
+  fs::create_symlink("/dev/null", link);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {link, pipe}) {
+    EXPECT_EQ(message_of<std::runtime_error>([&] { PartialFile file(path); }),
+              path + ": is a device or a pipe, and not to be replaced; give a file's name");
+  }
+  EXPECT_EQ(files_in(folder.path()), 2U);
+}
+
+TEST(PartialFile, NamesTellWhatTheyAreOf) {
+  EXPECT_TRUE(is_partial_of("a.json.partial", "a.json"));
+  EXPECT_TRUE(is_partial_of("a.json.12.partial", ".json"));
+  for (const char* other : {"a.json", "a.jso.partial", "a.json.x.partial", "a.json..partial"}) {
+    EXPECT_FALSE(is_partial_of(other, ".json")) << other;
+  }
+}
+
 TEST(PartialFile, ChangesNothingReadOnlyThatALinkLeadsTo) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may write everything";
   const TemporaryFolder folder;
@@ -243,6 +310,19 @@ TEST(StagingFolder, ClearsAwayWhatIsLeftOver) {
   EXPECT_EQ(read_whole(folder.path() / "a"), "1");
 }
 
+TEST(OutputFile, TellsBeforehandWhatCannotBeWritten) {
+  const TemporaryFolder folder;
+  const fs::path inside = folder.path() / "none/a";
+  EXPECT_EQ(message_of<std::runtime_error>([&] { check_can_be_written(inside); }),
+            inside.string() + ": the folder " + inside.parent_path().string() +
+                " does not exist; create it first");
+  const fs::path there = folder.write("there", "as it was");
+  for (const fs::path& path : {there, folder.path() / "new", fs::path("-"), fs::path("/dev/null")})
+    EXPECT_NO_THROW(check_can_be_written(path)) << path;
+  EXPECT_EQ(read_whole(there), "as it was");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
 TEST(OutputFile, KnowsOneFileByItsNames) {
   const TemporaryFolder folder;
   const fs::path a = folder.path() / "a";
@@ -267,7 +347,7 @@ TEST(DurableFile, FailureLeavesNothing) {
   // The name under which it is written for the time being is nobody's concern.
   const std::string path = (folder.path() / std::string(250, 'a')).string();
   EXPECT_EQ(message_of<std::runtime_error>([&] { write_durably(path, "x"); }),
-            path + ": cannot be made: File name too long");
+            path + ": cannot be written: File name too long");
 }
 
 TEST(DurableFile, OnlyTheUserReads) {

@@ -46,11 +46,35 @@ const BadUse bad_uses[] = {
     // Half read
     {{"still", "01-small.json", "--time", "0,,1", "--out", "x.png"}, "--time must be 0 to 2 s"},
     {{"still", "01-small.json", "--time", "0,", "--out", "x.png"}, "--time must be 0 to 2 s"},
+    // It was simulated beyond the clip's end
+    {{"advise", "01-small.json", "--error", "0.01", "--time", "2.1"},
+     "01-small.json: --time must be 0.0333 to 2 s, from a frame to the whole clip, not 2.1"},
     {{"stopping", "--participants", "16,,32", "--share", "0.7"}, "--participants: 16,,32 is not"},
     {{"study", "serve", "--clips", "clips", "--answers", "answers", "--name", "bad name"},
      "--name: bad name is no name of a computer"},
     {{"study", "serve", "--clips", "clips", "--answers", "answers", "--name", "https://a.org"},
      "--name: https://a.org is no name of a computer"},
+    {{"analyse", "a.csv", "--out", "set", "--map-column", "positon=x"},
+     "--map-column: we have no column `positon` (did you mean `position`?)"},
+    {{"analyse", "a.csv", "--out", "set", "--map-column", "side=x", "--map-column", "group=x"},
+     "--map-column: `x` is mapped to twice"},
+    // No whole number, or no number at all
+    {{"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "1.5"},
+     "--steps-per-frame: 1.5 is not a whole number from 1 to 1000000"},
+    {{"simulate", "01-small.json", "--out", "a.csv", "--steps-per-frame", "abc"},
+     "--steps-per-frame: abc is not a whole number from 1 to 1000000"},
+    {{"render", "01-small.json", "--jobs", "010"}, "--jobs: 010 is not a whole number from 1 to"},
+    {{"analyse", "a.csv", "--out", "set", "--seed", "-1"},
+     "--seed: -1 is not a whole number from 0 to 9007199254740991"},
+    {{"power", "--share", "0.7", "--trials", "2.5"},
+     "--trials: 2.5 is not a whole number from 1 to 1000"},
+    {{"power", "--share", "0,7"}, "--share: 0,7 is not a number"},
+    {{"simulate", "01-small.json", "--out", "a.csv", "--until", "soon"},
+     "--until: soon is not a number"},
+    {{"simulate", "01-small.json", "--out", "a.csv", "--until", "1", "--until", "2"},
+     "--until: is given 2 times; give it once"},
+    {{"analyse", "a.csv", "--out", "set", "--lapse", "no"},
+     "--lapse: no is neither `free` nor a number from 0 to 0.5"},
     // Without the option's name nobody knows which is meant
     {{"render", "01-small.json", "--slow", "1"}, "--slow: 1 is not FROM-TO:FACTOR"},
     {{"render", "01-small.json", "--freeze", "1"}, "--freeze: 1 is not TIME:SECONDS"},
@@ -93,10 +117,24 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
   const fs::path folder = folder_with_scene();
   fs::create_directories(folder / "demos");
   fs::copy(folder / "01-small.json", folder / "demos" / "01-small.json");
+  nlohmann::json scene = small_scene();
+  scene["title"] = "${name}";
+  std::ofstream(folder / "table.json") << scene;
+  std::ofstream(folder / "a.key.json") << "{}";
   const std::pair<std::vector<std::string>, const char*> bad[] = {
       {{"simulate", "01-small.json", "--out", "none/a.csv", "--error", "1e-3", "--time-limit",
         "1e-6"},
        "none/a.csv: the folder none does not exist; create it first\n"},
+      {{"still", "01-small.json", "--time", "2", "--out", "none/a.png"},
+       "none/a.png: the folder none does not exist; create it first\n"},
+      {{"still", "01-small.json", "--time", "0:2", "--out", "01-small.json/#.png"},
+       "01-small.json: is not a folder; name another one\n"},
+      {{"still", "table.json", "--table", "name=a", "--time", "2", "--out", "none/a.svg"},
+       "none/a.svg: the folder none does not exist; create it first\n"},
+      {{"study", "export", "--jatos", "none/a.jzip", "--clips", "clips", "--participants", "4"},
+       "none/a.jzip: the folder none does not exist; create it first\n"},
+      {{"study", "export", "--jatos", "a.jzip", "--clips", "clips", "--participants", "4"},
+       "a.key.json: is there already, and answers to its archive need it; choose another name\n"},
       {{"study", "serve", "--clips", "clips", "--answers", "01-small.json", "--port", "0"},
        "01-small.json: cannot be made: Not a directory; use another --answers\n"},
       {{"study", "freeze", "--clips", "clips", "--answers", "answers", "--out", "frozen",
@@ -111,6 +149,39 @@ TEST(Usage, WhatCannotBeReadOrWrittenIsToldAtOnce) {
     EXPECT_EQ(run.err, message) << fmt::format("{}", fmt::join(command, " "));
   }
   EXPECT_FALSE(fs::exists(folder / "clips"));
+}
+
+TEST(Usage, AConfigurationIsNotOverwritten) {
+  const fs::path folder = scratch_folder();
+  const std::string config = R"({"format": "pinchlab-study 1", "demonstrations": ["a"]})";
+  std::ofstream(folder / "study.json") << config;
+  const RunResult run =
+      run_program(folder, {"study", "export", "--jatos", "./study.json", "--clips", "clips",
+                           "--participants", "4", "--config", "study.json"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err, "./study.json: is the configuration; give the archive another name\n");
+  EXPECT_EQ(text_of(folder / "study.json"), config);
+}
+
+// Nobody makes a file there, not even root.
+TEST(Usage, AFolderThatTakesNoFilesIsToldAtOnce) {
+  const fs::path folder = folder_with_scene();
+  const RunResult run = run_program(folder, {"render", "01-small.json", "--out", "/proc/self"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(run.err.starts_with("/proc/self/manifest.json: cannot be written: ")) << run.err;
+  EXPECT_EQ(run.err.find("not made"), std::string::npos) << run.err;
+}
+
+TEST(Usage, FilesAreToldByTheNamesThatTheyGet) {
+  const fs::path folder = folder_with_scene();
+  const pid_t process =
+      start_program(folder, {"render", "01-small.json", "--size", "64x64", "--out", "clips"}, 1000);
+  const RunResult run = wait_for_program(folder, process);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find("01-small.pinch.mp4: not made: clips/01-small.pinch.mp4: cannot be "),
+            std::string::npos)
+      << run.err;
+  EXPECT_EQ(run.err.find("unpadded"), std::string::npos) << run.err;
 }
 
 // Or the next file that is opened would take its place, and the messages.

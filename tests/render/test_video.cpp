@@ -8,6 +8,7 @@
 
 #include "render/canvas.h"
 #include "render/picture/compose.h"
+#include "tests/base/full_disk.h"
 #include "tests/base/message_of.h"
 #include "tests/render/scenes.h"
 
@@ -234,7 +235,7 @@ TEST(Video, BadPlacesAreNamedAndLeaveNothing) {
 TEST(Video, AFullDiskIsAnErrorAndLeavesNothing) {
   const TemporaryFolder folder;
   for (const Codec codec : {Codec::h264, Codec::vp9, Codec::ffv1}) {
-    std::filesystem::create_symlink("/dev/full", folder.file("clip.partial"));
+    const test::FullDisk full(100);
     EXPECT_THROW(write(folder.file("clip"), settings(codec)), std::runtime_error)
         << to_string(codec);
     EXPECT_TRUE(folder.empty());

@@ -420,10 +420,12 @@ TEST(Compose, TheTimeStandsInTheFramesCorner) {
 TEST(Compose, ADividerRunsAlongTheFramesLeftSide) {
   Scenery scenery;
   scenery.view = {{-1.0, -2.0}, {3.0, 2.0}};
-  const Stroke line = divider(scenery, 2.0);
+  const Stroke line = divider(scenery, 1920.0, 960.0);
   EXPECT_NEAR((line.a - Vec2(-3.0, -2.0)).norm(), 0.0, 1e-12);
   EXPECT_NEAR((line.b - Vec2(-3.0, 2.0)).norm(), 0.0, 1e-12);
   EXPECT_EQ(line.fill, scenery.theme.support);
+  EXPECT_EQ(line.half_width, 2.0 * scenery.line());
+  EXPECT_NEAR(divider(scenery, 100.0, 100.0).half_width, 0.04, 1e-12) << "a whole pixel is seen";
 }
 
 // One band for all pieces, with marks along all of it, and nothing for the nodes.
