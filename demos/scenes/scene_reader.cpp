@@ -286,7 +286,7 @@ Cable Reader::read_cable(const json& from, const std::string& place, const Scene
   return cable;
 }
 
-// Of a cable with mass a body that it may slip on carries what is not stretched.
+// Of a cable with mass a smooth body carries what is not stretched.
 void Reader::check_creep(const json& cables, const Scene& scene) {
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const Cable& cable = scene.cables[i];
@@ -295,13 +295,13 @@ void Reader::check_creep(const json& cables, const Scene& scene) {
       const Body& body = at(scene.bodies, wrap.body);
       const bool fills = (cable.start.layers && wrap.body == cable.start.body) ||
                          (cable.end.layers && wrap.body == cable.end.body);
-      return !fills && (!std::isfinite(body.cable_friction) || cable.mass_per_metre == 0.0);
+      return !fills && (body.cable_friction > 0.0 || cable.mass_per_metre == 0.0);
     });
     if (creeps) continue;
     problem(
         fmt::format("/cables/{}/creep", i),
         "has no effect where all that the cable runs round is drums with layers or, of one with "
-        "mass_per_metre_kg, bodies with a cable_friction; leave it out");
+        "mass_per_metre_kg, bodies with cable_friction 0; leave it out");
   }
 }
 

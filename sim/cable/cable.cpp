@@ -146,13 +146,15 @@ void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Li
   }
 }
 
-/// By which share of the sum of their radii the circles of a span that crosses over between them,
-/// the one at a (m), may part before it is there. Far above what gaps are right to, which is 1e-12
-/// of a part's extent, coordinates included; less for it to become pinched than to stay so.
-double parting_of(const World& world, const Segment& span, const Link& from, const Link& to,
-                  const Vec2& a) {
+/// By which share of the sum of their radii the circles of a cable's span that crosses over between
+/// them, the one at a (m), may part before it is there. Far above what gaps are right to, which is
+/// 1e-12 of a part's extent, coordinates and lengths of cables; less for it to become pinched than
+/// to stay so.
+double parting_of(const World& world, const CableState& cable, const Segment& span,
+                  const Link& from, const Link& to, const Vec2& a) {
   if (!opposite(from, to) || !locates_events(world.configuration)) return 0.0;
-  const double far = 1e-2 * a.cwiseAbs().maxCoeff() / (from.radius + to.radius);
+  const double extent = std::max(a.cwiseAbs().maxCoeff(), cable.length);
+  const double far = 1e-2 * extent / (from.radius + to.radius);
   return (span.was_pinched ? 1e-8 : 1e-9) * std::max(1.0, far);
 }
 
@@ -171,7 +173,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   }
   Segment& segment = cable.segments[i];
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
-  const double parting = parting_of(world, segment, from, to, a);
+  const double parting = parting_of(world, cable, segment, from, to, a);
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
     const bool arrives = from.orientation == 0;  // at the body, from its rim

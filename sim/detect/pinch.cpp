@@ -157,7 +157,8 @@ void keep_off_span(const World& world, const CableState& cable, const Link& link
   constexpr double rounding = 1e-6;  // of the half width, far above what grazes (span_hits.h)
   if (over == infinity) return;
   const double apart = over - rim_radius(at(world.bodies, other));
-  if (std::abs(apart - cable.half_width) <= rounding * cable.half_width) {
+  const bool touches = std::abs(apart - cable.half_width) <= rounding * cable.half_width;
+  if (touches && presses(world, cable, contact)) {
     note_cable_held(world, cable, link, other, contact);
   } else {
     note_cable_between(world, cable, link, contact);

@@ -276,6 +276,23 @@ INSTANTIATE_TEST_SUITE_P(All, Demonstration, ::testing::ValuesIn(goldens), [](co
   return name;
 });
 
+// Nor do a thousand metres more of a rope that is held there matter.
+TEST(Demonstrations, AKilometreOfRopeChangesNothing) {
+  const Scene scene = read_scene_file(PINCHLAB_SOURCE_DIR "/demos/05-notch.json").scene;
+  World here = make_world(scene, Method::pinch);
+  Scene longer = scene;
+  longer.cables[0].start.point -= 1000.0 * here.cables[0].segments[1].direction;
+  World there = make_world(longer, Method::pinch);
+  Workspace work_here, work_there;
+  for (int i = 0; i < scene.frames_per_second * scene.steps_per_frame; ++i) {
+    ASSERT_EQ(step(scene, here, work_here), StepStatus::ok);
+    ASSERT_EQ(step(longer, there, work_there), StepStatus::ok);
+  }
+  for (std::size_t b = 0; b < here.position.size(); ++b) {
+    EXPECT_LT((there.position[b] - here.position[b]).norm(), 1e-5) << b;
+  }
+}
+
 /// Where the first cable is drawn, at fixed places of its material.
 std::vector<Vec2> drawn_places(const Scene& scene, const World& world, double smallest_sag) {
   std::vector<StripPoint> points;
