@@ -60,6 +60,8 @@ class StickingRim {
     double comes = 0.0;
     for (int k = 0; k < rim_cells; ++k) comes += stored_ / rim_cells * (at(now, k) - at(was_, k));
     given[1] = comes - given[0];
+    constexpr double rounding_of_energy = 1e-9;
+    if (energy(now, given) > (1.0 + rounding_of_energy) * energy(was_, {})) share_evenly();
     return true;
   }
 
@@ -72,10 +74,39 @@ class StickingRim {
     double falls = 0.0;  // by so much for a metre that is given
   };
 
+  /// Energy (m, over EA) of spans with so much more material and of a rim so stretched.
+  double energy(const RimCells& stretch, const std::array<double, 2>& more) const {
+    double sum = energy_of(before_.length, before_.rest_length + more[0]) +
+                 energy_of(after_.length, after_.rest_length + more[1]);
+    for (const double one : stretch) sum += energy_of(1.0, 1.0 - one) * stored_ / rim_cells;
+    return sum;
+  }
+
+  /// Where both spans are all but slack friction holds nothing: the least energy that all of their
+  /// material and the rim's can have. What is to spare stays where some is.
+  void share_evenly() {
+    double material = before_.rest_length + stored_ + after_.rest_length;
+    for (const double one : was_) material -= one * stored_ / rim_cells;
+    const double way = before_.length + stored_ + after_.length;
+    const double strain = std::max(way / material - 1.0, 0.0),
+                 spare = std::max(material - way, 0.0);
+    const double has[2] = {std::max(before_.rest_length - before_.length, 0.0),
+                           std::max(after_.rest_length - after_.length, 0.0)};
+    const double all = has[0] + has[1];
+    const auto lacks = [&](const Segment& span, double own) {
+      const double gets = all > 0.0 ? spare * own / all : 0.5 * spare;
+      return span.length / (1.0 + strain) + gets - span.rest_length;
+    };
+    now.fill(strain / (1.0 + strain));
+    given = {lacks(before_, has[0]), lacks(after_, has[1])};
+  }
+
   static double strain_with(const Segment& span, double more) {
     constexpr double least_share = 0.1;  // of its material, that a span keeps
-    const double left = std::max(span.rest_length + more, least_share * span.rest_length);
-    return std::max(span.length / left - 1.0, 0.0);
+    const double least =
+        std::max(least_share * span.rest_length, span.length / (1.0 + most_strain));
+    const double left = std::max(span.rest_length + more, least);
+    return left > 0.0 ? std::max(span.length / left - 1.0, 0.0) : 0.0;
   }
 
   /// What comes to either span with what it is given: what is stretched too little gives to the one

@@ -255,12 +255,6 @@ void lay_stretched(const World& world, CableState& cable, const Sliding& group, 
       });
 }
 
-/// Energy (m, over EA) of so much material (m) on a way (m).
-double energy_of(double way, double material) {
-  const double stretch = way - material;
-  return stretch > 0.0 ? stretch * stretch / (2.0 * material) : 0.0;
-}
-
 /// Whether a group that has slid for so long (s) has more energy if it is laid anew than friction
 /// has taken meanwhile: what moves a metre of material from one strain to another does the work of
 /// EA (e + e^2 / 2) at either.

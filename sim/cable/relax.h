@@ -23,6 +23,13 @@ inline bool is_smooth(const World& world, const Link& link) {
   return at(world.bodies, link.body).cable_friction == 0.0;
 }
 
+/// Energy (m, over EA) of so much material (m) on a way (m); infinity where none is left.
+inline double energy_of(double way, double material) {
+  const double stretch = way - material;
+  if (!(stretch > 0.0)) return 0.0;
+  return material > 0.0 ? stretch * stretch / (2.0 * material) : infinity;
+}
+
 /// Whether a link's cable goes into a pinch before it or after it.
 bool is_pinched_beside(const CableState& cable, int link);
 
