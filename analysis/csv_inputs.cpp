@@ -301,6 +301,7 @@ bool has_counts(const std::filesystem::path& path, const ReadOptions& options) {
 
 std::vector<std::string> input_columns() {
   std::vector<std::string> names;
+  names.reserve(std::size(tidy_columns));
   for (const ColumnName& column : tidy_columns) names.emplace_back(column.name);
   names.insert(names.end(), {"pinch", "cable", "level", "correct", "trials", "left", "right",
                              "left_wins", "right_wins", "ties"});

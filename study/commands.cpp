@@ -167,7 +167,7 @@ void add_serve(CLI::App& study, const Stimuli& stimuli) {
                    "Minutes without a sign of a participant, after which the place goes to another")
       ->type_name("MIN")
       ->capture_default_str()
-      ->check(whole_in(1, 60 * 24 * 365));
+      ->check(whole_in(1, 60L * 24 * 365));
   add_seed(*command, options->seed, "Seed of the plan [the answers folder's, or a random one]");
   add_config(*command, options->config);
   add_no_webm(*command, options->no_webm);
