@@ -71,10 +71,9 @@ Contact* nearest_of_pair(World& world, Contact* one) {
 }
 
 /// m, by which what the other body touches with, a centre or a corner's, is over the centre line of
-/// a free span beside link i, on the cable's outer side. Infinity: it is not.
-/// Nearer than the cable's width it would press the span against the link's body, so it must keep
-/// that distance already before it hits the span. The body that holds the span's far end cannot hit
-/// it.
+/// a free span beside link i, on the cable's outer side. Infinity: it is not. Nearer than the
+/// cable's width it would press the span against the link's body, so it must keep that distance
+/// already before it hits the span. The body that holds the span's far end cannot hit it.
 double over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
                           std::size_t i, int other) {
   const bool circles = contact.touch == Touch::circles;
