@@ -67,9 +67,9 @@ bool comes_before(const SpanPair& p, const SpanPair& q) {
   return std::tie(p.cable, p.segment, p.body) < std::tie(q.cable, q.segment, q.body);
 }
 
-bool holds(const Box& box, const Vec2& point, double reach) {
-  return point.x() - reach >= box.low.x() && point.x() + reach <= box.high.x() &&
-         point.y() - reach >= box.low.y() && point.y() + reach <= box.high.y();
+bool holds(const Box& box, const Vec2& low, const Vec2& high) {
+  return low.x() >= box.low.x() && high.x() <= box.high.x() && low.y() >= box.low.y() &&
+         high.y() <= box.high.y();
 }
 
 Skin skin_for(const World& world) {
@@ -222,10 +222,9 @@ bool spans_in_boxes(const World& world, const BroadPhase& broad, std::size_t c) 
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s, ++box) {
     const Segment& segment = cable.segments[s];
     if (!segment.moved) continue;
-    if (!holds(broad.span_boxes[box], segment.tail, 0.0) ||
-        !holds(broad.span_boxes[box], segment.head, 0.0)) {
-      return false;
-    }
+    const Vec2 low = segment.tail.cwiseMin(segment.head);
+    const Vec2 high = segment.tail.cwiseMax(segment.head);
+    if (!holds(broad.span_boxes[box], low, high)) return false;
   }
   return true;
 }
@@ -237,8 +236,19 @@ bool all_spans_in_boxes(const World& world, const Parts& parts, const BroadPhase
   return true;
 }
 
-/// Whether all bodies are where their boxes allow for; of a divided step, those that may have
-/// moved.
+/// Whether these bodies are where their boxes allow for.
+bool all_in_boxes(const World& world, const Parts& parts, const BroadPhase& broad,
+                  const Margin& margin, std::span<const int> bodies) {
+  for (const int b : bodies) {
+    if (is_still(parts, b)) continue;
+    const Vec2 reach = Vec2::Constant(reach_of_body(world, margin, index(b)));
+    const Vec2& x = at(world.position, b);
+    if (!holds(at(broad.boxes, b), x - reach, x + reach)) return false;
+  }
+  return true;
+}
+
+/// The same of all bodies, or in a divided step of those that may have moved.
 bool boxes_hold(const Scene& scene, const World& world, Workspace& work) {
   const Parts& parts = work.parts;
   BroadPhase& broad = work.broad_phase;
@@ -249,19 +259,15 @@ bool boxes_hold(const Scene& scene, const World& world, Workspace& work) {
   if (broad.boxes.size() != world.bodies.size() || broad.cables != world.cables.size())
     return false;
   if (parts.immobile.empty()) return world.bodies.empty();  // not divided yet
-  const auto is_in_box = [&](int b) {
-    return is_still(parts, b) ||
-           holds(at(broad.boxes, b), at(world.position, b), reach_of_body(world, margin, index(b)));
-  };
-  const auto all_in_boxes = [&is_in_box](std::span<const int> bodies) {
-    return std::all_of(bodies.begin(), bodies.end(), is_in_box);
-  };
-  if (!divided) return all_in_boxes(parts.movers);
-  const std::span<const int> moving = work.neighbourhoods.moving;
-  return std::all_of(moving.begin(), moving.end(), [&](int p) {
+  if (!divided) return all_in_boxes(world, parts, broad, margin, parts.movers);
+  for (const int p : work.neighbourhoods.moving) {
     const Part& part = at(parts.list, p);
-    return all_in_boxes(bodies_of(parts, part)) && all_in_boxes(carried_of(parts, part));
-  });
+    if (!all_in_boxes(world, parts, broad, margin, bodies_of(parts, part)) ||
+        !all_in_boxes(world, parts, broad, margin, carried_of(parts, part))) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace

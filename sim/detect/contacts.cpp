@@ -73,6 +73,14 @@ struct MostGap {
   double circles, outlines;
 };
 
+/// Of two with a cable of that width (m) between, whose speeds add up to `speed` and those of their
+/// rims to `rims` (m/s), the smaller of that radius (m).
+MostGap most_gap(const Scene& scene, const World& world, double width, double speed, double rims,
+                 double radius) {
+  const double circles = width + reach(scene, world, speed, radius);
+  return {circles, rims > 0.0 ? width + reach(scene, world, speed + rims, radius) : circles};
+}
+
 /// Whether the body is where it was. A node that has only just come was not in any part.
 bool is_where_it_was(const World& world, const Parts& parts, int body) {
   if (!is_still(parts, body)) return false;
@@ -98,13 +106,12 @@ void add_contacts(World& world, int a, int b, int wall, const Vec2& d, double ra
     return;
   }
   const Vec2 somewhere = b >= 0 ? Vec2(1.0, 0.0) : Vec2(0.0, -1.0);
-  Contact contact;
+  Contact& contact = world.contacts.emplace_back();
   contact.a = a;
   contact.b = b;
   contact.wall = wall;
   contact.normal = distance > 0.0 ? Vec2(d / distance) : somewhere;
   contact.gap = distance - radii;
-  world.contacts.push_back(contact);
 }
 
 /// Whether one of them is a node beside the other along its cable.
@@ -129,8 +136,7 @@ std::size_t add_contacts_of_walls(const Scene& scene, World& world, const Worksp
     const Vec2 d = nearest_on_line(obstacle.a, obstacle.b, x) - x;
     const double radius = at(world.bodies, pair.body).radius;
     const double speed = speed_of(world, pair.body);
-    const MostGap most{reach(scene, world, speed, radius),
-                       reach(scene, world, speed + rim_speed_of(world, pair.body), radius)};
+    const MostGap most = most_gap(scene, world, 0.0, speed, rim_speed_of(world, pair.body), radius);
     add_contacts(world, pair.body, -1, pair.wall, d, radius + obstacle.radius, most);
   }
   return kept;
@@ -155,8 +161,7 @@ MostGap most_gap(const Scene& scene, const World& world, double width, const Bod
   // Bodies that move together have no speed between them until one is stopped within the step.
   const double speed = speed_of(world, pair.a) + speed_of(world, pair.b);
   const double rims = rim_speed_of(world, pair.a) + rim_speed_of(world, pair.b);
-  return {width + reach(scene, world, speed, std::min(a, b)),
-          width + reach(scene, world, speed + rims, std::min(a, b))};
+  return most_gap(scene, world, width, speed, rims, std::min(a, b));
 }
 
 MostGap most_gap(const Scene& scene, const World& world, const PiecePair& pair) {
@@ -164,8 +169,7 @@ MostGap most_gap(const Scene& scene, const World& world, const PiecePair& pair) 
   const double speed =
       speed_of_piece(world, piece) + (pair.body >= 0 ? speed_of(world, pair.body) : 0.0);
   const double rim = pair.body >= 0 ? rim_speed_of(world, pair.body) : 0.0;
-  return {reach(scene, world, speed, piece.half_width),
-          reach(scene, world, speed + rim, piece.half_width)};
+  return most_gap(scene, world, 0.0, speed, rim, piece.half_width);
 }
 
 /// Of a pair with a body (m).
@@ -229,10 +233,13 @@ bool was_bare(const std::vector<Contact>& old, std::vector<Contact>::const_itera
 void carry_over(const std::vector<Contact>& old, std::vector<Contact>& contacts) {
   auto previous = old.begin();
   for (Contact& contact : contacts) {
-    if (previous != old.end() && !is_same(*previous, contact)) {
+    const auto is_there = [&] { return previous != old.end() && is_same(*previous, contact); };
+    bool there = is_there();  // mostly
+    if (!there) {
       while (previous != old.end() && comes_before(*previous, contact)) ++previous;
+      there = is_there();
     }
-    if (previous != old.end() && is_same(*previous, contact)) {
+    if (there) {
       contact.touching = previous->touching && contact.away == 0;
       contact.slip = previous->slip;
       contact.normal_force = previous->normal_force;
@@ -312,7 +319,8 @@ void find_contacts(const Scene& scene, World& world, Workspace& work) {
     for (Contact& contact : world.contacts) contact.away = is_left_to_pieces(world, contact);
     kept += add_contacts_of_pieces(scene, world, work, old);
   }
-  if (!broad.wall_pairs.empty() || !broad.piece_pairs.empty()) {
+  const bool mixed = !broad.wall_pairs.empty() || !broad.piece_pairs.empty();
+  if (mixed && !std::ranges::is_sorted(world.contacts, comes_before)) {
     std::sort(world.contacts.begin(), world.contacts.end(), comes_before);
   }
   all_kept = kept == world.contacts.size() && kept == old.size();
