@@ -9,10 +9,6 @@
 
 namespace pinchlab {
 
-int piece_of(const NodeChain& chain, int number) {
-  return number == 0 ? chain.cable : chain.first_piece + number - 1;
-}
-
 void settle_held(World& world, const NodeChain& chain, int first) {
   CableState& piece = at(world.cables, piece_of(chain, first));
   const HeldLine line = lay_held(
@@ -36,11 +32,13 @@ double held_bend(const World& world, const NodeChain& chain, int first) {
 void carry_held(World& world, const NodeChain& chain) {
   for (int first = 0; first < chain.pieces;) {
     const CableState& piece = at(world.cables, piece_of(chain, first));
-    const Vec2 start = link_centre(world, piece.links[0]);
-    const Vec2 direction = (link_centre(world, piece.links[1]) - start).normalized();
-    for (int i = 1; i < piece.pieces; ++i) {
-      const int node = node_before(chain, first + i);
-      at(world.position, node) = start + along_line(direction, at(world.bodies, node).seat);
+    if (piece.pieces > 1) {
+      const Vec2 start = link_centre(world, piece.links[0]);
+      const Vec2 direction = (link_centre(world, piece.links[1]) - start).normalized();
+      for (int i = 1; i < piece.pieces; ++i) {
+        const int node = node_before(chain, first + i);
+        at(world.position, node) = start + along_line(direction, at(world.bodies, node).seat);
+      }
     }
     first += piece.pieces;
   }

@@ -53,7 +53,9 @@ HeldLine lay_held(int count, double l, Turned turned, Seat seat) {
 }
 
 /// Of the finest pieces, from the chain's start on.
-int piece_of(const NodeChain& chain, int number);
+inline int piece_of(const NodeChain& chain, int number) {
+  return number == 0 ? chain.cable : chain.first_piece + number - 1;
+}
 
 /// Body of the node before that piece, which is not the first.
 inline int node_before(const NodeChain& chain, int number) {

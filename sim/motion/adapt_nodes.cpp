@@ -31,16 +31,16 @@ int before(const World& world, const NodeChain& chain, int first) {
 
 Line line_of(const CableState& cable) {
   const Segment& s = cable.segments[1];
-  return {cable.links[0], cable.links[1], {cable.links[0].body, cable.links[1].body},
-          s.direction,    s.length,       s.tension,
+  return {&cable.links[0], &cable.links[1], {cable.links[0].body, cable.links[1].body},
+          s.direction,     s.length,        s.tension,
           cable.pieces};
 }
 
 Line joined(const World& world, const CableState& first, const CableState& second) {
   const Vec2 d = link_centre(world, second.links[1]) - link_centre(world, first.links[0]);
   const double length = d.norm();
-  return {first.links[0],
-          second.links[1],
+  return {&first.links[0],
+          &second.links[1],
           {first.links[0].body, second.links[1].body},
           length > 0.0 ? Vec2(d / length) : first.segments[1].direction,
           length,
@@ -95,14 +95,14 @@ bool is_to_merge(const Scene& scene, const World& world, const BoxTree& near,
   const Line line = joined(world, one, two);
   if (!(line.tension >= 0.0)) return false;
   // Between ends that stand a straight line has the wrong length.
-  if (line.pieces == chain.pieces && !moves(world, line.from) && !moves(world, line.to))
+  if (line.pieces == chain.pieces && !moves(world, *line.from) && !moves(world, *line.to))
     return false;
   const int node = node_before(chain, first + count);
   const double most = hysteresis * chain.tolerance;
-  const Vec2 off = at(world.position, node) - link_centre(world, line.from);
+  const Vec2 off = at(world.position, node) - link_centre(world, *line.from);
   const double bend = std::abs(cross(line.direction, off));
   if (bend >= most || expected_sag(scene, world, chain, first, line) >= most) return false;
-  const Vec2 middle = 0.5 * (end_velocity(world, line.from) + end_velocity(world, line.to));
+  const Vec2 middle = 0.5 * (end_velocity(world, *line.from) + end_velocity(world, *line.to));
   const double mass = at(world.bodies, node).mass;
   const Vec2 pull = mass * scene.gravity +
                     held_force(first_moment(one), one.segments[1], scene.gravity) -
@@ -152,8 +152,8 @@ void merge(World& world, const NodeChain& chain, int first) {
   CableState& two = at(world.cables, piece_of(chain, second));
   const Line line = joined(world, one, two);
   const double half = 0.5 * at(world.bodies, node).mass;
-  hand_over(world, line.from, half, at(world.velocity, node));
-  hand_over(world, line.to, half, at(world.velocity, node));
+  hand_over(world, *line.from, half, at(world.velocity, node));
+  hand_over(world, *line.to, half, at(world.velocity, node));
   turn_all(world, chain, first, line.direction);
   turn_all(world, chain, second, line.direction);
   std::swap(one.links[1], two.links[1]);
@@ -172,16 +172,16 @@ void split(World& world, const NodeChain& chain, int first) {
   CableState& two = at(world.cables, piece_of(chain, second));
   BodyProperties& body = at(world.bodies, node);
   const Vec2 seat = body.seat.x() * line.direction + body.seat.y() * left(line.direction);
-  at(world.position, node) = link_centre(world, line.from) + seat;
-  const Vec2 from = end_velocity(world, line.from), to = end_velocity(world, line.to);
+  at(world.position, node) = link_centre(world, *line.from) + seat;
+  const Vec2 from = end_velocity(world, *line.from), to = end_velocity(world, *line.to);
   at(world.velocity, node) = 0.5 * (from + to);
   at(world.angular_velocity, node) = 0.0;
   at(world.still_steps, node) = 0;
   body.kind = BodyKind::free;
   body.outlined = true;
   body.mass = chain.mass_per_metre * chain.piece_length * half;
-  hand_over(world, line.from, -0.5 * body.mass, from);
-  hand_over(world, line.to, -0.5 * body.mass, to);
+  hand_over(world, *line.from, -0.5 * body.mass, from);
+  hand_over(world, *line.to, -0.5 * body.mass, to);
   std::swap(one.links[1], two.links[1]);
   one.pieces = two.pieces = half;
   settle_piece(world, chain, first);

@@ -30,8 +30,8 @@ Line line_between(const CableState& cable, std::size_t first, std::size_t last) 
     return is_strung(cable, link) ? -1 : link.body;
   };
   Line line;
-  line.from = cable.links[first - 1];
-  line.to = cable.links[last];
+  line.from = &cable.links[first - 1];
+  line.to = &cable.links[last];
   line.passes = {beyond(cable.links[first - 2]), beyond(cable.links[last + 1])};
   const Vec2 d = cable.segments[last].head - cable.segments[first].tail;
   line.length = d.norm();
@@ -91,8 +91,8 @@ bool is_to_merge(const Scene& scene, const World& world, const BoxTree& near, in
   if (bend + held_bend(cable, segment) + held_bend(cable, next) >= most) return false;
   const int node = cable.links[segment].body;
   const double share = static_cast<double>(pieces_of(cable, segment)) / line.pieces;
-  const Vec2 there =
-      (1.0 - share) * at(world.velocity, line.from.body) + share * at(world.velocity, line.to.body);
+  const Vec2 there = (1.0 - share) * at(world.velocity, line.from->body) +
+                     share * at(world.velocity, line.to->body);
   const double mass =
       0.5 * cable.density * (material_of_span(cable, segment) + material_of_span(cable, next));
   const Vec2 pull =

@@ -52,11 +52,11 @@ void find_surroundings(const Scene& scene, const World& world, BoxTree& near) {
 
 bool is_near_something(const Scene& scene, const World& world, const BoxTree& near,
                        const Line& line, double off, double times) {
-  const Vec2 start = link_centre(world, line.from);
-  const Vec2 end = link_centre(world, line.to);
+  const Vec2 start = link_centre(world, *line.from);
+  const Vec2 end = link_centre(world, *line.to);
   const double h = world.step_length;
   const double speed =
-      std::max(end_velocity(world, line.from).norm(), end_velocity(world, line.to).norm()) +
+      std::max(end_velocity(world, *line.from).norm(), end_velocity(world, *line.to).norm()) +
       h * scene.gravity.norm();
   const double own = off + 2.0 * h * speed;
   const auto meets = [&](int number) {
@@ -74,7 +74,7 @@ bool is_near_something(const Scene& scene, const World& world, const BoxTree& ne
 }
 
 double spread_of(const World& world, const Line& line) {
-  return 0.125 * (end_velocity(world, line.to) - end_velocity(world, line.from)).squaredNorm();
+  return 0.125 * (end_velocity(world, *line.to) - end_velocity(world, *line.from)).squaredNorm();
 }
 
 double swing_of(double mass, const Vec2& motion, const Vec2& pull, const Line& line,

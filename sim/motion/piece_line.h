@@ -16,7 +16,7 @@ constexpr double hysteresis = 0.5;
 
 /// A straight line between two ends: of a piece, or of what two would become.
 struct Line {
-  Link from, to;
+  const Link *from = nullptr, *to = nullptr;
   std::array<int, 2> passes{-1, -1};  // bodies before and after it, that it cannot meet; or -1
   Vec2 direction = Vec2::Zero();
   double length = 0.0;   // m
