@@ -103,16 +103,14 @@ void add_shapes(Scene& scene, int body, std::span<const Shape> shapes) {
   }
 }
 
-void carry(World& world, std::span<const int> carried) {
-  for (const int shape : carried) {
-    const BodyProperties& body = at(world.bodies, shape);
-    const Vec2 seat = turned(body.seat, at(world.angle, body.carrier));
-    const double turning = at(world.angular_velocity, body.carrier);
-    at(world.position, shape) = at(world.position, body.carrier) + seat;
-    at(world.angle, shape) = at(world.angle, body.carrier) + body.seat_angle;
-    at(world.velocity, shape) = at(world.velocity, body.carrier) + turning * left(seat);
-    at(world.angular_velocity, shape) = turning;
-  }
+void carry(World& world, int shape) {
+  const BodyProperties& body = at(world.bodies, shape);
+  const Vec2 seat = turned(body.seat, at(world.angle, body.carrier));
+  const double turning = at(world.angular_velocity, body.carrier);
+  at(world.position, shape) = at(world.position, body.carrier) + seat;
+  at(world.angle, shape) = at(world.angle, body.carrier) + body.seat_angle;
+  at(world.velocity, shape) = at(world.velocity, body.carrier) + turning * left(seat);
+  at(world.angular_velocity, shape) = turning;
 }
 
 }  // namespace pinchlab

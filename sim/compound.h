@@ -50,8 +50,11 @@ inline Vec2 seat_of(const World& world, int body) {
   return at(world.position, body) - at(world.position, mover_of(world, body));
 }
 
-/// Places shapes (of `carried`), and sets their velocities, by the bodies that carry them.
-void carry(World& world, std::span<const int> carried);
+/// Places a shape, and sets its velocity, by the body that carries it.
+void carry(World& world, int shape);
+inline void carry(World& world, std::span<const int> shapes) {
+  for (const int shape : shapes) carry(world, shape);
+}
 
 /// What the body turns about where nothing holds it (m).
 inline const Vec2& pivot_of(const World& world, int body) {
