@@ -115,30 +115,39 @@ void measure(Workspace& work, const Happening& key, double clearance, double lat
   event->seen = true;
 }
 
-void find_catches(const World& world, Workspace& work, int number) {
-  const Part& part = at(work.parts.list, number);
-  const PartSystem& s = at(work.systems, part.system);
+namespace {
+
+/// A part's event of that kind.
+Happening event_of(EventKind kind, int part, const PartSystem& s) {
+  Happening event{kind};
+  event.part = part;
+  event.reach = s.reach;
+  return event;
+}
+
+/// The catch of a row that idles, or of one that stretches and lets go.
+void find_catch(const World& world, Workspace& work, int number, const PartSystem& s,
+                const Row& row, bool releases) {
   const CapstanScratch& capstan = work.solve.capstan;
-  const bool slides = !capstan.runs.empty();
-  const double late = 0.5 * s.reach;
-  const bool any_known = !work.known_events.empty();
-  Happening key{EventKind::catches};
-  key.part = number;
-  key.reach = s.reach;
-  for (const Row& row : s.rows) {
-    const bool releases = row.compliance > 0.0 && row.on && !row.clamped;
-    if (!row.idle && !(releases && row.clearance < -s.reach)) continue;
-    if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) continue;
-    const auto r = static_cast<std::size_t>(&row - s.rows.data());
-    if (row.kind == RowKind::segment && slides && capstan.group_of_row[r] >= 0) continue;
-    const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
-    const double late_by = !releases && row.clearance > s.reach ? -s.reach : late;
-    if (!any_known && clearance >= -late_by) continue;  // as most: no search for these
-    key.row = static_cast<int>(r);
-    key.before = releases ? -row.clearance : row.clearance;
-    measure(work, key, clearance, late_by);
-  }
-  if (!slides) return;
+  const auto r = static_cast<std::size_t>(&row - s.rows.data());
+  if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) return;
+  const bool in_group =
+      row.kind == RowKind::segment && !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
+  if (in_group) return;
+  const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
+  const double late = !releases && row.clearance > s.reach ? -s.reach : 0.5 * s.reach;
+  // As most: no search for these.
+  if (work.known_events.empty() && clearance >= -late) return;
+  Happening key = event_of(EventKind::catches, number, s);
+  key.row = static_cast<int>(r);
+  key.before = releases ? -row.clearance : row.clearance;
+  measure(work, key, clearance, late);
+}
+
+/// Catches of segments that share their material, of which none need be tight.
+void find_catches_of_groups(const World& world, Workspace& work, int number, const PartSystem& s) {
+  const CapstanScratch& capstan = work.solve.capstan;
+  Happening key = event_of(EventKind::catches, number, s);
   for (const Group& group : capstan.groups) {
     key.item = group.end - group.begin;  // others that begin with the same row are none of it
     double before = 0.0, now = 0.0;
@@ -151,7 +160,7 @@ void find_catches(const World& world, Workspace& work, int number) {
       }
       key.row = at(capstan.members, group.begin);
       key.before = -before;
-      if (before < -s.reach) measure(work, key, -now, late);
+      if (before < -s.reach) measure(work, key, -now, 0.5 * s.reach);
       continue;
     }
     for (int k = group.slack_begin; k < group.slack_end; ++k) {
@@ -166,27 +175,43 @@ void find_catches(const World& world, Workspace& work, int number) {
   }
 }
 
+/// Links of a cable that have come off.
+void find_gone_links(const World& world, Workspace& work, const Happening& of_cable) {
+  Happening key = of_cable;
+  const CableState& cable = at(world.cables, key.cable);
+  for (int i = 0; index(i) < cable.links.size(); ++i) {
+    const Link& link = at(cable.links, i);
+    key.item = i;
+    if (is_strung(cable, link) || link.moored) {
+      measure(work, key, left_until_taken_in(world, cable, i), 0.5 * key.reach);
+      continue;
+    }
+    if (link.orientation == 0 || link.pinch_middle) continue;
+    if (needed(cable, index(i))) continue;
+    measure(work, key, link.wrap * link.radius, 0.5 * key.reach);
+  }
+}
+
+}  // namespace
+
+void find_catches(const World& world, Workspace& work, int number) {
+  const PartSystem& s = at(work.systems, at(work.parts.list, number).system);
+  for (const Row& row : s.rows) {
+    const bool releases = row.compliance > 0.0 && row.on && !row.clamped;
+    if (!row.idle && !(releases && row.clearance < -s.reach)) continue;
+    find_catch(world, work, number, s, row, releases);
+  }
+  if (!work.solve.capstan.runs.empty()) find_catches_of_groups(world, work, number, s);
+}
+
 void find_gone_links(const World& world, Workspace& work, int number) {
   const Part& part = at(work.parts.list, number);
-  const PartSystem& s = at(work.systems, part.system);
-  Happening key{EventKind::link_gone};
-  key.part = number;
-  key.reach = s.reach;
   for (const int c : cables_of(work.parts, part)) {
     const CableState& cable = at(world.cables, c);
     if (!cable.unwound && cable.nodes == 0 && work.events.empty()) continue;
+    Happening key = event_of(EventKind::link_gone, number, at(work.systems, part.system));
     key.cable = c;
-    for (int i = 0; index(i) < cable.links.size(); ++i) {
-      const Link& link = at(cable.links, i);
-      key.item = i;
-      if (is_strung(cable, link) || link.moored) {
-        measure(work, key, left_until_taken_in(world, cable, i), 0.5 * s.reach);
-        continue;
-      }
-      if (link.orientation == 0 || link.pinch_middle) continue;
-      if (needed(cable, index(i))) continue;
-      measure(work, key, link.wrap * link.radius, 0.5 * s.reach);
-    }
+    find_gone_links(world, work, key);
   }
 }
 
