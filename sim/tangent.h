@@ -36,6 +36,7 @@ inline Vec2 direction_at(double heading) {
 /// `angle` plus the whole turns that bring it nearest to `reference`, rad.
 inline double unwrapped(double angle, double reference) {
   constexpr double turn = 2.0 * std::numbers::pi;
+  if (std::abs(reference - angle) < 0.5 * turn) return angle;  // mostly
   return angle + turn * std::round((reference - angle) / turn);
 }
 

@@ -143,9 +143,10 @@ struct alignas(64) CableState {
   bool fills = false;    // lies in layers on a body that holds an end of it
   Joint joint = Joint::none;
   // By update_wraps_and_rest_lengths, which has all at hand:
-  bool unwound = false;    // a link that it rolls on has lost its wrap
-  bool misfilled = false;  // a pinched segment is, somewhere: cable.h
-  bool finite = true;      // lengths, rest lengths and tensions are
+  bool unwound = false;     // a link that it rolls on has lost its wrap
+  bool misfilled = false;   // a pinched segment is, somewhere: cable.h
+  bool short_span = false;  // a span is short, as vanishing ones are: cable.h
+  bool finite = true;       // lengths, rest lengths and tensions are
   bool stands =
       false;  // nothing of its course has moved since the interval before, and nothing can: so
               // its tangents and wraps are as they were; by update_cable

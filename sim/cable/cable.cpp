@@ -160,7 +160,11 @@ double parting_of(const World& world, const CableState& cable, const Segment& sp
 
 }  // namespace
 
-void update_tangent(const World& world, CableState& cable, std::size_t i) {
+namespace {
+
+/// update_tangent, of circles whose centres are `a` and `b` (m).
+void update_tangent(const World& world, CableState& cable, std::size_t i, const Vec2& a,
+                    const Vec2& b) {
   Link& from = cable.links[tail_link(cable, i)];
   Link& to = cable.links[i];
   if (cable.fills && !wound_end(from, to) && !is_side(from, to)) {
@@ -172,7 +176,6 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
     }
   }
   Segment& segment = cable.segments[i];
-  const Vec2 a = link_centre(world, from), b = link_centre(world, to);
   const double parting = parting_of(world, cable, segment, from, to, a);
   Tangent t = common_tangent(a, from.signed_radius(), b, to.signed_radius(), parting);
   if (wound_end(from, to)) {
@@ -201,10 +204,17 @@ void update_tangent(const World& world, CableState& cable, std::size_t i) {
   segment.head = tangent_point(b, to.signed_radius(), t.direction);
 }
 
+}  // namespace
+
+void update_tangent(const World& world, CableState& cable, std::size_t i) {
+  const Link &from = cable.links[tail_link(cable, i)], &to = cable.links[i];
+  update_tangent(world, cable, i, link_centre(world, from), link_centre(world, to));
+}
+
 namespace {
 
+/// Of a link that the cable rolls on.
 void update_wrap(CableState& cable, Link& link, double arrives, double leaves) {
-  if (link.orientation == 0) return;
   link.wrap = link.orientation * (leaves - arrives);
   if (!(link.wrap >= 0.0 || link.pinch_middle)) cable.unwound = true;
 }
@@ -220,8 +230,9 @@ void inspect(CableState& cable, const Segment& segment, double rounding, double&
 void update_laid_cable(const World& world, CableState& cable) {
   const double rounding = material_rounding(cable);
   double sum = 0.0;
-  cable.unwound = cable.misfilled = false;
+  cable.unwound = cable.misfilled = cable.short_span = false;
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
+    if (cable.links[i].orientation == 0) continue;
     update_wrap(cable, cable.links[i], cable.segments[i].alpha, alpha_head(cable, i));
   }
   for (std::size_t i = first_segment(cable); i < cable.links.size(); ++i) {
@@ -231,44 +242,61 @@ void update_laid_cable(const World& world, CableState& cable) {
                                     head_material(cable, tail, body_angle(world, from)) +
                                     (i == 0 ? cable.length : 0.0);
     if (is_held(cable, i)) cable.segments[i].rest_length -= held_at(cable, i).spare;
+    if (is_short(cable.segments[i], from, to)) cable.short_span = true;
     inspect(cable, cable.segments[i], rounding, sum);
   }
   cable.finite = sum == 0.0;
 }
 
-/// Of any other. Where its course stands, wraps are as they were: bodies turn under them.
+/// Material coordinates (m) where a cable meets a link and where it leaves it.
+struct Passage {
+  double met = 0.0, left = 0.0;
+};
+
+/// That of a link that the cable, by its directions there (rad), rolls on or is attached at.
+template <bool stands>
+inline Passage pass(const World& world, CableState& cable, Link& link, double arrives,
+                    double leaves) {
+  if (link.orientation == 0) return {link.material, link.material};
+  if (!stands) update_wrap(cable, link, arrives, leaves);
+  const double radius = link.signed_radius(), angle = at(world.angle, link.body);
+  return {link.material + radius * (arrives - angle), link.material + radius * (leaves - angle)};
+}
+
+/// Of any other. Where its course stands, wraps and spans are as they were: bodies turn under them.
 template <bool stands>
 void update_rolled_cable(const World& world, CableState& cable) {
   const double rounding = material_rounding(cable);
+  const bool holds = !cable.finest.empty();
   double sum = 0.0;
+  bool has_short = false;
   cable.misfilled = false;
   if (!stands) cable.unwound = false;
-  const std::size_t count = cable.links.size();
-  double left_before = 0.0;  // m, material coordinate where the cable leaves the link before
-  double first = 0.0;        // where it meets the first
-  double arrives = cable.segments[0].alpha;
-  const double last = arrives + cable.turning;
-  for (std::size_t i = 0; i < count; ++i) {
-    Link& link = cable.links[i];
-    Segment& segment = cable.segments[i];
-    const double leaves = i + 1 < count ? cable.segments[i + 1].alpha : last;  // alpha_head
-    if (!stands) update_wrap(cable, link, arrives, leaves);
-    const double radius = link.signed_radius(), angle = body_angle(world, link);
-    const double met = link.material + radius * (arrives - angle);
-    if (i == 0) {
-      first = met;
-    } else {
-      segment.rest_length = met - left_before;
-      if (is_held(cable, i)) segment.rest_length -= held_at(cable, i).spare;
-      inspect(cable, segment, rounding, sum);
+  Segment* segment = cable.segments.data();
+  Segment* const end = segment + cable.segments.size();
+  Link* link = cable.links.data();
+  const double last = segment->alpha + cable.turning;
+  const auto leaves = [&] { return segment + 1 != end ? segment[1].alpha : last; };  // alpha_head
+  const Passage first = pass<stands>(world, cable, *link, segment->alpha, leaves());
+  double left = first.left;
+  for (++segment, ++link; segment != end; ++segment, ++link) {
+    const Passage here = pass<stands>(world, cable, *link, segment->alpha, leaves());
+    segment->rest_length = here.met - left;
+    left = here.left;
+    if (holds) {
+      const auto i = static_cast<std::size_t>(segment - cable.segments.data());
+      if (is_held(cable, i)) segment->rest_length -= held_at(cable, i).spare;
     }
-    left_before = link.material + radius * (leaves - angle);
-    arrives = leaves;
+    if (!stands) has_short |= is_short(*segment, link[-1], *link);
+    inspect(cable, *segment, rounding, sum);
   }
   if (cable.closed) {
-    cable.segments[0].rest_length = first - left_before + cable.length;
-    inspect(cable, cable.segments[0], rounding, sum);
+    Segment& closing = cable.segments.front();
+    closing.rest_length = first.met - left + cable.length;
+    has_short |= is_short(closing, cable.links.back(), cable.links.front());
+    inspect(cable, closing, rounding, sum);
   }
+  if (!stands) cable.short_span = has_short;
   cable.finite = sum == 0.0;
 }
 
@@ -340,11 +368,13 @@ bool update_cable(const World& world, CableState& cable, bool begins, bool known
     if (begins) begin_segment(segment);
     const bool still = from->still && to->still;
     all_still = all_still && still;
-    if (!(still && still_stands) && (fills || link_centre(world, *from) != segment.tail_centre ||
-                                     link_centre(world, *to) != segment.head_centre)) {
-      // A try that is taken back may have turned it by more than half a turn, step by step.
-      if (!begins) segment.alpha = segment.alpha_before;
-      update_tangent(world, cable, i);
+    if (!(still && still_stands)) {
+      const Vec2 a = link_centre(world, *from), b = link_centre(world, *to);
+      if (fills || a != segment.tail_centre || b != segment.head_centre) {
+        // A try that is taken back may have turned it by more than half a turn, step by step.
+        if (!begins) segment.alpha = segment.alpha_before;
+        update_tangent(world, cable, i, a, b);
+      }
     }
     moved = moved || segment.moved;
     from = to;

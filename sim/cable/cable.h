@@ -192,6 +192,12 @@ inline double target_of(const World& world, const Contact& contact) {
   return cable.least_gap + thickness_of_layers(pressed_layers(world, contact));
 }
 
+/// Whether a span is short to the circles at its ends: a longer one hardly turns as it vanishes.
+inline bool is_short(const Segment& span, const Link& tail, const Link& head) {
+  constexpr double share = 0.5;  // of the sum of the radii
+  return span.length < share * (tail.radius + head.radius);
+}
+
 /// Arc (rad after the tail) at which the direction `u` from the body's centre meets the cable
 /// stored on link i, in [-tolerance, 2 pi - tolerance); the same plus whole turns up to link.wrap
 /// also do.

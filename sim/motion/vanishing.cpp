@@ -13,7 +13,6 @@ namespace pinchlab {
 namespace {
 
 constexpr double slow_share = 1e-6;  // of Delta^2: what turns by a milliradian in vanishing_time
-constexpr double short_share = 0.5;  // of Delta: what is longer hardly turns
 // Of a step, which the touch itself would ask to be 0; at tau = 1e-6 T, where the span has a
 // thousandth of its length.
 constexpr double least_share = 1e-4;
@@ -66,7 +65,7 @@ void each_span(const CableState& cable, const F& f) {
 /// time_left of a cable's spans that do not stretch, and are short to the circles at their ends.
 double time_left(const World& world, const CableState& cable, double most) {
   each_span(cable, [&](const Segment& span, const Link& tail, const Link& head) {
-    if (span.slack || span.length >= short_share * (tail.radius + head.radius)) return;
+    if (span.slack || !is_short(span, tail, head)) return;
     most = time_left(world, span, tail, head, most);
   });
   return most;
@@ -94,9 +93,13 @@ double time_to_swing(const CableState& cable, double most) {
   return most;
 }
 
-}  // namespace
+/// Whether spans of a cable may vanish, or anything else of it may ask for shorter intervals.
+bool may_ask(const CableState& cable) {
+  return !cable.stands && (cable.short_span || cable.elastic || cable.nodes > 0);
+}
 
-double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
+/// longest_interval, where a cable may ask for less than a step.
+double longest_asked_for(const World& world, const Parts& parts, std::span<const int> of) {
   const bool follows = world.step_length < vanishing_time;
   double left = vanishing_time, left_of_elastic = infinity, swing = infinity;
   for (const int p : of) {
@@ -104,7 +107,7 @@ double longest_interval(const World& world, const Parts& parts, std::span<const 
     if (!part.can_move) continue;
     for (const int c : cables_of(parts, part)) {
       const CableState& cable = at(world.cables, c);
-      if (cable.stands) continue;
+      if (!may_ask(cable)) continue;
       if (part.has_sleeves && cable.nodes > 0) swing = time_to_swing(cable, swing);
       if (cable.elastic) {
         left_of_elastic = time_left_of_elastic(world, cable, left_of_elastic);
@@ -119,6 +122,17 @@ double longest_interval(const World& world, const Parts& parts, std::span<const 
     longest = std::min(longest, world.step_length * std::cbrt(share * share));
   }
   return std::max(longest, least_share * world.step_length);
+}
+
+}  // namespace
+
+double longest_interval(const World& world, const Parts& parts, std::span<const int> of) {
+  for (const int p : of) {
+    for (const int c : cables_of(parts, at(parts.list, p))) {
+      if (may_ask(at(world.cables, c))) return longest_asked_for(world, parts, of);
+    }
+  }
+  return infinity;
 }
 
 }  // namespace pinchlab
