@@ -137,6 +137,7 @@ void describe(const World& world, Parts& parts, Part& part) {
     part.has_mass = part.has_mass || at(world.cables, c).piece || is_massed(at(world.cables, c));
     part.creeps = part.creeps || at(world.cables, c).creeps;
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
+    part.may_brake = part.may_brake || rubs_somewhere(world, at(world.cables, c));
     part.has_sleeves = part.has_sleeves || has_sleeves(world, at(world.cables, c));
   }
   for (int k = part.bodies_begin; k < part.bodies_end; ++k) {
@@ -152,7 +153,7 @@ void describe(const World& world, Parts& parts, Part& part) {
     part.can_move = true;  // by turning, at least
   }
   // Between bodies that cannot give way a cable that none of them lets slip is held.
-  if (!has_contacts(part)) return;
+  if (!has_contacts(part) || part.cables_begin == part.cables_end) return;
   part.can_slip = part.can_move;
   for (const int c : cables_of(parts, part)) {
     part.can_slip = part.can_slip || at(world.cables, c).grip == 0.0;
@@ -261,6 +262,7 @@ void find_parts(const World& world, Workspace& work) {
 void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& before) {
   parts.divided = structure_changed(world, contacts_stand, parts);
   if (parts.divided) divide(world, before, parts);
+  parts.changed = parts.changed || parts.divided;
   parts.any_moves = false;
   const double enough = rest_time / world.step_length;
   for (Part& part : parts.list) {
@@ -272,14 +274,9 @@ void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& be
       part.asleep = at(world.still_steps, b) >= enough;
     }
     part.kept = slept && part.asleep;
+    parts.changed = parts.changed || part.asleep != slept;
     parts.any_moves = parts.any_moves || (!part.asleep && part.can_move);
   }
-}
-
-Pace pace_of(const World& world, const Parts& parts, const Part& part) {
-  const std::span<const int> bodies = bodies_of(parts, part);
-  if (!bodies.empty()) return at(world.pace, bodies.front());
-  return world.pace[world.bodies.size() + index(cables_of(parts, part).front())];
 }
 
 void set_pace(World& world, const Parts& parts, const Part& part, const Pace& pace) {
@@ -310,12 +307,15 @@ void share_paces(const Parts& before, const Parts& parts, World& world) {
 
 void note_rest(const Scene& scene, const Parts& parts, const Part& part, World& world) {
   if (!world.configuration.sleep) return;
-  const bool still = rests(parts, part, world);
+  if (!rests(parts, part, world)) {
+    for (const int b : bodies_of(parts, part)) at(world.still_steps, b) = 0;
+    return;
+  }
   for (const int b : bodies_of(parts, part)) {
     const std::vector<MotorPoint>& motor = at(scene.bodies, b).motor;
     const bool driven_on = !motor.empty() && world.time() <= motor.back().time;
     int& steps = at(world.still_steps, b);
-    steps = still && !driven_on ? steps + 1 : 0;
+    steps = driven_on ? 0 : steps + 1;
   }
 }
 

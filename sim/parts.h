@@ -9,11 +9,10 @@
 #include "base/at.h"
 #include "sim/contact.h"
 #include "sim/scene.h"
+#include "sim/world.h"
 
 namespace pinchlab {
 
-struct Pace;
-struct World;
 struct Workspace;
 
 struct Part {
@@ -25,17 +24,18 @@ struct Part {
   double lightest = infinity;                // kg, of the bodies that can do more than turn
   bool can_move = false;                     // a body of it may change gaps: touch.h
   bool creeps = false;                       // a cable of it does
-  bool may_slide = false;                    // a cable of it touches a body of finite friction
+  bool may_slide = false;                    // a cable of it touches a body of finite friction,
+  bool may_brake = false;                    // of some friction
   bool has_mass = false;                     // a cable of it has, or is a piece between nodes
   bool has_sleeves = false;                  // a cable with mass that may slip on bodies
   bool asleep = false;                       // at rest for long enough: nothing of it changes
   bool dormant = false;                      // pieces of cable that are part of others
   bool kept = false;                         // asleep, and was so in the step before
   bool waits = false;                        // by list_parts: for others to come to its time
-  bool can_slip = false;                     // a contact of it presses a cable that may slip there
-  bool slides = false;                       // by solve_parts: cable may slide over bodies
-  bool slid = false;                         // a contact of it did when the interval began; one may
-  bool may_turn = false;                     // come to a corner: both by note_sliding
+  bool can_slip = false;  // contacts may press cables of it, which may slip there
+  bool slides = false;    // by solve_parts: cable may slide over bodies
+  bool slid = false;      // a contact of it did when the interval began; one may
+  bool may_turn = false;  // come to a corner: both by note_sliding
 };
 
 inline bool has_contacts(const Part& part) {
@@ -45,6 +45,11 @@ inline bool has_contacts(const Part& part) {
 /// Whether cable of the part can slide over bodies, over those of finite friction or in pinches.
 inline bool can_slide(const Part& part) {
   return part.may_slide || part.can_slip;
+}
+
+/// Whether cable that slides over bodies may come to rest on them by friction.
+inline bool may_come_to_rest(const Part& part) {
+  return part.may_brake && can_slide(part);
 }
 
 /// Whether nothing of it changes at present.
@@ -82,12 +87,13 @@ struct Parts {
   std::vector<Joined> structure;  // what the parts were found for: contacts,
   int changes = -1;               // and CableState::changes of all cables
   bool divided = true;      // anew, for the contacts that there are: they may have other places
+  bool changed = true;      // anew, or others are asleep, since list_parts
   std::vector<int> root;    // of each body's tree while parts are found
   std::vector<char> taken;  // systems that go on with their parts, while parts are found
 };
 
 inline std::span<const int> slice(const std::vector<int>& all, int begin, int end) {
-  return std::span(all).subspan(index(begin), index(end - begin));
+  return {all.data() + begin, index(end - begin)};
 }
 inline std::span<const int> bodies_of(const Parts& parts, const Part& part) {
   return slice(parts.bodies, part.bodies_begin, part.bodies_end);
@@ -111,7 +117,11 @@ void find_parts(const World& world, Workspace& work);
 void find_parts(const World& world, bool contacts_stand, Parts& parts, Parts& before);
 
 /// That of a part's bodies and cables, of which it has one at least.
-Pace pace_of(const World& world, const Parts& parts, const Part& part);
+inline const Pace& pace_of(const World& world, const Parts& parts, const Part& part) {
+  const bool has_bodies = part.bodies_begin != part.bodies_end;
+  return has_bodies ? at(world.pace, at(parts.bodies, part.bodies_begin))
+                    : world.pace[world.bodies.size() + index(at(parts.cables, part.cables_begin))];
+}
 void set_pace(World& world, const Parts& parts, const Part& part, const Pace& pace);
 
 /// Gives what has come to be one part one pace; it was in the parts `before`. Velocities of what

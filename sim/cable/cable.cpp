@@ -413,4 +413,10 @@ bool slides_somewhere(const World& world, const CableState& cable) {
   });
 }
 
+bool rubs_somewhere(const World& world, const CableState& cable) {
+  return std::any_of(cable.links.begin(), cable.links.end(), [&world](const Link& link) {
+    return link.orientation != 0 && at(world.bodies, link.body).cable_friction > 0.0;
+  });
+}
+
 }  // namespace pinchlab

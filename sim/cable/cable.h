@@ -236,6 +236,9 @@ void update_wraps_and_rest_lengths(const World& world, CableState& cable);
 /// Whether the cable touches a body that it may slide over.
 bool slides_somewhere(const World& world, const CableState& cable);
 
+/// Whether it touches a body of some friction.
+bool rubs_somewhere(const World& world, const CableState& cable);
+
 /// Whether it has mass, and may slide over a link's body.
 inline bool slides_with_mass(const World& world, const CableState& cable, const Link& link) {
   return cable.density > 0.0 && at(world.bodies, link.body).cable_friction < infinity;

@@ -45,7 +45,7 @@ void detect_present(const Scene& scene, World& world, Workspace& work, bool pair
   bring_together(scene, world, work);
   find_what_meets(scene, world, work, times);
   if (work.parts.divided) share_paces(work.parts_before, work.parts, world);
-  list_parts(work.parts, work.neighbourhoods);
+  if (work.parts.changed) list_parts(work.parts, work.neighbourhoods);
 }
 
 /// Forces of an instant at the positions' time.
@@ -102,10 +102,13 @@ bool has_changed(const World& world, const Parts& parts, const Part& part, int b
 bool settle_end(const Scene& scene, World& world, Workspace& work, std::span<const int> parts,
                 int changes) {
   const Neighbourhoods& near = work.neighbourhoods;
+  const bool divided = !near.of_body.empty();
   bool anew = false;
+  Neighbourhood own;
   for (const int p : parts) {
     Part& part = at(work.parts.list, p);
-    const Neighbourhood course = course_of(near, work.parts, part);
+    if (divided) own = course_of(near, work.parts, part);
+    const Neighbourhood& course = divided ? own : near.list.front();
     const bool violated = course.violated || has_changed(world, work.parts, part, changes) ||
                           is_squeezed(world, work.parts, part);
     if (!violated && !course.happened) continue;
@@ -179,19 +182,22 @@ StepStatus fail_by_changes(World& world) {
   return StepStatus::failed;
 }
 
-/// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was; `met`:
-/// nothing happened in it, and lengths and gaps are exact. The part's pace.
-Pace note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
+/// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was, and its
+/// pace; `met`: nothing happened in it, and lengths and gaps are exact.
+void note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
                double length, bool met) {
   const Pace before = pace_of(world, work.parts, part);
-  if (!met || !trial.settled) return {.lag = 0.5 * length};
-  const double allowed = share_of_error * world.configuration.error;
-  Pace after = pace_after(before, {length, trial.foreseen, trial.local_error, allowed});
-  const int known = after.intervals - 1;
-  const bool curved = known > 0 && before.curved;
-  if (known < 0 || (!curved && !trial.curves)) return after;
-  after.curved = note_curvatures(at(work.systems, part.system), length, known, curved, world);
-  return after;
+  Pace after{.lag = 0.5 * length};
+  if (met && trial.settled) {
+    const double allowed = share_of_error * world.configuration.error;
+    after = pace_after(before, {length, trial.foreseen, trial.local_error, allowed});
+    const int known = after.intervals - 1;
+    const bool curved = known > 0 && before.curved;
+    if (curved || (known >= 0 && trial.curves)) {
+      after.curved = note_curvatures(at(work.systems, part.system), length, known, curved, world);
+    }
+  }
+  if (after != before) set_pace(world, work.parts, part, after);
 }
 
 /// Whether forces jump by these, and nothing meets or comes off.
@@ -211,39 +217,26 @@ Movers movers_of(const Neighbourhoods& near, int n) {
   return {parts_of(near, n), course.crept, course.jumps < most_jumps};
 }
 
-/// An interval of neighbourhood `n` is done, of `length` (s); `met` as for shorten_interval.
-void finish_interval(const Scene& scene, World& world, Workspace& work, int n, double length,
-                     bool met) {
-  Neighbourhood& course = at(work.neighbourhoods.list, n);
-  const std::span<const int> parts = parts_of(work.neighbourhoods, n);
-  Diagnostics& d = world.diagnostics;
-  bool balances = false;  // stretches: no time that round-off leaves of a step is an interval
-  for (const int p : parts) {
-    const Part& part = at(work.parts.list, p);
-    balances = balances || !at(work.systems, part.system).elastic_ends.empty();
-    for (const int c : cables_of(work.parts, part)) {
-      if (!part.creeps) break;
-      lay_down(world, at(world.cables, c), length);
-    }
-    const bool even = met && course.located && work.events.empty();
-    set_pace(world, work.parts, part,
-             note_ways(world, work, part, at(work.trials, p), length, even));
+/// Whether the velocities of a part's bodies are, by their sum, which zero times is zero then.
+bool is_finite(const World& world, const Parts& parts, const Part& part) {
+  double sum = 0.0;
+  for (const int b : bodies_of(parts, part)) {
+    sum += at(world.velocity, b).sum() + at(world.angular_velocity, b);
   }
-  course.time = work.start.time + length;
-  const double left = course.left - length, rounding = 1e-12 * world.step_length;  // s
-  course.left = left > (balances ? rounding : 0.0) ? left : 0.0;
-  course.moved = true;
-  course.happened = !work.events.empty();
-  course.violated = !met || work.trial.violated;
-  if (!met) ++course.events;
-  if (!course.happened) return;
+  return 0.0 * sum == 0.0;
+}
+
+/// What happens at the end of neighbourhood `n`'s interval.
+void change_at_end(const Scene& scene, World& world, Workspace& work, int n) {
+  Neighbourhoods& near = work.neighbourhoods;
+  Neighbourhood& course = at(near.list, n);
   ++(only_jump(work.events) ? course.jumps : course.events);
-  ++d.events;
+  ++world.diagnostics.events;
   // What crosses events leaves nodes where rims should have had them: spans next to nothing long,
   // whose turning has no bound.
-  if (course.located) catch_up(scene, world, parts, course.time, work);
+  if (course.located) catch_up(scene, world, parts_of(near, n), course.time, work);
   change_courses(world, work);
-  if (work.neighbourhoods.divided) find_pairs_of_interval(scene, world, work);
+  if (near.divided) find_pairs_of_interval(scene, world, work);
 }
 
 /// Kinetic energy (J) of these at the time of their positions before an interval of `length` (s).
@@ -254,7 +247,6 @@ double kinetic_energy(const World& world, const Workspace& work, std::span<const
     for (const int body : bodies_of(work.parts, at(work.parts.list, p))) {
       energy += kinetic_energy(world, work.before, length, body);
     }
-    if (work.before.sleeves.empty()) continue;
     for (const int c : cables_of(work.parts, at(work.parts.list, p))) {
       energy += kinetic_energy_of_sleeves(world, work.before, length, c);
     }
@@ -262,13 +254,35 @@ double kinetic_energy(const World& world, const Workspace& work, std::span<const
   return energy;
 }
 
-/// Whether their bodies' velocities are.
-bool are_finite(const World& world, const Parts& all, std::span<const int> parts) {
-  double sum = 0.0;
-  for (const int p : parts) {
-    for (const int b : bodies_of(all, at(all.list, p))) sum += zero_if_finite(world, b);
+/// An interval of neighbourhood `n` is done, of `length` (s), the `first` of the step or not; `met`
+/// as for shorten_interval. Whether all velocities are finite.
+bool finish_interval(const Scene& scene, World& world, Workspace& work, int n, double length,
+                     bool met, bool first) {
+  const std::span<const int> parts = parts_of(work.neighbourhoods, n);
+  if (first && world.configuration.diagnostics) {
+    world.diagnostics.energy += kinetic_energy(world, work, parts, length);
   }
-  return sum == 0.0;
+  Neighbourhood& course = at(work.neighbourhoods.list, n);
+  const bool even = met && course.located && work.events.empty();
+  bool balances = false;  // stretches: no time that round-off leaves of a step is an interval
+  for (const int p : parts) {
+    const Part& part = at(work.parts.list, p);
+    if (!is_finite(world, work.parts, part) && !check_finite(scene, world)) return false;
+    balances = balances || !at(work.systems, part.system).elastic_ends.empty();
+    if (part.creeps) {
+      for (const int c : cables_of(work.parts, part)) lay_down(world, at(world.cables, c), length);
+    }
+    note_ways(world, work, part, at(work.trials, p), length, even);
+  }
+  course.time = work.start.time + length;
+  const double left = course.left - length, rounding = 1e-12 * world.step_length;  // s
+  course.left = left > (balances ? rounding : 0.0) ? left : 0.0;
+  course.moved = true;
+  course.happened = !work.events.empty();
+  course.violated = !met || work.trial.violated;
+  if (!met) ++course.events;
+  if (course.happened) change_at_end(scene, world, work, n);
+  return true;
 }
 
 void set_waiting(Parts& parts, std::span<const int> of, bool waits) {
@@ -294,22 +308,8 @@ double shorten(const Scene& scene, World& world, Workspace& work, Movers& movers
   return shorter;
 }
 
-/// An interval of neighbourhood `n` is done, the `first` of the step or not; as finish_interval.
-/// Whether all velocities are finite.
-bool end_interval(const Scene& scene, World& world, Workspace& work, int n, double length, bool met,
-                  bool first) {
-  const std::span<const int> parts = parts_of(work.neighbourhoods, n);
-  if (!are_finite(world, work.parts, parts)) return check_finite(scene, world);
-  if (first && world.configuration.diagnostics) {
-    world.diagnostics.energy += kinetic_energy(world, work, parts, length);
-  }
-  finish_interval(scene, world, work, n, length, met);
-  return true;
-}
-
-/// Moves a neighbourhood by an interval, to its next event or to the end of the step; whether all
-/// velocities are finite. With `may_divide` its parts are
-/// divided first where that is not the whole step.
+/// Moves a neighbourhood by an interval, to its next event or to the end of the step; where that is
+/// not the whole step, and `may_divide`, its parts are divided first. Whether speeds are finite.
 bool move(const Scene& scene, World& world, Workspace& work, int n, const Round& round,
           Stopwatch& watch) {
   Neighbourhoods& near = work.neighbourhoods;
@@ -333,7 +333,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, const Round&
     if (round.may_divide && divide(scene, world, work)) return move_each(scene, world, work, watch);
     length = shorten(scene, world, work, movers, course, length, met, watch);
   }
-  return end_interval(scene, world, work, n, length, met, round.first);
+  return finish_interval(scene, world, work, n, length, met, round.first);
 }
 
 /// Moves every neighbourhood that has not come to the end of the step by an interval, while all
@@ -382,7 +382,7 @@ bool move_each(const Scene& scene, World& world, Workspace& work, Stopwatch& wat
     if (!events.empty() || !is_sound(world, work.trial, length)) {
       length = shorten(scene, world, work, movers, course, length, met, watch);
     }
-    if (!end_interval(scene, world, work, n, length, met, true)) return false;
+    if (!finish_interval(scene, world, work, n, length, met, true)) return false;
     set_waiting(work.parts, movers.parts, true);
   }
   return true;

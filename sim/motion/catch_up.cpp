@@ -55,6 +55,7 @@ void catch_up(const Scene& scene, World& world, std::span<const int> parts, doub
 void bring_together(const Scene& scene, World& world, Workspace& work) {
   Neighbourhoods& near = work.neighbourhoods;
   for (int n = 0; index(n) < near.list.size(); ++n) {
+    if (parts_of(near, n).size() < 2) continue;
     // Those that catch up may have become unlike others, and faster.
     for (find_unlike(scene, world, work, n); !near.unlike.empty();
          find_unlike(scene, world, work, n)) {

@@ -37,11 +37,11 @@ double wave_on(const World& world, const Parts& parts, const Part& part) {
 }
 
 void add(const IntervalTrial& one, IntervalTrial& all) {
-  all.met = all.met && one.met;
-  all.settled = all.settled && one.settled;
-  all.froze = all.froze || one.froze;
-  all.violated = all.violated || one.violated;
-  all.contradicts = all.contradicts || one.contradicts;
+  all.met &= one.met;
+  all.settled &= one.settled;
+  all.froze |= one.froze;
+  all.violated |= one.violated;
+  all.contradicts |= one.contradicts;
   all.missed = std::max(all.missed, one.missed);
   all.excess = std::max(all.excess, one.excess);
   all.local_error = std::max(all.local_error, one.local_error);
@@ -250,46 +250,59 @@ void go_back(World& world, Workspace& work, std::span<const int> parts) {
   for (const int p : parts) put_back(world, work, at(work.parts.list, p));
 }
 
-void begin_interval(const World& world, Workspace& work, const Movers& movers, double time) {
+namespace {
+
+/// Notes where the links of a part's cables are that can slide, and that others cannot.
+void note_links(const World& world, Workspace& work, const Part& part) {
   Start& start = work.start;
-  start.time = time;
-  start.fallbacks = world.diagnostics.fallbacks;
-  start.material.clear();
-  start.slip.clear();
-  work.events.clear();
-  if (!work.neighbourhoods.divided) work.first_link.assign(world.cables.size(), -1);
-  start.contact_slip.resize(world.contacts.size());
-  start.touching.resize(world.contacts.size());
-  for (const int p : movers.parts) {
-    Part& part = at(work.parts.list, p);
-    note_sliding(world, part, work);
-    const bool slides = can_slide(part);
-    for (const int c : cables_of(work.parts, part)) {
-      at(work.first_link, c) = slides ? static_cast<int>(start.material.size()) : -1;
-      if (!slides) continue;
-      for (const Link& link : at(world.cables, c).links) {
-        start.material.push_back(link.material);
-        start.slip.push_back(link.slip_speed);
-      }
+  const bool slides = can_slide(part);
+  for (const int c : cables_of(work.parts, part)) {
+    at(work.first_link, c) = slides ? static_cast<int>(start.material.size()) : -1;
+    if (!slides) continue;
+    for (const Link& link : at(world.cables, c).links) {
+      start.material.push_back(link.material);
+      start.slip.push_back(link.slip_speed);
     }
   }
-  if (!work.neighbourhoods.divided) {
-    start.position = world.position;
-    start.velocity = world.velocity;
-    start.angle = world.angle;
-    start.angular_velocity = world.angular_velocity;
-    return;
-  }
+}
+
+/// Notes where the bodies of a part are.
+void note_bodies(const World& world, Workspace& work, const Part& part) {
+  Start& start = work.start;
   const auto note = [&](int body) {
     at(start.position, body) = at(world.position, body);
     at(start.velocity, body) = at(world.velocity, body);
     at(start.angle, body) = at(world.angle, body);
     at(start.angular_velocity, body) = at(world.angular_velocity, body);
   };
+  for (const int body : bodies_of(work.parts, part)) note(body);
+  for (const int shape : carried_of(work.parts, part)) note(shape);
+}
+
+}  // namespace
+
+void begin_interval(const World& world, Workspace& work, const Movers& movers, double time) {
+  Start& start = work.start;
+  const bool all = !work.neighbourhoods.divided;
+  start.time = time;
+  start.fallbacks = world.diagnostics.fallbacks;
+  start.material.clear();
+  start.slip.clear();
+  work.events.clear();
+  start.contact_slip.resize(world.contacts.size());
+  start.touching.resize(world.contacts.size());
+  if (all) {
+    work.first_link.assign(world.cables.size(), -1);
+    start.position = world.position;
+    start.velocity = world.velocity;
+    start.angle = world.angle;
+    start.angular_velocity = world.angular_velocity;
+  }
   for (const int p : movers.parts) {
-    const Part& part = at(work.parts.list, p);
-    for (const int body : bodies_of(work.parts, part)) note(body);
-    for (const int shape : carried_of(work.parts, part)) note(shape);
+    Part& part = at(work.parts.list, p);
+    if (has_contacts(part)) note_sliding(world, part, work);
+    if (!all || can_slide(part)) note_links(world, work, part);
+    if (!all) note_bodies(world, work, part);
   }
 }
 

@@ -223,7 +223,7 @@ void find_halts(const Scene& scene, const World& world, Workspace& work, int num
   if (!tried.s.motors.empty()) {
     tried.find_motors_that_catch_up(scene, bodies_of(work.parts, part));
   }
-  if (!can_slide(part)) return;
+  if (!may_come_to_rest(part)) return;
   for (const int c : cables_of(work.parts, part)) tried.find_links_that_halt(c);
 }
 
@@ -268,7 +268,7 @@ void find_jumps(const Scene& scene, const World& world, Workspace& work, int num
                 double length) {
   const Part& part = at(work.parts.list, number);
   const PartSystem& s = at(work.systems, part.system);
-  if (can_slide(part) || !s.motors.empty() || part.slid) {
+  if (may_come_to_rest(part) || !s.motors.empty() || part.slid) {
     find_halts(scene, world, work, number, length);
   }
   if (s.has_tables) find_corners_of_tables(scene, world, work, number, work.start.time + length);

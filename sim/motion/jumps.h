@@ -28,7 +28,7 @@ void note_sliding(const World& world, Part& part, Workspace& work);
 
 /// Whether anything of a part can jump at all.
 inline bool may_jump(const Part& part, const PartSystem& s) {
-  return can_slide(part) || part.slid || part.may_turn || !s.motors.empty() || s.has_tables;
+  return may_come_to_rest(part) || part.slid || part.may_turn || !s.motors.empty() || s.has_tables;
 }
 
 /// What comes to rest or turns in a part's interval, which has just been tried with that `length`

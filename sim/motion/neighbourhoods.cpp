@@ -235,9 +235,11 @@ int number_of(const Neighbourhoods& near, const Parts& parts, const Part& part) 
 void put_together(const World& world, Parts& parts, Neighbourhoods& near) {
   near.of_body.clear();
   near.of_cable.clear();
+  const bool stands = near.list.size() == 1 && !near.divided && !parts.changed;
   near.divided = near.crossed = false;
   near.list.assign(1, {world.step_length, world.time()});
-  list_parts(parts, near);
+  if (!stands) list_parts(parts, near);
+  near.moving = near.parts.items;
 }
 
 bool divide(const Scene& scene, const World& world, Workspace& work) {
@@ -274,8 +276,8 @@ void find_unlike(const Scene& scene, const World& world, Workspace& work, int nu
   near.unlike.clear();
   const std::span<const int> own = parts_of(near, number);
   const auto lag_of = [&](int p) { return pace_of(world, work.parts, at(work.parts.list, p)).lag; };
-  const auto differs = [&](int p) { return lag_of(p) != lag_of(own.front()); };
-  if (std::none_of(own.begin(), own.end(), differs)) return;
+  const double lag = lag_of(own.front());
+  if (std::ranges::all_of(own.subspan(1), [&](int p) { return lag_of(p) == lag; })) return;
   join_by_pairs(scene, world, work, near);
   // Of each tree its first part, or that its parts differ.
   constexpr int differ = -2;
@@ -299,6 +301,7 @@ void list_events(const Workspace& work, Neighbourhoods& near) {
 }
 
 void list_parts(Parts& parts, Neighbourhoods& near) {
+  parts.changed = false;
   if (near.list.size() == 1) {
     near.parts.items.clear();
     for (int p = 0; index(p) < parts.list.size(); ++p) {
@@ -321,12 +324,7 @@ void list_parts(Parts& parts, Neighbourhoods& near) {
   near.moving = near.parts.items;
 }
 
-std::span<const int> parts_of(const Neighbourhoods& near, int number) {
-  return slice(near.parts.items, at(near.parts.begin, number), at(near.parts.begin, number + 1));
-}
-
 Neighbourhood course_of(const Neighbourhoods& near, const Parts& parts, const Part& part) {
-  if (near.of_body.empty()) return near.list.front();
   Neighbourhood all;
   const auto add = [&all, &near](int number) {
     const Neighbourhood& one = at(near.list, number);

@@ -13,13 +13,12 @@
 #include <span>
 #include <vector>
 
+#include "sim/parts.h"
 #include "sim/solve/terms.h"
 #include "sim/world.h"
 
 namespace pinchlab {
 
-struct Part;
-struct Parts;
 struct Workspace;
 
 struct Neighbourhood {
@@ -73,7 +72,7 @@ bool divide(const Scene& scene, const World& world, Workspace& work);
 void list_events(const Workspace& work, Neighbourhoods& near);
 
 /// Lists the awake parts by neighbourhood anew. Of a divided step those wait whose neighbourhood
-/// has not moved in this round.
+/// has not moved in this round. They stand until Parts::changed.
 void list_parts(Parts& parts, Neighbourhoods& near);
 
 /// Keeps what a step starts from that has been divided after its first interval was tried:
@@ -83,18 +82,21 @@ void keep_start(const World& world, Workspace& work);
 /// Goes back there, with all parts together.
 void take_back(World& world, Workspace& work);
 
-/// Finds the parts of a neighbourhood that are so near to others, whose velocities are of another
-/// time, that they may come to be one part, by the pairs that there are: Neighbourhoods::unlike.
+/// Finds the parts of a neighbourhood, which has one at least, that are so near to others, whose
+/// velocities are of another time, that they may come to be one part, by the pairs that there are:
+/// Neighbourhoods::unlike.
 void find_unlike(const Scene& scene, const World& world, Workspace& work, int number);
 
 /// The neighbourhood that a part is in.
 int number_of(const Neighbourhoods& near, const Parts& parts, const Part& part);
 
 /// The awake parts of one.
-std::span<const int> parts_of(const Neighbourhoods& near, int number);
+inline std::span<const int> parts_of(const Neighbourhoods& near, int number) {
+  return slice(near.parts.items, at(near.parts.begin, number), at(near.parts.begin, number + 1));
+}
 
-/// What has become of a part in this round: that of its neighbourhood, or of all in which it has
-/// bodies or cables, now that they have come to one time.
+/// What has become of a part in this round of a step that has been divided: that of its
+/// neighbourhood, or of all in which it has bodies or cables, now that they have come to one time.
 Neighbourhood course_of(const Neighbourhoods& near, const Parts& parts, const Part& part);
 
 }  // namespace pinchlab
