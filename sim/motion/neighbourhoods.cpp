@@ -313,14 +313,15 @@ void list_parts(Parts& parts, Neighbourhoods& near) {
     near.moving = near.parts.items;
     return;
   }
+  std::vector<int>& number = near.over;
+  number.clear();
   for (Part& part : parts.list) {
-    part.waits = near.divided && !at(near.list, number_of(near, parts, part)).moved;
+    const int n = number_of(near, parts, part);
+    part.waits = near.divided && !at(near.list, n).moved;
+    number.push_back(part.asleep ? -1 : n);
   }
-  const auto number = [&](int p) {
-    const Part& part = at(parts.list, p);
-    return part.asleep ? -1 : number_of(near, parts, part);
-  };
-  list_by_number(near.list.size(), parts.list.size(), number, near.parts);
+  list_by_number(
+      near.list.size(), number.size(), [&](int p) { return at(number, p); }, near.parts);
   near.moving = near.parts.items;
 }
 

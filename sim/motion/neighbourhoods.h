@@ -49,7 +49,7 @@ struct Neighbourhoods {
   bool crossed = false;                // two have come together after all
   Lists<int> events;                   // of Workspace::events, of each; by list_events
   std::vector<int> unlike;             // parts; by find_unlike
-  // Storage of divide() and find_unlike().
+  // Storage of divide(), find_unlike() and list_parts().
   std::vector<int> root, over;  // of each part's tree; a part whose cable runs over the body, or -1
   std::vector<Reach> reaches;   // by where they begin along x
 
