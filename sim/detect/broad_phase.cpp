@@ -213,11 +213,10 @@ void list_span_pairs(const World& world, BroadPhase& broad) {
   broad.changes = world.changes;
 }
 
-/// Whether all spans of a cable are where their boxes allow for. Where a span was a step ago was
-/// checked then.
+/// Whether all spans of a cable that may run over bodies are where their boxes allow for. Where a
+/// span was a step ago was checked then.
 bool spans_in_boxes(const World& world, const BroadPhase& broad, std::size_t c) {
   const CableState& cable = world.cables[c];
-  if (is_passed(cable)) return true;
   auto box = index(broad.of_cable[c].first_box);
   for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s, ++box) {
     const Segment& segment = cable.segments[s];
@@ -231,7 +230,8 @@ bool spans_in_boxes(const World& world, const BroadPhase& broad, std::size_t c) 
 
 bool all_spans_in_boxes(const World& world, const Parts& parts, const BroadPhase& broad) {
   for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    if (!is_idle(parts, c) && !spans_in_boxes(world, broad, c)) return false;
+    if (is_passed(world.cables[c]) || is_idle(parts, c)) continue;
+    if (!spans_in_boxes(world, broad, c)) return false;
   }
   return true;
 }
@@ -454,7 +454,9 @@ void find_moving_pairs(const Scene& scene, const World& world, Workspace& work) 
     const Part& part = at(parts.list, p);
     for (const int c : cables_of(parts, part)) {
       const SpanList& list = at(broad.of_cable, c);
-      if (list.changes != at(world.cables, c).changes || !spans_in_boxes(world, broad, index(c))) {
+      const CableState& cable = at(world.cables, c);
+      if (list.changes != cable.changes ||
+          (!is_passed(cable) && !spans_in_boxes(world, broad, index(c)))) {
         list_spans_of(world, index(c), broad);
         broad.patched = true;
       }
