@@ -25,14 +25,14 @@ struct Release {
   int cable, body, orientation;
 };
 
-/// What may happen within an interval, and then ends it: events.h. The last two are jumps.h's.
-enum class EventKind : std::int8_t { catches, link_gone, hit, halts, turns };
+/// What may happen within an interval, and then ends it: events.h. The last three are jumps.h's.
+enum class EventKind : std::int8_t { catches, link_gone, hit, halts, turns, lets_go };
 
 struct Happening {
   EventKind kind;
-  int part = -1;        // catches, halts, turns
+  int part = -1;        // catches, halts, turns, lets_go
   int row = -1;         // catches: of a contact that closes, or a segment that is pulled tight;
-                        // halts, turns: a contact, if it is one
+                        // halts, turns, lets_go: a contact, if it is one
   int cable = -1;       // link_gone, hit; halts, of one
   int item = -1;        // link; or span; of a group of rows that is caught or let go, how many
   int body = -1;        // hit; halts, turns: whose motor it is, if it is one
@@ -55,7 +55,8 @@ struct Start {
   std::vector<double> material, slip;  // of the links of cables that can slide, cable after cable:
                                        // m, and m/s
   std::vector<Slip> contact_slip;      // of World::contacts, where they are of what moves,
-  std::vector<char> touching;          // likewise
+  std::vector<char> touching;          // likewise,
+  std::vector<double> contact_force;   // N, likewise: of the interval before
   std::int64_t fallbacks = 0;          // Diagnostics::fallbacks
 };
 

@@ -10,6 +10,7 @@
 #include "sim/compound.h"
 #include "sim/motion/events.h"
 #include "sim/solve/contact_bodies.h"
+#include "sim/solve/foresight.h"
 #include "sim/solve/friction.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
@@ -227,6 +228,55 @@ void find_halts(const Scene& scene, const World& world, Workspace& work, int num
   for (const int c : cables_of(work.parts, part)) tried.find_links_that_halt(c);
 }
 
+/// Where what presses cable that cannot slip lets go of it: of a normal row of the whole interval,
+/// which was as long as the two before it, and a row that holds as long as it bears force. Its
+/// force now is that of the interval's start, and falls as it has done since the one before began.
+void note_letting_go(const World& world, Workspace& work, int normal, const Row& held,
+                     Happening& key, double length) {
+  constexpr double rounding = 1e-6;  // of a step: far below what the fall is known to
+  constexpr double shows = 10.0;     // reaches in a step, by what ends then
+  const PartSystem& s = at(work.systems, at(work.parts.list, key.part).system);
+  const Row& row = at(s.rows, normal);
+  const double before = at(work.start.contact_force, row.index);  // N
+  const double now = at(world.contacts, row.index).normal_force;
+  const double takes = held.diagonal * std::abs(held.impulse);  // m/s
+  if (!row.on || !(before > now) || takes * length <= shows * s.reach) return;
+  key.row = row.index;
+  key.before = length * now / (before - now);
+  key.reach = rounding * world.step_length;
+  measure(work, key, key.before - length, -key.reach);
+}
+
+/// Whether a friction row holds for as long as a contact bears force, by whatever it takes.
+bool holds(const Friction& friction) {
+  return friction.normal >= 0 && friction.bound == infinity;
+}
+
+/// What lets go, at times that the whole interval has told.
+void find_contacts_that_let_go(const World& world, Workspace& work, int number, double length) {
+  Happening key{EventKind::lets_go};
+  key.part = number;
+  for (Happening& event : work.events) {
+    if (event.kind != EventKind::lets_go || event.part != number) continue;
+    event.clearance = event.before - length;
+    event.seen = true;
+  }
+  const Part& part = at(work.parts.list, number);
+  const Pace pace = pace_of(world, work.parts, part);
+  if (pace.intervals == 0 || !is_even(pace.lag, length)) return;
+  const PartSystem& s = at(work.systems, part.system);
+  for (const Friction& friction : s.frictions) {
+    const Row& row = at(s.rows, friction.row);
+    if (!holds(friction) || row.impulse == 0.0) continue;
+    note_letting_go(world, work, friction.normal, row, key, length);
+  }
+  for (const int r : s.pressed) {
+    const Row& row = at(s.rows, r);
+    if (!row.clamped || row.presser < 0 || row.impulse >= 0.0) continue;
+    note_letting_go(world, work, row.presser, row, key, length);
+  }
+}
+
 /// Discs and corners that come to corners.
 void find_turns(const World& world, Workspace& work, int number, double length) {
   const Part& part = at(work.parts.list, number);
@@ -259,6 +309,7 @@ void note_sliding(const World& world, Part& part, Workspace& work) {
     const Contact& contact = at(world.contacts, c);
     at(slips, c) = contact.slip;
     at(touching, c) = contact.touching ? 1 : 0;
+    at(work.start.contact_force, c) = contact.normal_force;
     part.slid = part.slid || contact.slip != Slip::stick;
     part.may_turn = part.may_turn || !is_of_discs(contact);
   }
@@ -273,10 +324,12 @@ void find_jumps(const Scene& scene, const World& world, Workspace& work, int num
   }
   if (s.has_tables) find_corners_of_tables(scene, world, work, number, work.start.time + length);
   if (part.may_turn) find_turns(world, work, number, length);
+  if (holds_by_force(part, s)) find_contacts_that_let_go(world, work, number, length);
 }
 
 void end_jump(World& world, const Happening& event) {
-  if (event.body >= 0) return;  // a motor's state follows from its speed
+  if (event.body >= 0) return;                   // a motor's state follows from its speed
+  if (event.kind == EventKind::lets_go) return;  // and whether a contact bears force from its own
   if (event.kind == EventKind::turns) {
     Contact& contact = at(world.contacts, event.row);
     if (ends_beyond(contact)) contact.touching = false;

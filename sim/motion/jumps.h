@@ -9,8 +9,10 @@
 //   EventKind::turns   a motor's time table has a corner; a disc, or a rounded corner, comes on to
 //                      a corner of what it lies on, or off it, where its way begins or ceases to
 //                      bend; a sharp corner comes to one, or to a wall's end, and off its side
+//   EventKind::lets_go what presses cable that cannot slip parts from it, and friction that has no
+//                      bound, or the push of what was clamped, ends with a force that has come to 0
 //
-// Friction that begins to slide does not jump, nor does what a motor gives as it comes to its
+// Other friction that begins to slide does not jump, nor does what a motor gives as it comes to its
 // limit.
 
 #include "sim/parts.h"
@@ -26,9 +28,15 @@ struct Workspace;
 /// any does, or may come to a corner. Of a part that cannot move none bears force.
 void note_sliding(const World& world, Part& part, Workspace& work);
 
+/// Whether a contact of a part may press cable that cannot slip.
+inline bool holds_by_force(const Part& part, const PartSystem& s) {
+  return part.can_move && (!s.frictions.empty() || !s.pressed.empty());
+}
+
 /// Whether anything of a part can jump at all.
 inline bool may_jump(const Part& part, const PartSystem& s) {
-  return may_come_to_rest(part) || part.slid || part.may_turn || !s.motors.empty() || s.has_tables;
+  return may_come_to_rest(part) || part.slid || part.may_turn || !s.motors.empty() ||
+         s.has_tables || holds_by_force(part, s);
 }
 
 /// What comes to rest or turns in a part's interval, which has just been tried with that `length`

@@ -52,13 +52,11 @@ double least_curvature(const PartSystem& s, double length) {
   return s.tolerance() / length;
 }
 
-/// Whether the interval before was as long as one of `length` (s), where velocities are `lag` (s)
-/// behind now.
+}  // namespace
+
 bool is_even(double lag, double length) {
   return is_same(lag, 0.5 * length);
 }
-
-}  // namespace
 
 bool is_foreseen(const Pace& pace, double error, const TimeSpan& t) {
   if (!pace.curved || pace.intervals == 0 || !is_even(pace.lag, t.length)) return false;

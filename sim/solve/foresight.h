@@ -16,6 +16,10 @@
 
 namespace pinchlab {
 
+/// Whether the interval before was as long as one of `length` (s), where velocities are `lag` (s)
+/// behind now.
+bool is_even(double lag, double length);
+
 /// Whether an interval of a part follows on others of its length whose curvatures tell its own.
 /// Those of straight ways are nothing to tell by. Where steps are divided by their `error` (m; 0:
 /// they are not), which only the first correction tells, some in between are not foreseen.

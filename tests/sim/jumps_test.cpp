@@ -305,5 +305,52 @@ TEST(Jumps, WhatABlowLiftsComesDownAtATimeOfItsOwn) {
   }
 }
 
+// A tall box slides, trips over its leading corner, and that slides off the table meanwhile: what
+// has borne the box is gone past the table's end, but not before.
+TEST(Jumps, ABoxThatTripsSlidesOffATable) {
+  const auto after = [](int steps_per_frame) {
+    Scene scene;
+    scene.walls.push_back({{-2.0, 0.0}, {0.0, 0.0}, 0.5, 0.0});
+    Body box = body("box", BodyKind::free, -0.3, 0.12, 1.0, 2.4);
+    make_polygon(box, build::box_corners(0.094, 0.24), 0.0);
+    box.velocity = {2.63, 0.0};
+    scene.bodies.push_back(box);
+    return moved(scene, steps_per_frame, 0.35);
+  };
+  const Vec2 fine = after(1024).position[0];
+  for (const int n : {4, 16, 64}) {
+    EXPECT_LE((after(n).position[0] - fine).norm(), 1e-3 / (n * n)) << n;
+  }
+}
+
+// A roller that presses a cable without slip on to a drum rolls on the circle of radius D = R + r +
+// 2 w, by its own radius to the cable's centre line, rho = r + w: with kappa = I / (m rho^2), speed
+// v at the angle phi from the top, and v_0 and phi_0 first,
+//     (1 + kappa) (v^2 - v_0^2) / 2 = g D (cos phi_0 - cos phi),
+// and it leaves where v^2 = g D cos phi. What holds it along the cable until then is no friction
+// that fades with the force that presses.
+TEST(Jumps, ARollerLeavesADrumThatItRollsOn) {
+  const double R = 0.3, r = 0.2, w = build::cable_half_width, m = 0.5, speed = 0.5, angle = 0.2;
+  Scene scene;
+  scene.bodies.push_back(body("drum", BodyKind::fixed, 0.0, 0.0, R));
+  const double D = R + r + 2.0 * w, rho = r + w;
+  scene.bodies.push_back(
+      body("roller", BodyKind::free, D * std::sin(angle), D * std::cos(angle), r, m));
+  Body& roller = scene.bodies[1];
+  roller.velocity = speed * Vec2(std::cos(angle), -std::sin(angle));
+  roller.angular_velocity = -speed / rho;
+  scene.cables.push_back(cable(at(-R - w, -1.0), {{0, -1, 0}}, at(R + w, -1.0)));
+  const double kappa = inertia_of(roller) / (m * rho * rho);
+  const double cosine =
+      (std::cos(angle) + (1.0 + kappa) * speed * speed / (2.0 * g * D)) * 2.0 / (3.0 + kappa);
+  const double turning = -std::sqrt(g * D * cosine) / rho;
+  const Vec2 fine = moved(scene, 512, 0.45).position[1];
+  for (const int n : {4, 16, 64}) {
+    const World world = moved(scene, n, 0.45);
+    EXPECT_NEAR(world.angular_velocity[1], turning, 0.01 / (n * n)) << n;
+    EXPECT_LE((world.position[1] - fine).norm(), 5e-4 / (n * n)) << n;
+  }
+}
+
 }  // namespace
 }  // namespace pinchlab::testing
