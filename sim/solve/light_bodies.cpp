@@ -71,50 +71,46 @@ bool note_end(const World& world, const Parts& parts, const Segment& segment, co
   return true;
 }
 
-/// Along unit vector v: the share of the own mass in max(m, h^2 k), and with it the free speed.
-/// The line's speed is the mean of its other ends' along v, each weighted by what its span does
+/// Gives the body along unit vector v what the spans do there for a mass, where that is more than
+/// its own, m = 1 / (v.W v) by its mobility W; with it the free velocity. Added mass a makes of W
+/// and of velocity V, by a force a (u - v.V) along v,
+///     W' = W - (W v)(W v)^T a / (1 + a / m),   V' = V + W' a (u - v.V) v.
+/// The line's speed u is the mean of its other ends' along v, each weighted by what its span does
 /// there: nearly parallel spans would else ask for any speed across v that fits their small angle.
-double steady(double own, const SpanMass& span, const Vec2& v, Vec2& velocity) {
+void steady(const SpanMass& span, const Vec2& v, Eigen::Matrix3d& mobility,
+            Eigen::Vector3d& velocity) {
   const double mass = v.dot(span.mass * v);
-  if (mass <= own) return 1.0;
+  const Eigen::Vector3d along(v.x(), v.y(), 0.0), moves = mobility * along;
+  const double yielding = along.dot(moves);  // 1/kg
+  if (mass * yielding <= 1.0) return;
   const double x = v.dot(span.momentum_x * v), y = v.dot(span.momentum_y * v);
-  const double share = own / mass, line = (x * v.x() + y * v.y()) / mass;
-  velocity += (1.0 - share) * (line - v.dot(velocity)) * v;
-  return share;
+  const double line = (x * v.x() + y * v.y()) / mass;
+  const double taken = (1.0 - 1.0 / (mass * yielding)) / yielding;  // kg: a / (1 + a / m)
+  velocity += taken * (line - along.dot(velocity)) * moves;
+  mobility -= taken * moves * moves.transpose();
 }
 
-void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility, Vec2& velocity) {
-  const double own = mass_of(body, mobility);
-  if (span.mass.trace() <= own) return;
+void steady(const BodyProperties& body, SpanMass& span, Mobility& mobility,
+            Eigen::Vector3d& velocity) {
+  if (span.mass.trace() * std::max(mobility.xx, mobility.yy) <= 1.0) return;
   span.steadied = true;
   span.own = mobility;
   span.velocity = velocity;
+  Eigen::Matrix3d m = matrix_of(mobility);
   if (body.kind == BodyKind::rail) {
-    const double share = steady(own, span, body.rail_axis.normalized(), velocity);
-    mobility.xx *= share;
-    mobility.xy *= share;
-    mobility.yy *= share;
-    mobility.xz = mobility.yz = 0.0;
-    return;
+    steady(span, body.rail_axis.normalized(), m, velocity);
+  } else {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
+    principal.computeDirect(span.mass);
+    for (int i = 0; i < 2; ++i) steady(span, principal.eigenvectors().col(i), m, velocity);
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal;
-  principal.computeDirect(span.mass);
-  Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
-  for (int i = 0; i < 2; ++i) {
-    const Vec2 v = principal.eigenvectors().col(i);
-    inverse += mobility.xx * steady(own, span, v, velocity) * v * v.transpose();
-  }
-  mobility.xx = inverse(0, 0);
-  mobility.xy = inverse(0, 1);
-  mobility.yy = inverse(1, 1);
-  mobility.xz = mobility.yz = 0.0;
+  mobility = {m(0, 0), m(0, 1), m(1, 1), m(2, 2), m(0, 2), m(1, 2)};
 }
 
 void steady_all(const World& world, std::span<const int> bodies, PartSystem& system) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Vec2 velocity = system.free_velocity[i].head<2>();
-    steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i], velocity);
-    system.free_velocity[i].head<2>() = velocity;
+    steady(at(world.bodies, bodies[i]), system.span_masses[i], system.mobility[i],
+           system.free_velocity[i]);
     system.mobility_changed = system.mobility_changed || system.span_masses[i].steadied;
   }
 }
@@ -201,8 +197,9 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
     Eigen::Vector3d before = s.free_velocity[i];
     if (i < s.span_masses.size() && s.span_masses[i].steadied) {
       own = s.span_masses[i].own;
-      own.angular = s.mobility[i].angular;
-      before.head<2>() = s.span_masses[i].velocity;
+      const bool turns_alone = own.xz == 0.0 && own.yz == 0.0;  // as its motor has it by now
+      if (turns_alone) own.angular = s.mobility[i].angular;
+      before = s.span_masses[i].velocity;
     }
     add(masses_of(at(world.bodies, bodies[i]), own), before, s.velocity[i]);
   }
@@ -224,10 +221,8 @@ void release_light_bodies(PartSystem& system) {
   for (std::size_t i = 0; i < system.span_masses.size(); ++i) {
     SpanMass& span = system.span_masses[i];
     if (span.steadied) {
-      const double angular = system.mobility[i].angular;  // what a motor has made of it since
       system.mobility[i] = span.own;
-      system.mobility[i].angular = angular;
-      system.free_velocity[i].head<2>() = span.velocity;
+      system.free_velocity[i] = span.velocity;
       system.mobility_changed = true;
     }
     span = {};

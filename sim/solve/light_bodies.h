@@ -45,7 +45,8 @@ bool gains_by_steadying(const World& world, const Parts& parts, const Part& part
 void steady_for_repair(const World& world, const Parts& parts, const Part& part,
                        std::span<const double> impulses, PartSystem& system);
 
-/// Gives all of them their own masses and free velocities again, in the same kick.
+/// Gives all of them their own masses and free velocities again, in the same kick. What motors have
+/// made of these since is theirs to drive anew.
 void release_light_bodies(PartSystem& system);
 
 }  // namespace pinchlab

@@ -162,13 +162,14 @@ struct Friction {
 };
 
 /// What taut spans do to a body across themselves: h^2 times their stiffness, and that times either
-/// component of their other ends' velocities. By steady_light_bodies.
+/// component of their other ends' velocities. By steady_light_bodies, as its own mobility and free
+/// velocity (m/s, m/s, rad/s) where it has others then.
 struct SpanMass {
   Eigen::Matrix2d mass = Eigen::Matrix2d::Zero();                                 // kg
   Eigen::Matrix2d momentum_x = Eigen::Matrix2d::Zero(), momentum_y = momentum_x;  // kg m/s
-  bool steadied = false;  // the body's mobility is not its own, which is
+  bool steadied = false;                                                          // it has
   Mobility own;
-  Vec2 velocity = Vec2::Zero();  // m/s, and this its free velocity then
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
 
 enum class MotorState : std::int8_t {

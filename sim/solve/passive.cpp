@@ -129,8 +129,8 @@ bool solve_steadily(const Scene& scene, const World& world, Workspace& work, con
   const bool settled = solve();
   if (!steadies || !gains_by_steadying(world, work.parts, part, s)) return settled;
   if (!s.motors.empty()) s.free_velocity = s.unconstrained;
-  drive(s);
   release_light_bodies(s);
+  drive(s);
   return solve();
 }
 

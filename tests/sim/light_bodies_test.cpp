@@ -112,7 +112,7 @@ TEST(LightBodies, GainIsToldBesideARopeWhateverImpulsesCancel) {
   s.span_masses[0].own = s.mobility[0];
   s.mobility[0].yy *= 1e-12;
   s.free_velocity = s.velocity = {{0.1, 0.0, 0.2}, {2.0, -0.5, -7.0}, Eigen::Vector3d::Zero()};
-  s.span_masses[0].velocity = {0.1, 0.0};
+  s.span_masses[0].velocity = {0.1, 0.0, 0.2};
   s.rows.resize(2);
   s.bodies.resize(2);
   s.responses.resize(2);
@@ -129,6 +129,29 @@ TEST(LightBodies, GainIsToldBesideARopeWhateverImpulsesCancel) {
   EXPECT_FALSE(gains_by_steadying(world, parts, part, s));
   s.velocity[1].z() = -7.1;  // with the rope on it
   EXPECT_TRUE(gains_by_steadying(world, parts, part, s));
+}
+
+// A disc that lies on a straight taut rope, which its weight can hardly bend, rolls down it: along
+// it nothing makes the disc heavier, whatever the rope weighs. With I for its inertia and R for the
+// radius of the rope's centre line it falls by a t^2 / 2, a = g sin(slope) / (1 + I / (m R^2)).
+TEST(LightBodies, RollDownATautRopeAsDownASlope) {
+  const double r = 0.3, w = build::cable_half_width, m = 0.2, slope = 0.1, seconds = 0.5;
+  const Vec2 down(std::cos(slope), -std::sin(slope));
+  for (const double mass_per_metre : {0.0, 0.5}) {
+    Scene scene;
+    const Vec2 centre = (r + w) * Vec2(-down.y(), down.x());
+    scene.bodies.push_back(body("disc", BodyKind::free, centre.x(), centre.y(), r, m));
+    const Vec2 top = -1.0 * down, bottom = 2.0 * down;
+    scene.cables.push_back(cable(at(top.x(), top.y()), {{0, 1, 0}}, at(bottom.x(), bottom.y())));
+    scene.cables[0].mass_per_metre = mass_per_metre;
+    const double R = r + w,
+                 a = g * std::sin(slope) / (1.0 + inertia_of(scene.bodies[0]) / (m * R * R));
+    for (const int n : {1, 4, 16}) {
+      const World world = after(scene, n, seconds);
+      EXPECT_NEAR((world.position[0] - centre).dot(down), 0.5 * a * seconds * seconds, 1e-5)
+          << mass_per_metre << ", " << n;
+    }
+  }
 }
 
 }  // namespace
