@@ -41,7 +41,7 @@ struct Happening {
   bool beside = false;  // hit: the body is beside the span when the first trial ends
   double clearance =
       0.0;             // m, that was left of it at the end of the last trial; negative: too late.
-                       // Of what slides the way that it would make in a step; s, of a motor's table
+                       // Of what slides the way that it makes in a step; s: of tables, lets_go
   double reach = 0.0;  // likewise, to within which it must be met
   double before = infinity;  // likewise, that was left when the interval began, where it is known
   bool seen = false;         // in the last trial

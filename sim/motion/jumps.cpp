@@ -231,16 +231,18 @@ void find_halts(const Scene& scene, const World& world, Workspace& work, int num
 /// Where what presses cable that cannot slip lets go of it: of a normal row of the whole interval,
 /// which was as long as the two before it, and a row that holds as long as it bears force. Its
 /// force now is that of the interval's start, and falls as it has done since the one before began.
-void note_letting_go(const World& world, Workspace& work, int normal, const Row& held,
-                     Happening& key, double length) {
+void note_letting_go(const World& world, Workspace& work, int number, int normal, const Row& held,
+                     double length) {
   constexpr double rounding = 1e-6;  // of a step: far below what the fall is known to
   constexpr double shows = 10.0;     // reaches in a step, by what ends then
-  const PartSystem& s = at(work.systems, at(work.parts.list, key.part).system);
+  const PartSystem& s = at(work.systems, at(work.parts.list, number).system);
   const Row& row = at(s.rows, normal);
   const double before = at(work.start.contact_force, row.index);  // N
   const double now = at(world.contacts, row.index).normal_force;
   const double takes = held.diagonal * std::abs(held.impulse);  // m/s
   if (!row.on || !(before > now) || takes * length <= shows * s.reach) return;
+  Happening key{EventKind::lets_go};
+  key.part = number;
   key.row = row.index;
   key.before = length * now / (before - now);
   key.reach = rounding * world.step_length;
@@ -254,26 +256,24 @@ bool holds(const Friction& friction) {
 
 /// What lets go, at times that the whole interval has told.
 void find_contacts_that_let_go(const World& world, Workspace& work, int number, double length) {
-  Happening key{EventKind::lets_go};
-  key.part = number;
   for (Happening& event : work.events) {
     if (event.kind != EventKind::lets_go || event.part != number) continue;
     event.clearance = event.before - length;
     event.seen = true;
   }
   const Part& part = at(work.parts.list, number);
-  const Pace pace = pace_of(world, work.parts, part);
+  const Pace& pace = pace_of(world, work.parts, part);
   if (pace.intervals == 0 || !is_even(pace.lag, length)) return;
   const PartSystem& s = at(work.systems, part.system);
   for (const Friction& friction : s.frictions) {
     const Row& row = at(s.rows, friction.row);
     if (!holds(friction) || row.impulse == 0.0) continue;
-    note_letting_go(world, work, friction.normal, row, key, length);
+    note_letting_go(world, work, number, friction.normal, row, length);
   }
   for (const int r : s.pressed) {
     const Row& row = at(s.rows, r);
     if (!row.clamped || row.presser < 0 || row.impulse >= 0.0) continue;
-    note_letting_go(world, work, row.presser, row, key, length);
+    note_letting_go(world, work, number, row.presser, row, length);
   }
 }
 
