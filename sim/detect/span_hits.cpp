@@ -206,29 +206,77 @@ bool wraps(const World& world, const Link& other, const Circle& circle, const Li
   return end.orientation * cross(span.direction, -side) >= 0.0;
 }
 
+/// The end of a span that holds it at a corner of a polygon, and the other. Of both ends the tail,
+/// if both hold it so.
+struct CornerEnd {
+  const Link *end = nullptr, *other = nullptr;
+  bool leaves = false;  // the span does, there
+};
+
+/// That at which the body holds a span; none (null) if it does not, or by no corner of it.
+CornerEnd corner_end(const CableState& cable, std::size_t s, int body) {
+  const Link &to = cable.links[s],
+             &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
+  const auto holds = [body](const Link& link) {
+    return link.body == body && link.corner >= 0 && !link.moored;
+  };
+  if (holds(from)) return {&from, &to, true};
+  if (holds(to)) return {&to, &from, false};
+  return {};
+}
+
+/// m, by which a circle is on the inner side of the arc with which the cable goes on beyond a span,
+/// if it turns the same way there: as on the span's inner side before. Infinity where the circle is
+/// not beside that arc.
+double clearance_of_arc(const World& world, const CableState& cable, std::size_t s,
+                        const CornerEnd& corner, const Vec2& centre, double margin) {
+  const Link& other = *corner.other;
+  const bool turns = other.orientation == corner.end->orientation && !other.pinch_middle &&
+                     !other.moored && other.body != corner.end->body;
+  if (!turns) return infinity;
+  const int head = static_cast<int>(s);
+  const Segment &span = cable.segments[s],
+                &next = at(cable.segments,
+                           corner.leaves ? next_link(cable, head) : previous_link(cable, head));
+  if (next.pinched || !(next.length > 0.0)) return infinity;
+  const auto is_past = [&centre](const Segment& segment, bool leaves) {
+    return leaves ? segment.direction.dot(centre - segment.head) > 0.0
+                  : segment.direction.dot(centre - segment.tail) < 0.0;
+  };
+  if (!is_past(span, corner.leaves) || !is_past(next, !corner.leaves)) return infinity;
+  return other.radius - margin - (centre - link_centre(world, other)).norm();
+}
+
 /// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner
-/// side of the cable; likewise one that arrives, the corner before. A span whose other end has got
-/// into the polygon would meet them for ever, and meets none; nor does one that would leave the
-/// corner at once, since what holds its other end reaches beyond the side's line.
+/// side of the cable; likewise one that arrives, the corner before. It may come over the span's
+/// other end, as one that slides down another body and past the corner of that, about which the
+/// cable goes on. A span whose other end has got into the polygon would meet them for ever, and
+/// meets none; nor does one that would leave the corner at once, since what holds its other end
+/// reaches beyond the side's line.
 Hit test_next_corner(const World& world, const Workspace& work, const CableState& cable,
-                     std::size_t s, const Link& end, bool leaves) {
-  const int count = static_cast<int>(at(world.bodies, end.body).corners.size());
-  const int way = leaves ? end.orientation : -end.orientation;
+                     std::size_t s, const CornerEnd& corner) {
+  const Link &end = *corner.end, &other = *corner.other;
+  const std::vector<Vec2>& corners = at(world.bodies, end.body).corners;
+  const int count = static_cast<int>(corners.size());
+  const int way = corner.leaves ? end.orientation : -end.orientation;
   const Circle circle = circle_of(world, work, cable, end.body, (end.corner + way + count) % count);
   const Segment& segment = cable.segments[s];
   const Vec2 x = circle.now - segment.tail;
   const double along = segment.direction.dot(x);
+  const bool meets_span =
+      along > 0.0 && along < segment.length &&
+      end.orientation * cross(segment.direction, x) < circle.margin * (1.0 - graze);
+  const double grazed = graze * circle.margin;
+  const bool meets_arc =
+      !meets_span && clearance_of_arc(world, cable, s, corner, circle.now, circle.margin) < -grazed;
   Hit hit;
-  hit.found = along > 0.0 && along < segment.length &&
-              end.orientation * cross(segment.direction, x) < circle.margin * (1.0 - graze);
-  if (!hit.found) return hit;
-  const Vec2 far = turned((leaves ? segment.head : segment.tail) - at(world.position, end.body),
-                          -at(world.angle, end.body));
-  const std::vector<Vec2>& corners = at(world.bodies, end.body).corners;
-  const Link& other =
-      leaves ? cable.links[s] : at(cable.links, previous_link(cable, static_cast<int>(s)));
-  hit.found = outside_of(corners, far).distance >= circle.margin * (1.0 - graze) &&
-              wraps(world, other, circle, end, leaves);
+  if (!meets_span && !meets_arc) return hit;
+  const Vec2 far =
+      meets_span ? (corner.leaves ? segment.head : segment.tail) : link_centre(world, other);
+  const Vec2 place = turned(far - at(world.position, end.body), -at(world.angle, end.body));
+  const double room = meets_span ? circle.margin : circle.margin - other.radius;
+  hit.found = outside_of(corners, place).distance >= room - grazed &&
+              wraps(world, other, circle, end, corner.leaves);
   hit.beside = locates_events(world.configuration);
   hit.body = end.body;
   hit.corner = circle.corner;
@@ -242,14 +290,8 @@ Hit test_span(const World& world, const Workspace& work, const CableState& cable
               int body) {
   const Segment& segment = cable.segments[s];
   if (segment.pinched || !(segment.length > 0.0)) return {};
-  const Link &to = cable.links[s],
-             &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
-  if (from.body == body && from.corner >= 0 && !from.moored) {
-    return test_next_corner(world, work, cable, s, from, true);
-  }
-  if (to.body == body && to.corner >= 0 && !to.moored) {
-    return test_next_corner(world, work, cable, s, to, false);
-  }
+  const CornerEnd end = corner_end(cable, s, body);
+  if (end.end != nullptr) return test_next_corner(world, work, cable, s, end);
   const int corners = static_cast<int>(at(world.bodies, body).corners.size());
   const std::span<const Release> releases = releases_of(world, work, cable);
   const bool fresh = is_fresh(segment, releases);
@@ -367,9 +409,14 @@ double span_clearance(const World& world, const Happening& hit) {
   const CableState& cable = at(world.cables, hit.cable);
   const Segment& segment = at(cable.segments, hit.item);
   const BodyProperties& body = at(world.bodies, hit.body);
-  Vec2 x = at(world.position, hit.body) - segment.tail;
-  if (hit.corner >= 0) x += turned(at(body.corners, hit.corner), at(world.angle, hit.body));
+  const Vec2 centre =
+      hit.corner < 0 ? at(world.position, hit.body) : place_of_point(world, hit.body, hit.corner);
+  const Vec2 x = centre - segment.tail;
   const double margin = rim_radius(body) + cable.half_width;
+  if (const CornerEnd end = corner_end(cable, index(hit.item), hit.body); end.end != nullptr) {
+    const double beyond = clearance_of_arc(world, cable, index(hit.item), end, centre, margin);
+    if (beyond < infinity) return beyond;
+  }
   const double along = segment.direction.dot(x);
   const double clearance = hit.orientation * cross(segment.direction, x) - margin;
   return hit.beside ? std::max({clearance, -along, along - segment.length}) : clearance;

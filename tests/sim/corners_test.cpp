@@ -322,6 +322,39 @@ TEST(Corners, ACableWoundOverCornersSlidesElsewhere) {
   }
 }
 
+/// A polygon with its corners there.
+Body polygon_of(const char* name, BodyKind kind, std::vector<Vec2> corners) {
+  const Vec2 centre = plate_of(corners, 0.0).centre;
+  for (Vec2& corner : corners) corner -= centre;
+  return polygon(name, kind, centre, std::move(corners));
+}
+
+// A wedge comes down beside a post, under whose tip the cable runs that goes on from under the
+// wedge's one corner: the other takes it off the tip as it comes past that. It went by beyond the
+// end of the span, and the wedge stood across the cable from then on.
+TEST(Corners, TakeACableOffATipThatTheyComePast) {
+  for (const bool leaves : {true, false}) {
+    Scene scene;
+    scene.gravity = Vec2::Zero();
+    scene.bodies.push_back(
+        polygon_of("post", BodyKind::fixed, {{0.0, 0.0}, {0.5, 0.6}, {0.0, 0.8}}));
+    scene.bodies.push_back(
+        polygon_of("wedge", BodyKind::free, {{-0.8, 0.3}, {-0.08, 0.155}, {-0.4, 0.7}}));
+    scene.bodies[1].velocity = {0.5, -1.0};
+    const Attachment left = build::at(-2.0, 1.0), right = build::at(1.5, 0.5);
+    scene.cables.push_back(leaves ? cable(left, {{1, 1, 0}, {0, 1, 0}}, right, 0.02)
+                                  : cable(right, {{0, -1, 0}, {1, -1, 0}}, left, 0.02));
+    scene.cables[0].slack = 2.0;
+    for (const int steps : {1, 4, 16}) {
+      const World world = after(scene, steps, 0.4);
+      const std::vector<Link>& links = world.cables[0].links;
+      ASSERT_EQ(links.size(), 4U) << steps;
+      for (const std::size_t i : {1U, 2U}) EXPECT_EQ(links[i].body, 1) << steps;
+      EXPECT_EQ(world.velocity[1], scene.bodies[1].velocity) << steps;
+    }
+  }
+}
+
 /// A disc on a cable that lies along the top of a fixed box, without slip on it; gravity slopes.
 Scene disc_on_cable_on_box(double slope, double friction) {
   Scene scene;
