@@ -195,6 +195,13 @@ TEST(Population, AJammedDiscIsNotThrown) {
   EXPECT_LE(run_scene(dropped_shapes(794).scene, watched(), 16, 60).energy_gain, 1e-9);
 }
 
+// What gathers in a closed pinch between a slack span and one that pulls goes to the slack one.
+// Halves went to both: the other was slack by that, and was caught again in every step, with all
+// that touched and more than 24 events.
+TEST(Population, WhatPullsTakesNoSlackOutOfAPinch) {
+  EXPECT_LE(run_scene(dropped_shapes(583).scene, watched(), 16, 60).late_events, 5);
+}
+
 /// By how much the tensions on either side of a cable's unpressed arcs differ by more than the
 /// capstan law lets them on arcs as they were `before`, as a share of its greatest.
 double beyond_capstan(const World& world, const CableState& cable, const CableState& before) {
