@@ -28,9 +28,8 @@ namespace pinchlab {
 namespace {
 
 // Of a step's events: what comes after most_rebounds does not rebound, so that what bounces without
-// end lies still for the other half of those that are located. Both bound what a step may cost.
+// end lies still for the rest of those that are located.
 constexpr int most_rebounds = 24;
-constexpr int most_events = 48;
 // Beside these: friction that turns round and back without end is a jam's.
 constexpr int most_jumps = 8;
 
@@ -319,7 +318,7 @@ bool move(const Scene& scene, World& world, Workspace& work, int n, const Round&
   begin_interval(world, work, movers, world.time() + (world.step_length - course.left));
   // What may be divided into neighbourhoods is tried as a whole.
   double length = course.left;
-  course.located = course.events < most_events;
+  course.located = course.events < located_events(world);
   if (!round.may_divide) {
     length = length_to_try(world, work, movers.parts, length, course.located);
   }

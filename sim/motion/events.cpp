@@ -97,6 +97,12 @@ int free_beside(World& world, Workspace& work, int number, int node) {
 
 }  // namespace
 
+int located_events(const World& world) {
+  int events = 48;
+  for (const int c : world.strung) events += 4 * at(world.cables, c).nodes;
+  return events;
+}
+
 void begin_trial(Workspace& work) {
   std::vector<int>& known = work.known_events;
   known.resize(work.events.size());

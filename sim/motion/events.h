@@ -11,6 +11,11 @@ namespace pinchlab {
 struct Happening;
 struct Workspace;
 
+/// How many events of a step are located, of each neighbourhood, so that its cost is bounded: 48,
+/// and four a node of a cable that runs over bodies, which may be hit beside, moored, let go and
+/// taken in.
+int located_events(const World& world);
+
 /// Another trial of the interval begins.
 void begin_trial(Workspace& work);
 
