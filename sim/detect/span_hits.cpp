@@ -123,15 +123,16 @@ bool is_solid_end(const World& world, const CableState& cable, const Link& link)
   return false;
 }
 
-/// Whether something that was so far along the span before (m), beyond its end, and is on that side
-/// of it now (m) comes upon it over that end: an end of its cable that bars the way, and which it
-/// has come round, or a rim, away from which it lies, and which has given off the cable below it.
-bool end_passed(const World& world, const CableState& cable, std::size_t s, double along_before,
-                double side) {
+/// The side (m) from which something comes upon a span over an end of it, beyond which it was so
+/// far along (m): from over an end of its cable that bars the way, and which it has come round, or
+/// a rim, away from which it lay, or lies where that has given off the cable below it. Else 0.
+double side_over_end(const World& world, const CableState& cable, std::size_t s,
+                     double along_before, double side_before, double side) {
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
   const Link& link = at(cable.links, along_before <= 0.0 ? tail : head);
-  const bool outside = link.orientation != 0 && link.corner < 0 && link.orientation * side < 0.0;
-  return outside || is_solid_end(world, cable, link);
+  if (link.orientation * side_before < 0.0) return side_before;
+  if (link.corner < 0 && link.orientation * side < 0.0) return side;
+  return is_solid_end(world, cable, link) ? side : 0.0;
 }
 
 Hit test_circle(const World& world, const Workspace& work, const CableState& cable, std::size_t s,
@@ -156,14 +157,14 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double side_before = cross(direction_before, before);
 
   // What was within reach of the span's line before, but not beside the span, has come past its
-  // end: it is in front of the cable, not in its way, but where end_passed has an end. What was
-  // beside it has been pushed into it by a repair.
+  // end: it is in front of the cable, not in its way, but where side_over_end tells otherwise. What
+  // was beside it has been pushed into it by a repair.
   const bool beside_before = along_before > 0.0 && along_before < length_before;
-  bool over_end = false;
+  double old_side = side_before != 0.0 ? side_before : side;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
-    over_end = within && end_passed(world, cable, s, along_before, side);
-    if (!over_end) return hit;
+    old_side = within ? side_over_end(world, cable, s, along_before, side_before, side) : 0.0;
+    if (old_side == 0.0) return hit;
   }
   bool reached = within;
   if (!reached && side * side_before < 0.0) {
@@ -173,7 +174,6 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
     reached = along_then > 0.0 && along_then < length_then;
   }
   if (!reached) return hit;
-  const double old_side = side_before != 0.0 && !over_end ? side_before : side;
   const double approach = old_side > 0.0 ? old_side - side : side - old_side;
   hit.found = true;
   hit.body = circle.body;
@@ -188,7 +188,7 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double along_then = along_before + share * (along - along_before);
   const double length_then = length_before + share * (segment.length - length_before);
   if (along_then > -unsure && along_then < length_then + unsure) return hit;
-  hit.found = end_passed(world, cable, s, along_then, old_side);
+  hit.found = side_over_end(world, cable, s, along_then, old_side, old_side) != 0.0;
   return hit;
 }
 

@@ -195,6 +195,26 @@ TEST(Population, AJammedDiscIsNotThrown) {
   EXPECT_LE(run_scene(dropped_shapes(794).scene, watched(), 16, 60).energy_gain, 1e-9);
 }
 
+// A polygon from above, body 3, rolls over the tip that the cable leaves a pulley by, and its corner
+// comes down on the span beyond: from over the end of that, and past its line within the same step.
+// It was met a step later, from below.
+TEST(Population, WhatRollsOverATipIsMetFromItsOwnSide) {
+  Scene scene = dropped_shapes(411).scene;
+  scene.steps_per_frame = 1;
+  World world = make_world(scene, Method::pinch);
+  Workspace work;
+  int met = 0;
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+    for (const Link& link : world.cables[0].links) {
+      if (link.body != 3) continue;
+      EXPECT_EQ(link.orientation, 1) << i;
+      ++met;
+    }
+  }
+  EXPECT_GT(met, 0);
+}
+
 // What gathers in a closed pinch between a slack span and one that pulls goes to the slack one.
 // Halves went to both: the other was slack by that, and was caught again in every step, with all
 // that touched and more than 24 events.
