@@ -40,6 +40,11 @@ inline double unwrapped(double angle, double reference) {
   return angle + turn * std::round((reference - angle) / turn);
 }
 
+/// m, L below, of circles that do not overlap.
+inline double tangent_root(double distance, double delta) {
+  return std::sqrt((distance - std::abs(delta)) * (distance + std::abs(delta)));
+}
+
 struct Tangent {
   Vec2 direction;   // unit, from tail to head
   double length;    // m, 0 where the circles overlap
@@ -64,12 +69,11 @@ inline Tangent common_tangent(const Vec2& a, double p_a, const Vec2& b, double p
   const double distance = d.norm();
   const Vec2 u = distance > 0.0 ? Vec2(d / distance) : Vec2(1.0, 0.0);
   const double delta = p_b - p_a;
-  const double square = (distance - std::abs(delta)) * (distance + std::abs(delta));
   if (distance - std::abs(delta) <= parting * std::abs(delta)) {
     const Vec2 e = delta == 0.0 ? u : Vec2(-std::copysign(1.0, delta) * left(u));
     return {e, 0.0, distance, delta != 0.0};
   }
-  const double length = std::sqrt(square);
+  const double length = tangent_root(distance, delta);
   return {(length * u - delta * left(u)) / distance, length, distance, false};
 }
 

@@ -26,27 +26,41 @@ double flexibility_of(const CableState& cable, const Cable& given, double materi
   return ((material + coarse) - coarse) / given.axial_stiffness;
 }
 
-/// m, of a span at the end of an interval that opens between circles, if they move on as they do.
-double length_opening_to(const World& world, const Link& from, const Link& to, const TimeSpan& t) {
+/// m, of a span at the end of an interval that opens between circles, if they move on as they do;
+/// their centres are so far apart (m) at its start.
+double length_opening_to(const World& world, const Link& from, const Link& to, double distance,
+                         const TimeSpan& t) {
+  const double radii = from.radius + to.radius;
+  if (from.still && to.still) return distance > radii ? tangent_root(distance, radii) : 0.0;
   const Vec2 a = link_centre(world, from) + t.length * velocity_of(world, from);
   const Vec2 b = link_centre(world, to) + t.length * velocity_of(world, to);
   return common_tangent(a, from.signed_radius(), b, to.signed_radius()).length;
 }
 
-/// The same of a segment; 0 of one in a pinch. One that opens is as flexible as at the interval's
-/// end: it may begin with next to nothing, and one that closes, which the same reversed in time
-/// does, is taken as it is at its start.
-double flexibility_of(const World& world, const CableState& cable, const Cable& given,
-                      const Segment& segment, int i, const TimeSpan& t) {
-  constexpr double short_share = 0.1;  // of the sum of the radii: what is longer opens little
-  const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
-  const double material = segment.pinched ? 0.0 : elastic_material(cable, segment);
-  const bool opens = t.length > 0.0 && opposite(from, to) &&
-                     segment.length < short_share * (from.radius + to.radius);
-  if (!opens) return flexibility_of(cable, given, material);
+/// Of a segment that is short at the interval's start, and opens; 0 of one in a pinch.
+double flexibility_of_short(const World& world, const CableState& cable, const Cable& given,
+                            const Segment& segment, const Link& from, const Link& to,
+                            const TimeSpan& t) {
   const double distance = (segment.head_centre - segment.tail_centre).norm();
   if (segment.pinched && !is_let_go(world, segment, from, to, distance)) return 0.0;
-  return flexibility_of(cable, given, std::max(material, length_opening_to(world, from, to, t)));
+  const double material = segment.pinched ? 0.0 : elastic_material(cable, segment);
+  const double length = length_opening_to(world, from, to, distance, t);
+  return flexibility_of(cable, given, std::max(material, length));
+}
+
+/// Of a segment; 0 of one in a pinch. One that opens is as flexible as at the interval's end: it
+/// may begin with next to nothing, and one that closes, which the same reversed in time does, is
+/// taken as it is at its start.
+inline double flexibility_of(const World& world, const CableState& cable, const Cable& given,
+                             const Segment& segment, int i, const TimeSpan& t) {
+  constexpr double short_share = 0.1;  // of the sum of the radii: what is longer opens little
+  const Link &to = at(cable.links, i), &from = at(cable.links, previous_link(cable, i));
+  if (t.length > 0.0 && opposite(from, to) &&
+      segment.length < short_share * (from.radius + to.radius)) {
+    return flexibility_of_short(world, cable, given, segment, from, to, t);
+  }
+  if (segment.pinched) return 0.0;
+  return flexibility_of(cable, given, elastic_material(cable, segment));
 }
 
 double length_of(const World& world, const TimeSpan& t) {
@@ -323,8 +337,8 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   const Row& row = at(s.rows, number);
   const CableState& cable = at(world.cables, row.index);
   const double flexibility = flexibility_of(world, cable, given, segment, row.item, t);
-  const double damped = damped_share(world, t, flexibility, row.diagonal);
   if (flexibility == 0.0) return;
+  const double damped = damped_share(world, t, flexibility, row.diagonal);
   if (t.length > 0.0) {
     return make_row(world, given, segment, t, {flexibility, row.clearance}, damped, s, number);
   }

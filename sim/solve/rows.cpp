@@ -386,9 +386,9 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
   const bool plain = world.configuration.method == Method::cable;
   const bool exact = locates_events(world.configuration);
   begin_segment_rows(world, parts, part, interval.kick, s);
+  Row* const rows = s.rows.data();
   for (int r = 0; r < s.first_sleeve_row; ++r) {
-    Row& row = at(s.rows, r);
-    RowBodies& bodies = at(s.bodies, r);
+    Row& row = rows[r];
     const CableState& cable = at(world.cables, row.index);
     const Segment& segment = at(cable.segments, row.item);
     set_segment_values(segment, plain, interval, row);
@@ -398,12 +398,16 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     // The lever of a circle off its body's centre turns with the body, moved or not.
     const bool moved = segment.moved || row.turns || row.is_new || (plain && segment.pinched);
     if (moved) {
-      place_segment_row(world, cable, segment, interval, plain, bodies, row);
+      place_segment_row(world, cable, segment, interval, plain, at(s.bodies, r), row);
       s.segments_stand = row.is_new = false;
     }
     if (moved || s.mobility_changed) {
       weigh(s, r);
       at(s.changed, r) = true;
+    }
+    if (row.kind == RowKind::pinch_middle) {
+      row.slip = at(cable.links, row.item).slip;
+      continue;
     }
     // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
     // would feed back as speed: there they only pull.
@@ -412,11 +416,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     if (cable.elastic && !part.may_slide) {
       make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
     }
-    if (row.kind == RowKind::pinch_middle) {
-      row.slip = at(cable.links, row.item).slip;
-    } else if (segment.pinched && segment.contact >= 0) {
-      s.pressed.push_back(r);
-    }
+    if (segment.pinched && segment.contact >= 0) s.pressed.push_back(r);
   }
   s.elastic_ends.clear();
   if (!part.may_slide) return;
