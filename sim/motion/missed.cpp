@@ -31,10 +31,8 @@ bool is_linear(const World& world, const Row& row) {
          cable.rims.empty();
 }
 
-/// J v + bias (m/s), at most; where the solver knows, as it knows. Nothing of it is left of a row
-/// with compliance, which is to stretch by that.
+/// J v + bias (m/s) of a row without compliance, at most; where the solver knows, as it knows.
 double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
-  if (s.rows[r].compliance > 0.0) return 0.0;
   if (!set.direct) return std::abs(row_speed(s, r));
   return set.unknown_of_row[r] >= 0 ? set.missing : std::abs(s.rows[r].speed);
 }
@@ -55,14 +53,14 @@ double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   const double round_off = s.tolerance() / t.length;    // m/s
   double most = 0.0;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+  const std::size_t count = s.rows.size();
+  for (std::size_t r = 0; r < count; ++r) {
     Row& row = s.rows[r];
     const int group = slides ? capstan.group_of_row[r] : -1;
-    // Most rows are done with here. What stretches may be too long.
-    const bool may_stay = row.compliance > 0.0 || row.clearance >= -t.made_up;
-    if (group < 0 && may_stay && is_linear(world, row) && speed_left(s, set, r) <= round_off) {
-      continue;
-    }
+    // Most rows are done with here. What stretches may be too long, and may have any speed.
+    const bool stays = group < 0 && (row.compliance > 0.0 || (row.clearance >= -t.made_up &&
+                                                              speed_left(s, set, r) <= round_off));
+    if (stays && is_linear(world, row)) continue;
     // Of a group that is slack somewhere any segment may run short of its share of the material.
     const bool shares = group >= 0 && at(capstan.groups, group).slack >= 0;
     if (!is_exact_row(row) || (row.idle && !shares)) continue;

@@ -355,15 +355,16 @@ double rounding_of(const PartSystem& s, double missed) {
 /// measured. Returns whether it has come down to round-off: next to singular matrices keep some.
 bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
   constexpr double little = 1e-10;  // of the first: far above round-off, no speed that shows
-  const std::size_t count = set.row_of_unknown.size();
   double missing = find_missing(s, set);
   const double first = missing;
   double rounding = 0.0;
   for (int k = 0; k < most_times; ++k) {
     s.ldl.solve(set.residual);
-    for (std::size_t u = 0; u < count; ++u) {
-      set.solution[u] -= set.residual[u];
-      push(s, index(set.row_of_unknown[u]), -set.residual[u]);
+    double* solution = set.solution.data();
+    const double* residual = set.residual.data();
+    for (const int r : set.row_of_unknown) {
+      *solution++ -= *residual;
+      push(s, index(r), -*residual++);
     }
     if (k + 1 == most_times) break;
     if (k == 0) rounding = rounding_of(s, first);
@@ -375,11 +376,12 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     if (missing <= rounding) break;
   }
   bool suspicious = false;
-  for (std::size_t r = 0; r < s.rows.size(); ++r) {
-    Row& row = s.rows[r];
-    const int unknown = set.unknown_of_row[r];
-    row.impulse = unknown >= 0 ? at(set.solution, unknown) : 0.0;
-    row.speed = unknown >= 0 ? 0.0 : row_speed(s, r);
+  const int* unknown_of_row = set.unknown_of_row.data();
+  const double* solution = set.solution.data();
+  for (Row& row : s.rows) {
+    const int unknown = *unknown_of_row++;
+    row.impulse = unknown >= 0 ? solution[unknown] : 0.0;
+    row.speed = unknown >= 0 ? 0.0 : row_speed(s, static_cast<std::size_t>(&row - s.rows.data()));
     suspicious = suspicious || is_suspicious(s, row);
   }
   set.suspicious = suspicious;
