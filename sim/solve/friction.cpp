@@ -197,6 +197,7 @@ void find_repeated_middles(const World& world, PartSystem& s, SolveScratch& scra
     const double size = std::max(j.cwiseAbs().maxCoeff(), k.cwiseAbs().maxCoeff());
     if (difference > rounding * size) continue;
     friction.repeats = first;
+    friction.opposes = sign < 0.0;
     ++at(s.frictions, at(s.rows, first).friction).repeated;
   }
   for (std::size_t i = 0; i < s.frictions.size(); ++i) {
@@ -211,10 +212,8 @@ void share_among_repeated(PartSystem& s) {
     Row& row = at(s.rows, friction.row);
     if (friction.repeated > 0) row.impulse /= 1 + friction.repeated;
     if (friction.repeats < 0) continue;
-    const Row& first = at(s.rows, friction.repeats);  // comes before, and has its share by now
-    const RowBodies &bodies = at(s.bodies, friction.row), &others = at(s.bodies, friction.repeats);
-    const Eigen::Vector3d& j = bodies.a == others.a ? others.ja : others.jb;
-    row.impulse = bodies.ja.dot(j) > 0.0 ? first.impulse : -first.impulse;
+    const double of_first = at(s.rows, friction.repeats).impulse;  // before, and has its share
+    row.impulse = friction.opposes ? -of_first : of_first;
   }
 }
 

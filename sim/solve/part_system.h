@@ -155,6 +155,7 @@ struct Friction {
   int run = -1;                    // in a pinch: the wrapped body's run, where it may slide
   int repeats = -1;                // pinch_middle: the row that this one repeats, or -1
   int repeated = 0;                // pinch_middle: how many rows repeat this one
+  bool opposes = false;            // pinch_middle: it is the opposite of the row that it repeats
   bool in_group_equation = false;  // in a pinch: its equation is part of its group's
   bool dropped = false;            // bears nothing in this step
   bool frozen = false;             // keeps its state for this step, whatever its bound
