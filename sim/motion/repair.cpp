@@ -162,26 +162,16 @@ bool opens(const World& world, const CableState& cable, int segment) {
   return !is_closed(world, cable, segment);
 }
 
-/// The share that the segment before a closed pinch is to take of what has gathered there: of two
-/// that it may come into the one without tension takes all, as the other has the length that its
-/// tension was found for, and gives none.
-double share_before(const World& world, const CableState& cable, int before, int after) {
-  const bool opens_before = opens(world, cable, before), opens_after = opens(world, cable, after);
-  if (opens_before != opens_after) return opens_before ? 1.0 : 0.0;
-  const bool pulls_before = at(cable.segments, before).tension > 0.0;
-  const bool pulls_after = at(cable.segments, after).tension > 0.0;
-  if (pulls_before != pulls_after) return pulls_after ? 1.0 : 0.0;
-  return 0.5;
-}
-
 /// Lets go on what has gathered in a closed pinch, or come what it lacks.
 void refill_pinch(const World& world, CableState& cable, int pinch) {
   if (!is_closed(world, cable, pinch)) return;
   const int before = previous_link(cable, pinch), after = next_link(cable, pinch);
   if (after < 0) return;
-  if (!opens(world, cable, before) && !opens(world, cable, after)) return;
+  const bool opens_before = opens(world, cable, before);
+  const bool opens_after = opens(world, cable, after);
+  if (!opens_before && !opens_after) return;
   const double material = at(cable.segments, pinch).rest_length;
-  const double share = share_before(world, cable, before, after);
+  const double share = opens_before == opens_after ? 0.5 : opens_before ? 1.0 : 0.0;
   shift_material(cable, before, share * material);
   shift_material(cable, pinch, -(1.0 - share) * material);
   update_wraps_and_rest_lengths(world, cable);
