@@ -89,6 +89,8 @@ struct Rim {
                         // not known
   bool slides = false;  // over the body, as the cable does: places are so far from where that has
                         // Link::material 0
+  std::array<double, 2> gives{};  // m, to the segments before and after it as it slides in part
+                                  // at an interval's end; by slide_in_part
 };
 
 /// The free span that arrives at the link of the same index from the link before it.
