@@ -12,7 +12,8 @@
 //
 // What is stretched too little gives material to the span that pulls it more, what is stretched too
 // much takes some from the other; either way that comes to where tension is more, which loses
-// energy. So a load on a cable that friction holds swings less and less.
+// energy. So a load on a cable that friction holds swings less and less. Rims that share a span
+// slide together: by turns, until none of them is given any more.
 
 #include "sim/world.h"
 
