@@ -217,16 +217,18 @@ void slide_in_part(const World& world, CableState& cable) {
   // Rims that share spans, by turns.
   bool any = false;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-    int changed = 0;
+    int sticking = 0;
+    bool changed = false;
     for (int i = 0; i < count; ++i) {
       if (!is_sticking(world, cable, i)) continue;
+      ++sticking;
       StickingRim rim(world, cable, i);
       if (!rim.slide(rounding)) continue;
       at(cable.rims, i).gives = rim.given;
-      ++changed;
+      changed = true;
     }
-    any = any || changed > 0;
-    if (changed < 2) break;
+    any = any || changed;
+    if (!changed || sticking < 2) break;
   }
   if (!any) return;
   for (int i = 0; i < count; ++i) {
