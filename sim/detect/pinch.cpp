@@ -73,7 +73,9 @@ Contact* nearest_of_pair(World& world, Contact* one) {
 /// m, by which what the other body touches with, a centre or a corner's, is over the centre line of
 /// a free span beside link i, on the cable's outer side. Infinity: it is not. Nearer than the
 /// cable's width it would press the span against the link's body, so it must keep that distance
-/// already before it hits the span. The body that holds the span's far end cannot hit it.
+/// already before it hits the span. The body that holds the span's far end cannot hit it. What
+/// meets the link's own corner may be over a side as well, along which the cable goes on: as it
+/// turns, it comes to press the corner, and may be no nearer by then.
 double over_adjacent_span(const World& world, const CableState& cable, const Contact& contact,
                           std::size_t i, int other) {
   const bool circles = contact.touch == Touch::circles;
@@ -91,8 +93,10 @@ double over_adjacent_span(const World& world, const CableState& cable, const Con
   const int link = static_cast<int>(i);
   const int before = previous_link(cable, link), after = next_link(cable, link);
   const Link &tail = at(cable.links, before), &head = at(cable.links, after);
-  if (tail.moored || !is_side(tail, cable.links[i])) look(link, before);
-  if (head.moored || !is_side(cable.links[i], head)) look(after, after);
+  const int owner = contact.touch == Touch::point_of_a ? contact.a : contact.b;
+  const bool own_corner = !circles && owner != other && contact.point == cable.links[i].corner;
+  if (own_corner || tail.moored || !is_side(tail, cable.links[i])) look(link, before);
+  if (own_corner || head.moored || !is_side(cable.links[i], head)) look(after, after);
   if (tail.moored) look(before, previous_link(cable, before));
   if (head.moored) look(next_link(cable, after), next_link(cable, after));
   return least;

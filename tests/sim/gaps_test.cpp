@@ -2,7 +2,9 @@
 // Gaps between bodies, with a cable between them or none: the least scenes of what made them fall
 // short in random ones.
 
+#include "demos/scenes/shape_scenes.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "sim/touch.h"
 #include "tests/sim/scenes.h"
 
@@ -79,6 +81,39 @@ TEST(Gaps, ABodyThatIsStruckWithinTheStepMeetsTheNext) {
     for (int i = 0; i < 2 * steps; ++i) {
       ASSERT_EQ(step(scene, world, work), StepStatus::ok);
       EXPECT_LE(world.position[1].x(), 0.3 + 1e-9) << steps;
+    }
+  }
+}
+
+// A box stands with a corner on a cable that lies along the top of another and round its corner,
+// turns flat, and tips over that corner. It presses the cable there from the moment on at which it
+// is flat; until then the corner only comes nearer.
+TEST(Gaps, ABoxThatTurnsFlatOnACablePressesItAtTheCornerToo) {
+  Scene scene;
+  scene.bodies.push_back(body("base", BodyKind::fixed, 0.0, 0.0, 1.0));
+  make_polygon(scene.bodies[0], build::box_corners(2.0, 0.4), 0.0);
+  scene.bodies.push_back(body("box", BodyKind::free, 0.0, 0.0, 1.0));
+  make_polygon(scene.bodies[1], build::box_corners(1.2, 0.5), 0.0);
+  scene.cables.push_back(cable(at(-3.0, -0.5), {{0, -1, 0}}, at(3.0, -2.0), 0.05));
+  for (int k = 0; k < 20; ++k) {
+    const double angle = 0.1 + 0.002 * k;
+    Body& box = scene.bodies[1];
+    const Vec2 corner(0.6, 0.3), arm = turned(Vec2(0.6, 0.25), angle);
+    box.angle = angle;
+    box.position = corner + arm;
+    box.angular_velocity = -1.1;
+    box.velocity = box.angular_velocity * left(arm);
+    for (const int steps : {1, 4, 16}) {
+      scene.steps_per_frame = steps;
+      World world = make_world(scene, Method::pinch);
+      Workspace work;
+      for (int i = 0; i < 10 * steps; ++i) {
+        ASSERT_EQ(step(scene, world, work), StepStatus::ok);
+        for (const Contact& contact : world.contacts) {
+          EXPECT_GE(contact.gap, 0.1 - 1e-9) << angle << " " << steps << " " << i;
+        }
+      }
+      EXPECT_LT(world.angle[1], -0.1);
     }
   }
 }
