@@ -28,6 +28,15 @@ Vector3d motion_of(const World& world, int body, const std::vector<Sleeve>& slee
   return {v.x(), v.y(), at(world.angular_velocity, body)};
 }
 
+/// Changes a body's velocities (m/s, m/s, rad/s), and with them those of its shapes.
+void hasten(World& world, int body, const Vector3d& change) {
+  at(world.velocity, body) += change.head<2>();
+  at(world.angular_velocity, body) += change.z();
+  for (const int shape : world.carried) {
+    if (at(world.bodies, shape).carrier == body) carry(world, shape);
+  }
+}
+
 /// Gives the body, or its sleeve, an impulse (N s, N s, N m s), which it takes up with what it
 /// carries, and with all of its sleeves and what is on theirs.
 void push(World& world, int body, const Eigen::Matrix3d& carried,
@@ -44,13 +53,8 @@ void push(World& world, int body, const Eigen::Matrix3d& carried,
   const BodyProperties& properties = at(world.bodies, body);
   Eigen::Matrix3d own = carried;
   add_moments(own, properties.mass, Vec2::Zero(), inertia_of(properties));
-  Vec2& v = at(world.velocity, body);
-  double& omega = at(world.angular_velocity, body);
   if (on_body.empty()) {
-    if (!is_mobile(properties)) return;
-    const Vector3d change = inverse_for(properties, own) * impulse;
-    v += change.head<2>();
-    omega += change.z();
+    if (is_mobile(properties)) hasten(world, body, inverse_for(properties, own) * impulse);
     return;
   }
   // Of the velocities (x, y, angle; angles of sleeves) those that what holds the body leaves free.
@@ -73,8 +77,7 @@ void push(World& world, int body, const Eigen::Matrix3d& carried,
   ways.bottomRightCorner(count - 3, count - 3).setIdentity();
   const Eigen::MatrixXd there = ways.transpose() * all * ways;
   const Eigen::VectorXd change = ways * there.ldlt().solve(ways.transpose() * given);
-  v += change.head<2>();
-  omega += change.z();
+  hasten(world, body, change.head<3>());
   for (std::size_t k = 0; k < on_body.size(); ++k) {
     const Sleeve& sleeve = at(sleeves, on_body[k]);
     CableState& cable = at(world.cables, sleeve.cable);

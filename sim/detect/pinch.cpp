@@ -33,16 +33,18 @@ double normal_speed(const World& world, const Contact& contact) {
 constexpr double margin = 5e-4;
 
 /// Whether the bodies press what lies between them: they did in the last step, or come together
-/// now, or, where that time is not located, in the next step. A cable that yields is pressed where
-/// it is narrower than its width. Round-off of a gap that is closed is below `rounding` of it.
+/// now, or, where that time is not located, in the next step. What is located is as near as the
+/// cable is wide then: where a wider one beside it keeps bodies apart it is not touched. A cable
+/// that yields is pressed where it is narrower than its width. Round-off of a gap that is closed is
+/// below `rounding` of it.
 bool presses(const World& world, const CableState& cable, const Contact& contact) {
   constexpr double rounding = 1e-12;
-  const double gap = 2.0 * cable.half_width;
+  const double gap = 2.0 * cable.half_width, speed = normal_speed(world, contact);
   if (yields(cable)) return contact.gap <= gap;
-  if (contact.touching || contact.gap <= gap * (1.0 + rounding)) return true;
-  const double speed = normal_speed(world, contact);
-  if (locates_events(world.configuration)) return speed < 0.0 && contact.gap < gap * (1.0 + margin);
-  return contact.gap - gap + world.step_length * speed < 0.0;
+  if (contact.gap <= gap * (1.0 + rounding)) return true;
+  const bool closes = contact.touching || speed < 0.0;
+  if (locates_events(world.configuration)) return closes && contact.gap < gap * (1.0 + margin);
+  return contact.touching || contact.gap - gap + world.step_length * speed < 0.0;
 }
 
 /// The contact of two bodies, or nothing; `hint` is where it was.

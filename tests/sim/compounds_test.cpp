@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "demos/scenes/shape_scenes.h"
 #include "sim/diagnostics.h"
 #include "sim/joints.h"
 #include "sim/scene_error.h"
@@ -112,6 +113,42 @@ TEST(Compounds, OfOneShapeIsThatShape) {
     }
     EXPECT_LT(largest_difference(worlds[0], moved[0], worlds[1], moved[1]), 1e-9);
     EXPECT_NEAR(worlds[0].diagnostics.energy, worlds[1].diagnostics.energy, 1e-9);
+  }
+}
+
+// A corner that a rope with mass comes on to takes up momentum, which the shape that it is of learns
+// of at once.
+TEST(Compounds, OfOneShapeCarriesARopeThatSlipsAsThatShape) {
+  Shape pentagon;
+  pentagon.properties.corners = build::regular_corners(5, 0.3);
+  pentagon.properties.corner_radius = 0.02;
+  for (const double mu : {0.0, 0.2}) {
+    pentagon.properties.cable_friction = mu;
+    std::array<World, 2> worlds;
+    std::array<int, 2> moved{};
+    for (const std::size_t as_compound : {0U, 1U}) {
+      Scene scene;
+      scene.bodies.push_back(body("left", BodyKind::free, -0.32, -1.5, 0.15, 2.0));
+      scene.bodies.push_back(body("right", BodyKind::free, 0.36, -1.65, 0.15, 4.4));
+      int sheave = 2;
+      if (as_compound == 1) {
+        sheave = 1 + add_compound(scene, "sheave", BodyKind::fixed_axle, Vec2::Zero(), 1.0,
+                                  std::array{pentagon});
+      } else {
+        Body b = body("sheave", BodyKind::fixed_axle, 0.0, 0.0, 1.0, 1.0);
+        make_polygon(b, pentagon.properties.corners, pentagon.properties.corner_radius);
+        b.cable_friction = mu;
+        scene.bodies.push_back(b);
+      }
+      scene.cables.push_back(cable(on(0), {{sheave, -1, 0}}, on(1), 0.02));
+      scene.cables[0].mass_per_metre = 0.7;
+      worlds[as_compound] = make_world(scene, measured());
+      run(scene, worlds[as_compound], 120);
+      moved[as_compound] = sheave;
+    }
+    EXPECT_GT(worlds[0].changes, 0);
+    EXPECT_LT(largest_difference(worlds[0], moved[0], worlds[1], moved[1]), 1e-9) << mu;
+    EXPECT_LT(largest_difference(worlds[0], 0, worlds[1], 0), 1e-9) << mu;
   }
 }
 

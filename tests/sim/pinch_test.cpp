@@ -200,6 +200,30 @@ TEST(Pinch, SeveralCablesShareOneContact) {
   }
 }
 
+// Of two cables between the same bodies the wider is pressed; what is narrower than the gap is not
+// touched, and holds nothing: the roller turns by the centre line of the one, and the drum by all.
+TEST(Pinch, AThinnerCableBesideThePressedOneIsFree) {
+  for (const double thin : {0.0499, 0.03, 0.01}) {
+    Scene scene = tower(1, false, 0);
+    scene.bodies[1].position.y() = r + 0.25 + 2.0 * w;
+    add_loads(scene, 0, 1.0, 1.5);
+    add_loads(scene, 1, 1.0, 1.2);
+    scene.cables[1].half_width = thin;
+    const double narrow = r + thin;
+    scene.bodies[4].position.x() = -narrow;
+    scene.bodies[5].position.x() = narrow;
+    const World world = after(scene, 4, 0.25);
+    EXPECT_EQ(world.cables[0].links.size(), 5U);
+    EXPECT_EQ(world.cables[1].links.size(), 3U) << thin;
+    const double ratio = R / (0.25 + w);
+    const double inertia = inertia_of(scene.bodies[0]) +
+                           ratio * ratio * inertia_of(scene.bodies[1]) + R * R * 2.5 +
+                           narrow * narrow * 2.2;
+    const double faster = g * (R * 0.5 + narrow * 0.2) / inertia;
+    EXPECT_NEAR(world.angle[0], -0.5 * faster * 0.25 * 0.25, 1e-9) << thin;
+  }
+}
+
 TEST(Pinch, OnEveryTurnOfAWindingAtOnce) {
   Scene scene = tower(1, false);
   scene.cables[0].wraps[0].extra_turns = 9;
