@@ -230,6 +230,100 @@ void set_slip(CableState& cable, const Sleeve& sleeve, Slip slip, double speed) 
   }
 }
 
+namespace {
+
+/// Sleeves that follow one another with no link between that the cable does not slip at.
+struct LooseRun {
+  std::size_t first = 0, count = 0;
+  bool round = false;  // a whole closed cable, that slips everywhere
+};
+
+/// Of the way from a sleeve, or from a link that the cable does not slip at, to the next.
+struct Between {
+  double material = 0.0, stretching = 0.0;  // m, m/s if nothing slipped
+  bool held = false;                        // there is such a link on the way
+
+  void add(const World& world, const CableState& cable, int segment) {
+    material += std::max(at(cable.segments, segment).rest_length, 0.0);
+    stretching += pinchlab::stretching(world, cable, segment);
+  }
+};
+
+/// Before sleeve k of a cable that has these, and no others.
+Between before_sleeve(const World& world, const CableState& cable,
+                      const std::vector<Sleeve>& sleeves, std::size_t k) {
+  Between way;
+  int i = sleeves[k].first;
+  const int last = sleeves[(k + sleeves.size() - 1) % sleeves.size()].last;
+  way.add(world, cable, i);
+  for (i = previous_link(cable, i); i != last && !way.held; i = previous_link(cable, i)) {
+    way.held = !at(cable.links, i).pinch_middle;
+    if (!way.held) way.add(world, cable, i);
+  }
+  return way;
+}
+
+/// m, of what lies on a sleeve and moves along with it.
+double material_at(const CableState& cable, const Sleeve& sleeve) {
+  const auto half = [&cable](int segment) {
+    return 0.5 * std::max(at(cable.segments, segment).rest_length, 0.0);
+  };
+  double material = 0.0;
+  for (int i = sleeve.first;; i = next_link(cable, i)) {
+    material += half(i) + stored_length(at(cable.links, i)) + half(next_link(cable, i));
+    if (i == sleeve.last) return material;
+  }
+}
+
+/// Where a run's ends move so that its spans must stretch, all do alike, whatever end the cable is
+/// written from. What slips all round has no slip on the average of its material.
+void begin_slip(const World& world, CableState& cable, const std::vector<Sleeve>& sleeves,
+                const LooseRun& run) {
+  std::vector<Between> ways;
+  Between whole;
+  const auto sleeve = [&](std::size_t k) -> const Sleeve& {
+    return sleeves[(run.first + k) % sleeves.size()];
+  };
+  for (std::size_t k = 0; k < run.count; ++k) {
+    ways.push_back(before_sleeve(world, cable, sleeves, (run.first + k) % sleeves.size()));
+    whole.material += ways[k].material;
+    whole.stretching += ways[k].stretching;
+  }
+  if (!run.round) whole.add(world, cable, next_link(cable, sleeve(run.count - 1).last));
+  const double strain_rate = whole.material > 0.0 ? whole.stretching / whole.material : 0.0;
+  std::vector<double> speeds;
+  double speed = 0.0, flow = 0.0, material = 0.0;
+  for (std::size_t k = 0; k < run.count; ++k) {
+    speed -= ways[k].stretching - strain_rate * ways[k].material;
+    speeds.push_back(speed);
+    flow += material_at(cable, sleeve(k)) * speed;
+    material += material_at(cable, sleeve(k));
+  }
+  const double mean = run.round ? flow / material : 0.0;
+  for (std::size_t k = 0; k < run.count; ++k) {
+    set_slip(cable, sleeve(k), Slip::stick, speeds[k] - mean);
+  }
+}
+
+/// Of all its sleeves.
+void begin_slip(const World& world, CableState& cable, const std::vector<Sleeve>& sleeves) {
+  const std::size_t count = sleeves.size();
+  const auto begins = [&](std::size_t k) {
+    return (!cable.closed && k == 0) || before_sleeve(world, cable, sleeves, k).held;
+  };
+  std::size_t first = 0;
+  while (first < count && !begins(first)) ++first;
+  if (first == count) return begin_slip(world, cable, sleeves, {0, count, true});
+  for (std::size_t done = 0; done < count;) {
+    LooseRun run{(first + done) % count, 1, false};
+    while (done + run.count < count && !begins((run.first + run.count) % count)) ++run.count;
+    begin_slip(world, cable, sleeves, run);
+    done += run.count;
+  }
+}
+
+}  // namespace
+
 void begin_slip(const Scene& scene, World& world) {
   std::vector<Sleeve> sleeves;
   for (int c = 0; index(c) < world.cables.size(); ++c) {
@@ -237,28 +331,7 @@ void begin_slip(const Scene& scene, World& world) {
     if (!is_massed(cable) || at(scene.cables, c).slack > 0.0) continue;
     sleeves.clear();
     list_sleeves(world, c, sleeves);
-    if (sleeves.empty()) continue;
-    // From a link that the cable does not slip at; where it slips everywhere, the first sleeve
-    // turns along.
-    int last = cable.closed ? -1 : 0;
-    for (int i = 0; cable.closed && last < 0 && index(i) < cable.links.size(); ++i) {
-      const bool slips = sleeve_at(world, sleeves, c, i) >= 0;
-      if (!slips && !at(cable.links, i).pinch_middle) last = i;
-    }
-    std::size_t first = 0;
-    while (last >= 0 && first < sleeves.size() && sleeves[first].first < last) ++first;
-    const std::size_t known = last < 0 ? 1 : 0;
-    if (last < 0) last = sleeves[0].last;
-    double speed = 0.0;
-    for (std::size_t k = known; k < sleeves.size(); ++k) {
-      const Sleeve& sleeve = sleeves[(first + k) % sleeves.size()];
-      for (int i = next_link(cable, last); i != sleeve.first; i = next_link(cable, i)) {
-        if (!at(cable.links, i).pinch_middle) speed = 0.0;
-      }
-      speed -= stretching(world, cable, sleeve.first);
-      set_slip(cable, sleeve, Slip::stick, speed);
-      last = sleeve.last;
-    }
+    if (!sleeves.empty()) begin_slip(world, cable, sleeves);
   }
 }
 

@@ -82,7 +82,7 @@ Eigen::Vector3d velocity_of(const World& world, const Sleeve& sleeve);
 void set_slip(CableState& cable, const Sleeve& sleeve, Slip slip, double speed);
 
 /// A scene says how bodies move at its start: cables that are not slack move along as they must,
-/// from their first link on.
+/// where that is more than one speed as if they stretched evenly between.
 void begin_slip(const Scene& scene, World& world);
 
 }  // namespace pinchlab

@@ -86,6 +86,17 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
   if (!s.sleeves.empty()) share_masses(world, s);
 }
 
+namespace {
+
+/// N, what a span's row and what flows there is more than X at its end on a sleeve, which turns with
+/// its rim at w and moves at `velocity`.
+double bend_at(const MassedSpan& span, const Laying& end, const Eigen::Vector3d& velocity,
+               double w) {
+  return span.density * (end.keeps ? w * w : 0.5 * (w * w + velocity.head<2>().squaredNorm()));
+}
+
+}  // namespace
+
 void note_flow(PartSystem& s, std::span<const Eigen::Vector3d> velocities) {
   for (SleevePlace& one : s.sleeves) {
     const MassedSpan& in = at(s.masses.spans, one.span_in);
@@ -94,11 +105,13 @@ void note_flow(PartSystem& s, std::span<const Eigen::Vector3d> velocities) {
     const double w = one.radius * v.z();
     one.turning = at(velocities, one.body).z();
     one.slipping = w - one.radius * one.turning;
-    const double bend = 0.5 * in.density * (w * w + v.head<2>().squaredNorm());
     // A node that is moored there is pulled at by the tension itself.
     const double at_node = -in.density * w * w;
-    one.flow_in = in.p_b != 0.0 ? flow_tensions(in, velocities).y() - bend : at_node;
-    one.flow_out = out.p_a != 0.0 ? flow_tensions(out, velocities).x() - bend : at_node;
+    one.flow_in = in.p_b != 0.0 ? flow_tensions(in, velocities).y() - bend_at(in, in.laying_b, v, w)
+                                : at_node;
+    one.flow_out = out.p_a != 0.0
+                       ? flow_tensions(out, velocities).x() - bend_at(out, out.laying_a, v, w)
+                       : at_node;
   }
 }
 

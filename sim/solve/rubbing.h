@@ -24,7 +24,8 @@
 // takes momentum along. A sleeve's turning feels the row's force with flow_tensions (mass.h) and
 // the half's own inertia; at the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more,
 // where v is the centre's velocity (from the momentum of the rope beyond; test
-// MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2.
+// MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2. Where a rim keeps what lies on it,
+// stretched as it came on, flow_tensions has that difference, and X is it less rho w^2.
 //
 // On a polygon all of this goes on from corner to corner: w is the same at each, and its friction
 // is one row's. Of corners that a body carries round a is that of each centre, linear in how the

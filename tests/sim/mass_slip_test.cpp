@@ -2,6 +2,7 @@
 // Cables with mass that slip on the bodies that they run over.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -234,6 +235,76 @@ TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
       w += h * k2;
     }
     EXPECT_NEAR(world.angle[1], x / radius, 1e-8 * x / radius);
+  }
+}
+
+/// The same with every cable written from its other end; closed ones from their last link.
+Scene from_the_other_end(Scene scene) {
+  for (Cable& c : scene.cables) {
+    std::swap(c.start, c.end);
+    std::reverse(c.wraps.begin(), c.wraps.end());
+    for (Wrap& wrap : c.wraps) wrap.orientation = -wrap.orientation;
+  }
+  return scene;
+}
+
+// Ends that move apart stretch a rope evenly, or catch it; a belt on discs of which one turns begins
+// between their speeds. Which end comes first is no matter.
+TEST(MassSlip, TheStartIsTheSameFromEitherEnd) {
+  for (const double stiffness : {2000.0, infinity}) {
+    Scene open;
+    open.gravity = Vec2::Zero();
+    open.bodies.push_back(body("a", BodyKind::free, -0.8, 0.0, 0.2, 1.0));
+    open.bodies.push_back(body("b", BodyKind::free, 0.8, 0.1, 0.3, 2.0));
+    open.bodies.push_back(body("c", BodyKind::free, -0.3, 1.0, 0.25, 1.5));
+    open.bodies.push_back(body("d", BodyKind::free, 0.4, 1.1, 0.15, 0.5));
+    for (const std::size_t i : {2U, 3U}) open.bodies[i].cable_friction = 0.2;
+    open.bodies[0].velocity = {0.3, -1.5};
+    open.bodies[1].velocity = {0.0, -2.0};
+    open.bodies[2].angular_velocity = -3.0;
+    open.cables.push_back(cable(on(0), {{2, -1, 0}, {3, -1, 0}}, on(1), 0.03));
+    open.cables[0].mass_per_metre = 0.4;
+    open.cables[0].axial_stiffness = stiffness;
+
+    Scene closed;
+    closed.gravity = Vec2::Zero();
+    closed.bodies.push_back(body("a", BodyKind::fixed_axle, 0.0, 0.0, 0.3, 1.0));
+    closed.bodies.push_back(body("b", BodyKind::fixed_axle, 1.2, 0.1, 0.2, 1.0));
+    for (Body& b : closed.bodies) b.cable_friction = 0.2;
+    closed.bodies[0].angular_velocity = 5.0;
+    closed.cables.push_back(cable({}, {{0, 1, 0}, {1, 1, 0}}, {}, 0.02));
+    closed.cables[0].closed = true;
+    closed.cables[0].mass_per_metre = 0.3;
+    closed.cables[0].axial_stiffness = stiffness;
+    for (const Scene& scene : {open, closed}) {
+      const World a = after(scene, 4, 0.1), b = after(from_the_other_end(scene), 4, 0.1);
+      double apart = 0.0;
+      for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        apart = std::max(
+            {apart, (a.position[i] - b.position[i]).norm(), std::abs(a.angle[i] - b.angle[i])});
+      }
+      EXPECT_LT(apart, 1e-9) << stiffness << (scene.cables[0].closed ? ", closed" : "");
+    }
+  }
+}
+
+// A stiff rope that slides fast is rubbed as one that does not stretch: rims that keep the stretch
+// of what lies on them see more of what flows on to them (rubbing.h).
+TEST(MassSlip, AStiffRopeIsRubbedAsOneThatDoesNotStretch) {
+  for (const BodyKind kind : {BodyKind::fixed, BodyKind::fixed_axle}) {
+    std::array<Vec2, 2> ends;
+    for (const std::size_t stretches : {0U, 1U}) {
+      Scene scene = rope_over_peg(4, 0.2, 2.0, 4.0, 8.0, 3.0, kind);
+      scene.bodies[0].velocity = {0.0, -4.0};
+      scene.bodies[1].velocity = {0.0, 4.0};
+      if (kind == BodyKind::fixed_axle) scene.bodies[2].driven_angular_velocity = 0.0;
+      scene.cables[0].mass_per_metre = 2.0;
+      if (stretches == 1) scene.cables[0].axial_stiffness = 1e9;
+      World world = make_world(scene, measured());
+      run(scene, world, 24 * 4);
+      ends[stretches] = world.position[0];
+    }
+    EXPECT_LT((ends[1] - ends[0]).norm(), 1e-5);
   }
 }
 
