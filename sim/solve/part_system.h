@@ -281,6 +281,8 @@ struct PartSystem {
                                 // solve_for_states
   std::vector<int> middles;     // rows of kind pinch_middle
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
+  std::vector<int> loose;       // rows that may catch or let go in an interval, ascending: all but
+                                // friction's and those of segments that are tight and stiff
   std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending. By
                                 // find_repeated_middles
 

@@ -248,6 +248,7 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   const int normal = append_row(s, place_of(parts, s, contact.a), place_of(parts, s, contact.b));
   at(scratch.normal_row_of_contact, number) = normal;
   s.rows.back().index = number;
+  s.loose.push_back(normal);
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
   if (contact.touch == Touch::piece) {
     set_bodies_at_piece(world, parts, contact, false, s, normal);
@@ -344,6 +345,7 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   s.same_segments = again;
   s.segments_stand = again && !s.mobility_changed;
   s.pressed.clear();
+  s.loose.clear();
   s.thirds.clear();
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
@@ -419,6 +421,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
         make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
       }
       if (segment.pinched && segment.contact >= 0) s.pressed.push_back(r);
+      if (row.idle || may_stretch) s.loose.push_back(r);
     }
   }
   s.elastic_ends.clear();
@@ -435,6 +438,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     s.frictions.clear();
     s.repeated.clear();
   }
+  for (int r = s.first_sleeve_row; r < s.first_contact_row; ++r) s.loose.push_back(r);
   const std::span<const int> contacts = contacts_of(parts, part);
   for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
   for (const int number : part.can_move ? contacts : std::span<const int>()) {
