@@ -283,6 +283,7 @@ struct PartSystem {
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
   std::vector<int> loose;       // rows that may catch or let go in an interval, ascending: all but
                                 // friction's and those of segments that are tight and stiff
+  bool too_long = false;        // a segment that cannot stretch is, by more than TimeSpan::made_up
   std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending. By
                                 // find_repeated_middles
 

@@ -347,6 +347,7 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   s.pressed.clear();
   s.loose.clear();
   s.thirds.clear();
+  s.too_long = false;
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
   s.bodies.resize(index(s.first_contact_row));
@@ -423,6 +424,7 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
       if (segment.pinched && segment.contact >= 0) s.pressed.push_back(r);
       if (row.idle || may_stretch) s.loose.push_back(r);
     }
+    if (!(row.clearance >= -interval.made_up) && row.compliance == 0.0) s.too_long = true;
   }
   s.elastic_ends.clear();
   if (!part.may_slide) return;
