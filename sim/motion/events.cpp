@@ -132,20 +132,20 @@ Happening event_of(EventKind kind, int part, const PartSystem& s) {
 }
 
 /// The catch of a row that idles, or of one that stretches and lets go.
-void find_catch(const World& world, Workspace& work, int number, const PartSystem& s,
-                const Row& row, bool releases) {
+void find_catch(const World& world, Workspace& work, int number, const PartSystem& s, int r,
+                bool releases) {
   const CapstanScratch& capstan = work.solve.capstan;
-  const auto r = static_cast<std::size_t>(&row - s.rows.data());
+  const Row& row = at(s.rows, r);
   if (row.kind == RowKind::tangent || row.kind == RowKind::pinch_middle) return;
   const bool in_group =
-      row.kind == RowKind::segment && !capstan.runs.empty() && capstan.group_of_row[r] >= 0;
+      row.kind == RowKind::segment && !capstan.runs.empty() && at(capstan.group_of_row, r) >= 0;
   if (in_group) return;
   const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
   const double late = !releases && row.clearance > s.reach ? -s.reach : 0.5 * s.reach;
   // As most: no search for these.
   if (work.known_events.empty() && clearance >= -late) return;
   Happening key = event_of(EventKind::catches, number, s);
-  key.row = static_cast<int>(r);
+  key.row = r;
   key.before = releases ? -row.clearance : row.clearance;
   measure(work, key, clearance, late);
 }
@@ -202,10 +202,11 @@ void find_gone_links(const World& world, Workspace& work, const Happening& of_ca
 
 void find_catches(const World& world, Workspace& work, int number) {
   const PartSystem& s = at(work.systems, at(work.parts.list, number).system);
-  for (const Row& row : s.rows) {
+  for (const int r : s.loose) {
+    const Row& row = at(s.rows, r);
     const bool releases = row.compliance > 0.0 && row.on && !row.clamped;
     if (!row.idle && !(releases && row.clearance < -s.reach)) continue;
-    find_catch(world, work, number, s, row, releases);
+    find_catch(world, work, number, s, r, releases);
   }
   if (!work.solve.capstan.runs.empty()) find_catches_of_groups(world, work, number, s);
 }

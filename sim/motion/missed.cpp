@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/at.h"
 #include "sim/cable/cable.h"
 #include "sim/motion/clearance.h"
+#include "sim/parts.h"
 #include "sim/solve/capstan.h"
 #include "sim/solve/part_system.h"
 #include "sim/workspace.h"
@@ -37,6 +39,17 @@ double speed_left(const PartSystem& s, const SolveScratch& set, std::size_t r) {
   return set.unknown_of_row[r] >= 0 ? set.missing : std::abs(s.rows[r].speed);
 }
 
+/// Whether the rows of a part's cables miss nothing: the conditions of all are linear, as hardly
+/// where bodies can move, and the solver knows that it meets them but for so much (m/s).
+bool cables_are_met(const World& world, const Parts& parts, const Part& part, const PartSystem& s,
+                    const SolveScratch& set, double round_off) {
+  if (part.can_move || !set.direct || !set.capstan.runs.empty() || s.too_long) return false;
+  if (std::max(set.missing, set.fastest) > round_off) return false;
+  const std::span<const int> cables = cables_of(parts, part);
+  return std::all_of(cables.begin(), cables.end(),
+                     [&world](int c) { return at(world.cables, c).stands; });
+}
+
 /// m/s, at which a segment of an elastic cable gets material by sliding.
 double slid_in(const World& world, const Row& row) {
   const CableState& cable = at(world.cables, row.index);
@@ -46,15 +59,16 @@ double slid_in(const World& world, const Row& row) {
 
 }  // namespace
 
-double add_missed(const World& world, const SolveScratch& set, const TimeSpan& t, PartSystem& s,
-                  IntervalTrial& trial) {
+double add_missed(const World& world, const Parts& parts, const Part& part, const SolveScratch& set,
+                  const TimeSpan& t, PartSystem& s, IntervalTrial& trial) {
   const CapstanScratch& capstan = set.capstan;
   const bool slides = !capstan.runs.empty() && !set.swept;
   const double still_left = 1.0 - t.length / t.repair;  // share of what is made up for by `bias`
   const double round_off = s.tolerance() / t.length;    // m/s
   double most = 0.0;
+  const bool met = cables_are_met(world, parts, part, s, set, round_off);
   const std::size_t count = s.rows.size();
-  for (std::size_t r = 0; r < count; ++r) {
+  for (std::size_t r = met ? index(s.first_contact_row) : 0; r < count; ++r) {
     Row& row = s.rows[r];
     const int group = slides ? capstan.group_of_row[r] : -1;
     // Most rows are done with here. What stretches may be too long, and may have any speed.

@@ -4,15 +4,18 @@
 
 namespace pinchlab {
 
-struct SolveScratch;
+struct Part;
+struct Parts;
 struct PartSystem;
+struct SolveScratch;
 struct TimeSpan;
 struct IntervalTrial;
 struct World;
 
-/// Adds to the rows' biases what their conditions have missed at the present positions; returns the
-/// most (m). Notes in the trial whether one was violated from the start.
-double add_missed(const World& world, const SolveScratch& scratch, const TimeSpan& interval,
-                  PartSystem& system, IntervalTrial& trial);
+/// Adds to the biases of a part's rows what their conditions have missed at the present positions;
+/// returns the most (m). Notes in the trial whether one was violated from the start.
+double add_missed(const World& world, const Parts& parts, const Part& part,
+                  const SolveScratch& scratch, const TimeSpan& interval, PartSystem& system,
+                  IntervalTrial& trial);
 
 }  // namespace pinchlab

@@ -103,7 +103,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     watch.lap(Stage::move_bodies);
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
-    const double missed = add_missed(world, set, t, s, trial);
+    const double missed = add_missed(world, work.parts, part, set, t, s, trial);
     const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
     if (follows) follow_flow(scene, work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);

@@ -63,10 +63,6 @@ inline double flexibility_of(const World& world, const CableState& cable, const 
   return flexibility_of(cable, given, elastic_material(cable, segment));
 }
 
-double length_of(const World& world, const TimeSpan& t) {
-  return t.length > 0.0 ? t.length : world.step_length;
-}
-
 /// a - b, for what is as flexible (m/N) and as mobile (1/kg) as that.
 double damped_share(const World& world, const TimeSpan& t, double flexibility, double mobility) {
   if (world.configuration.solver == Solver::iterative) return 1.0;  // the thesis' implicit Euler
@@ -111,7 +107,6 @@ double bent_by(const World& world, const Segment& segment, const Link& from, con
 bool goes_straight(const World& world, const Segment& segment, const Link& from, const Link& to,
                    double back) {
   constexpr double short_way = 1e-8;  // of its length, on which that is by half the square of this
-  if (from.still && to.still) return true;
   if (!is_central(from) || !is_central(to)) return false;
   Vec2 way = Vec2::Zero();
   if (to.body >= 0) way = at(world.velocity, to.body);
@@ -132,11 +127,13 @@ Lengthening lengthening(const World& world, const Segment& segment, const TimeSp
   const CableState& cable = at(world.cables, row.index);
   const Link &to = at(cable.links, row.item),
              &from = at(cable.links, previous_link(cable, row.item));
-  const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
   double before = to.slip_speed - from.slip_speed - speed_of(world, from.body, bodies.ja) -
-                  speed_of(world, to.body, bodies.jb) + creep;
+                  speed_of(world, to.body, bodies.jb);
+  const double creep = cable.rims.empty() ? 0.0 : creep_speed(world, cable, row.item);
+  before += creep;
+  const bool still = from.still && to.still;
   const double back = 2.0 * t.lag;
-  if (!goes_straight(world, segment, from, to, back)) {
+  if (!still && !goes_straight(world, segment, from, to, back)) {
     before -= bent_by(world, segment, from, to, back);
   }
   return {before, creep};
@@ -153,14 +150,14 @@ struct Spring {
   double clearance = 0.0;    // m, by which it is loose; below 0: stretched
 };
 
-/// The row of a segment in an interval, `damped` being its a - b.
-void make_row(const World& world, const Cable& given, const Segment& segment, const TimeSpan& t,
-              const Spring& spring, double damped, PartSystem& s, int number) {
+/// The row of a segment in an interval, which lengthens so, `damped` being its a - b.
+void make_row(const Cable& given, const Segment& segment, const TimeSpan& t, Spring spring,
+              Lengthening lengthens, double damped, PartSystem& s, int number) {
+  const auto [before, creep] = lengthens;
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
-  const double h = length_of(world, t);
+  const double h = t.length;
   const double b = 0.25 * (1.0 - damped);
-  const auto [before, creep] = lengthening(world, segment, t, s, number);
   double known = known_part(t, damped, spring.clearance, before);
   double scale = b * h * h + damped * h * t.kick;  // s^2
   if (given.damping > 0.0) {
@@ -322,7 +319,8 @@ void make_rows(const Section& section, const TimeSpan& t, PartSystem& s) {
     const int number = section.row_of(s, i);
     const Spring spring = number < 0 ? Spring() : section.spring(i, t, s, number);
     if (spring.flexibility == 0.0) continue;
-    make_row(section.world, section.given, segment, t, spring, damped, s, number);
+    const Lengthening lengthens = lengthening(section.world, segment, t, s, number);
+    make_row(section.given, segment, t, spring, lengthens, damped, s, number);
     if (s.elastic_ends.empty()) continue;
     ElasticEnd& end = at(s.elastic_ends, number);
     end.compliance = spring.flexibility / (t.kick * t.length);
@@ -339,12 +337,13 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   const double flexibility = flexibility_of(world, cable, given, segment, row.item, t);
   if (flexibility == 0.0) return;
   const double damped = damped_share(world, t, flexibility, row.diagonal);
+  if (t.length == 0.0 && damped > 0.0) return;
+  const Lengthening lengthens = lengthening(world, segment, t, s, number);
   if (t.length > 0.0) {
-    return make_row(world, given, segment, t, {flexibility, row.clearance}, damped, s, number);
+    const Spring spring{flexibility, row.clearance};
+    return make_row(given, segment, t, spring, lengthens, damped, s, number);
   }
-  if (damped > 0.0) return;
-  const double before = lengthening(world, segment, t, s, number).before;
-  const double known = known_part(t, damped, row.clearance, before);
+  const double known = known_part(t, damped, row.clearance, lengthens.before);
   make_row_at_instant(given, t, impulse_of(given, known, flexibility), s, number);
 }
 

@@ -108,19 +108,20 @@ struct ThirdBody {
 /// The impulse changes the bodies' velocities by mobility * J^T p.
 struct Row {
   RowKind kind = RowKind::segment;
-  Slip slip = Slip::stick;  // active set: friction rows
-  bool on = false;          // active set: bears a force
-  bool clamped = false;     // active set: `presser` bears, so that the row may push as well
-  bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
   bool rebounds = false;    // normal, Events::at_steps: the bias is the speed of a rebound
-  bool returned = false;    // normal: has lost its force in this step and got it back
   bool is_new = true;       // segment: its bodies are not yet seen
   bool turns = false;       // segment: its levers turn with a body, moved or not
+  bool shut = false;        // segment: in a pinch for good, between circles that never move
   bool has_third = false;   // of PartSystem::thirds, at `item`
+  bool on = false;          // active set: bears a force
+  bool idle = false;        // bears no force in this solve, whatever its speed: out of reach
+  Slip slip = Slip::stick;  // active set: friction rows
+  bool clamped = false;     // active set: `presser` bears, so that the row may push as well
+  bool returned = false;    // normal: has lost its force in this step and got it back
   bool stretches = false;   // segment, at an instant: by forces, which do nothing then
   int flipped = 0;          // solve of this step at which `on` or `slip` last changed
-  int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int presser = -1;         // segment: row of the force that clamps the cable in its pinch, or -1
+  int friction = -1;        // pinch_middle, tangent: of PartSystem::frictions
   int index = -1;           // contact; or cable
   int item = -1;            // segment, middle link, or place of its third body
   double clearance = 0.0;   // m, slack or gap that is left; below 0: too long, or too near
@@ -280,6 +281,9 @@ struct PartSystem {
                                 // solve_for_states
   std::vector<int> middles;     // rows of kind pinch_middle
   std::vector<int> pressed;     // rows of transitional pinches that a contact presses
+  std::vector<int> loose;       // rows that may catch or let go in an interval, ascending: all but
+                                // friction's and those of segments that are tight and stiff
+  bool too_long = false;        // a segment that cannot stretch is, by more than TimeSpan::made_up
   std::vector<int> repeated;    // frictions that repeat others, or are repeated; ascending. By
                                 // find_repeated_middles
 

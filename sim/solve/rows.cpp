@@ -106,18 +106,15 @@ inline void hold_middle(double clearance, const TimeSpan& interval, Row& row) {
   row.bias = made_up ? clearance / interval.repair : 0.0;
 }
 
-/// All of a segment's row but its bodies, as it is before a solve.
+/// All of a segment's row but its bodies and its friction, as it is before a solve.
 inline void set_segment_values(const Segment& segment, bool plain, const TimeSpan& interval,
                                Row& row) {
   row.on = !segment.slack;
-  row.returned = false;
   row.slip = Slip::stick;
+  row.clamped = row.returned = row.stretches = false;
   row.flipped = 0;
-  row.friction = -1;
   row.presser = -1;
-  row.clamped = row.stretches = false;
-  row.curved = 0.0;
-  row.compliance = 0.0;
+  row.curved = row.compliance = 0.0;
   const double clearance = clearance_left(segment, plain);
   if (row.kind == RowKind::pinch_middle) {
     hold_middle(clearance, interval, row);
@@ -251,6 +248,7 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
   const int normal = append_row(s, place_of(parts, s, contact.a), place_of(parts, s, contact.b));
   at(scratch.normal_row_of_contact, number) = normal;
   s.rows.back().index = number;
+  s.loose.push_back(normal);
   set_normal_row(scene, world, contact, interval, s.bodies.back(), s.rows.back());
   if (contact.touch == Touch::piece) {
     set_bodies_at_piece(world, parts, contact, false, s, normal);
@@ -265,13 +263,11 @@ void append_contact_rows(const Scene& scene, const World& world, const Parts& pa
 
 /// The rows of middle bodies as they are before a solve, by what bounds them.
 void begin_middles(PartSystem& s) {
-  for (std::size_t i = 0; i < s.frictions.size(); ++i) {
-    Friction& friction = s.frictions[i];
+  for (Friction& friction : s.frictions) {
     Row& row = at(s.rows, friction.row);
     if (row.kind != RowKind::pinch_middle) continue;
     friction.dropped = friction.frozen = false;
     friction.slid = Slip::stick;
-    row.friction = static_cast<int>(i);
     if (friction.normal < 0 && friction.coefficient == infinity) {
       row.on = true;
       row.slip = Slip::stick;
@@ -286,14 +282,13 @@ void begin_middles(PartSystem& s) {
 void clamp_in_pinch(const World& world, const SolveScratch& scratch, Row& row) {
   const CableState& cable = at(world.cables, row.index);
   if (row.idle || row.compliance > 0.0) return;
-  bool slips = false;
-  for (const int link : {row.item, previous_link(cable, row.item)}) {
-    const double mu = friction_in_pinch(world, cable, at(cable.links, link).body);
-    if (mu == 0.0) return;
-    slips = slips || mu < infinity;
-  }
+  const int tail = at(cable.links, previous_link(cable, row.item)).body;
+  const int head = at(cable.links, row.item).body;
+  const double least =
+      std::min(friction_in_pinch(world, cable, tail), friction_in_pinch(world, cable, head));
+  if (least == 0.0) return;
   row.presser = at(scratch.normal_row_of_contact, at(cable.segments, row.item).contact);
-  if (row.presser < 0 && !slips) row.clamped = row.on = true;
+  if (row.presser < 0 && least == infinity) row.clamped = row.on = true;
 }
 
 /// Lists the rows of a part's segments: between which places, and of what kind.
@@ -350,7 +345,9 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   s.same_segments = again;
   s.segments_stand = again && !s.mobility_changed;
   s.pressed.clear();
+  s.loose.clear();
   s.thirds.clear();
+  s.too_long = false;
   if (!again) return list_segment_rows(world, parts, part, s);
   s.rows.resize(index(s.first_contact_row));
   s.bodies.resize(index(s.first_contact_row));
@@ -358,14 +355,22 @@ void begin_segment_rows(const World& world, const Parts& parts, const Part& part
   s.changed.resize(index(s.first_contact_row));
 }
 
+/// Whether a segment is in a pinch for good: between circles that never move and leave no gap.
+bool is_shut(const Segment& segment, const Link& from, const Link& to) {
+  if (!segment.pinched || !from.still || !to.still) return false;
+  return (segment.head_centre - segment.tail_centre).norm() <= from.radius + to.radius;
+}
+
 /// What a row that has moved, or is new, sees of its bodies.
 void place_segment_row(const World& world, const CableState& cable, const Segment& segment,
                        const TimeSpan& interval, bool plain, RowBodies& bodies, Row& row) {
-  const int to = row.item, from = previous_link(cable, to);
-  set_segment_bodies(world, cable, from, to, segment.pinched && yields(cable), bodies);
-  if (!plain || !segment.pinched) return;
-  turn_to_centre_line(world, at(cable.links, from), at(cable.links, to), segment, interval, bodies,
-                      row);
+  const int head = row.item, tail = previous_link(cable, head);
+  const Link &from = at(cable.links, tail), &to = at(cable.links, head);
+  set_segment_bodies(world, cable, tail, head, segment.pinched && yields(cable), bodies);
+  row.shut = is_shut(segment, from, to);
+  if (plain && segment.pinched) {
+    turn_to_centre_line(world, from, to, segment, interval, bodies, row);
+  }
 }
 
 }  // namespace
@@ -407,16 +412,19 @@ void make_segment_rows(const Scene& scene, const World& world, const Parts& part
     }
     if (row.kind == RowKind::pinch_middle) {
       row.slip = at(cable.links, row.item).slip;
-      continue;
+    } else {
+      // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
+      // would feed back as speed: there they only pull.
+      const bool is_rod = cable.rod && (exact || cable.joint != Joint::none);
+      if (is_rod || is_held(cable, index(row.item))) hold_both_ways(interval, row);
+      const bool may_stretch = cable.elastic && !row.shut;
+      if (may_stretch && !part.may_slide) {
+        make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
+      }
+      if (segment.pinched && segment.contact >= 0) s.pressed.push_back(r);
+      if (row.idle || may_stretch) s.loose.push_back(r);
     }
-    // Where lengths are not exact at the end of a step, what pieces between nodes miss both ways
-    // would feed back as speed: there they only pull.
-    const bool is_rod = cable.rod && (exact || cable.joint != Joint::none);
-    if (is_rod || is_held(cable, index(row.item))) hold_both_ways(interval, row);
-    if (cable.elastic && !part.may_slide) {
-      make_elastic(world, at(scene.cables, row.index), segment, interval, s, r);
-    }
-    if (segment.pinched && segment.contact >= 0) s.pressed.push_back(r);
+    if (!(row.clearance >= -interval.made_up) && row.compliance == 0.0) s.too_long = true;
   }
   s.elastic_ends.clear();
   if (!part.may_slide) return;
@@ -432,6 +440,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     s.frictions.clear();
     s.repeated.clear();
   }
+  for (int r = s.first_sleeve_row; r < s.first_contact_row; ++r) s.loose.push_back(r);
   const std::span<const int> contacts = contacts_of(parts, part);
   for (const int number : contacts) at(scratch.normal_row_of_contact, number) = -1;
   for (const int number : part.can_move ? contacts : std::span<const int>()) {

@@ -87,7 +87,9 @@ struct SolveScratch {
   bool swept = false;        // the last solution is that of sweep_rows: nothing slides
   bool repairs = true;       // DualTerms::repairs
   bool direct = false;       // the last solution is that of a regular symmetric system,
-  double missing = 0.0;      // m/s, whose equations it misses by so much at most
+  double missing = 0.0;      // m/s, whose equations it misses by so much at most,
+  double fastest = 0.0;      // m/s, and that lets no other row go faster, either way, that does not
+                             // stretch
   bool suspicious = false;   // a row may contradict the last solution
   bool smooth = false;       // friction that slides is left out; what sticks for good does
   bool held = false;         // nothing slides but what has no friction

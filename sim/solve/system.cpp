@@ -350,6 +350,27 @@ double rounding_of(const PartSystem& s, double missed) {
   return 1e-13 * missed + 4e-16 * greatest_speed(s.velocity);
 }
 
+/// Impulses and speeds of the rows by the unknowns' values, and what is asked of all of them.
+void set_rows(PartSystem& s, SolveScratch& set) {
+  bool suspicious = false;
+  double fastest = 0.0;
+  const int* unknown_of_row = set.unknown_of_row.data();
+  const double* solution = set.solution.data();
+  for (Row& row : s.rows) {
+    const int unknown = *unknown_of_row++;
+    row.impulse = row.speed = 0.0;
+    if (unknown >= 0) {
+      row.impulse = solution[unknown];
+    } else {
+      row.speed = row_speed(s, static_cast<std::size_t>(&row - s.rows.data()));
+      if (row.compliance == 0.0) fastest = std::max(fastest, std::abs(row.speed));
+    }
+    suspicious = suspicious || is_suspicious(s, row);
+  }
+  set.suspicious = suspicious;
+  set.fastest = fastest;
+}
+
 /// Makes up for what a solution of a regular symmetric system misses, as long as that helps: an
 /// error that has fallen by some factor will do so again, so that the last one need not be
 /// measured. Returns whether it has come down to round-off: next to singular matrices keep some.
@@ -375,16 +396,7 @@ bool refine_symmetric(PartSystem& s, SolveScratch& set, int most_times) {
     missing = find_missing(s, set);
     if (missing <= rounding) break;
   }
-  bool suspicious = false;
-  const int* unknown_of_row = set.unknown_of_row.data();
-  const double* solution = set.solution.data();
-  for (Row& row : s.rows) {
-    const int unknown = *unknown_of_row++;
-    row.impulse = unknown >= 0 ? solution[unknown] : 0.0;
-    row.speed = unknown >= 0 ? 0.0 : row_speed(s, static_cast<std::size_t>(&row - s.rows.data()));
-    suspicious = suspicious || is_suspicious(s, row);
-  }
-  set.suspicious = suspicious;
+  set_rows(s, set);
   set.missing = missing;
   return missing <= std::max(rounding, little * first);
 }
