@@ -117,15 +117,30 @@ bool off_arc(const CableState& cable, std::size_t i, const Vec2& u) {
   return after_tail < -arc_tolerance || before_head < -arc_tolerance;
 }
 
+/// m, that bodies which press a cable there leave between them.
+double gap_for(const CableState& cable, const Link& link) {
+  return cable.least_gap + thickness_of_layers(link);
+}
+
+// As a share: gaps for cables that are as wide.
+constexpr double same_gap = 1e-12;
+
+/// Leaves nothing of what is said of cables that are pressed without a link of their own for it.
+void forget_pressed(Contact& contact) {
+  contact.pressed_friction = 0.0;
+  contact.layers_cable = contact.slipping_cable = -1;
+}
+
 /// A drum's layers keep others out as far as the outermost reaches. No cable comes between bodies
 /// that have been nearer than its width: it would move them apart at once. It passes in front of
 /// what they touch with, and comes between when they have parted so far. Whether it does.
 bool note_cable_between(const World& world, const CableState& cable, const Link& link,
                         Contact& contact) {
-  const double least = cable.least_gap + thickness_of_layers(link);
+  const double least = gap_for(cable, link);
   if (cable.least_gap > 0.0) {
     const bool located = locates_events(world.configuration);
     if (contact.bare && located && contact.gap < least * (1.0 - margin)) return false;
+    if (least > contact.target * (1.0 + same_gap)) forget_pressed(contact);
     contact.target = std::max(contact.target, least);
   }
   contact.cable_between = static_cast<int>(&cable - world.cables.data());
@@ -134,12 +149,14 @@ bool note_cable_between(const World& world, const CableState& cable, const Link&
 
 /// The same for a cable that has no link of its own for what presses it on to a polygon, or with a
 /// polygon, or on to layers. What presses rolls on it, or rubs on it: as on the link's body where
-/// that holds the cable without slip, and else as solve/friction.h has it. Of turns that lie there
-/// one above another, and of the corners at both ends of a side, the first on the cable counts. The
-/// thesis' sweeps and rows press what may slip without friction.
+/// that holds the cable without slip, and else as solve/friction.h has it. Of cables the widest is
+/// touched. Of those of one width, of turns that lie there one above another, and of the corners at
+/// both ends of a side, the first counts. The thesis' sweeps and rows press what may slip without
+/// friction.
 void note_cable_held(const World& world, const CableState& cable, const Link& link, int presser,
                      Contact& contact) {
   if (!note_cable_between(world, cable, link, contact)) return;
+  if (gap_for(cable, link) < contact.target * (1.0 - same_gap)) return;
   const int number = static_cast<int>(&cable - world.cables.data());
   if (link.layers.way != 0) contact.layers_cable = number;
   if (at(world.bodies, link.body).cable_friction < infinity) {

@@ -87,6 +87,25 @@ TEST(PressedSlip, ABoxHoldsACableByTheFrictionOfBothItsSides) {
   }
 }
 
+// The box lies on the wider cable alone, whichever of the two comes first in the scene.
+TEST(PressedSlip, AThinnerCableBesideThePressedOneSlipsFreely) {
+  const Pressed with;
+  const double alone = sunk(after_half_a_second(scene_of(with)));
+  constexpr double thin = 0.03, side = 0.83 + thin;
+  for (const bool first : {true, false}) {
+    Scene scene = scene_of(with);
+    scene.bodies.push_back(body("left", BodyKind::free, -side, -2.0, 0.1, with.light));
+    scene.bodies.push_back(body("right", BodyKind::free, side, -1.0, 0.1, with.heavy));
+    for (const std::size_t i : {4U, 5U}) scene.bodies[i].outlined = false;
+    Cable beside = cable(on(4), {{0, -1, 0}}, on(5), thin);
+    beside.name = "beside";
+    scene.cables.insert(first ? scene.cables.begin() : scene.cables.end(), beside);
+    const World world = after_half_a_second(scene);
+    EXPECT_NEAR(sunk(world), alone, 1e-9) << first;
+    EXPECT_NEAR(acceleration(world, -1.0 - world.position[5].y()), with.acceleration(0.0), 1e-6);
+  }
+}
+
 // A cable's grip is a share of the friction of both: held = 0.5 (mu + 0.2) M g. With all of the
 // beam's the weight would sink at 3.855 m/s^2 instead of 4.301.
 TEST(PressedSlip, AWeakerGripHoldsByAsMuchLess) {
