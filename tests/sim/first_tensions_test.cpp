@@ -64,7 +64,7 @@ TEST(FirstTensions, AreThoseAfterVelocitiesMeetTheCables) {
   }
 }
 
-// By a decimal figure it slackens at first: what is over within a hundredth of a step is none.
+// A cable that slackens by what figures are rounded to is taut: forces undo that within the kick.
 TEST(FirstTensions, OfVelocitiesThatAreDecimalFigures) {
   const double m = 2.0, length = 1.3, speed = 3.0;
   for (const int steps : {1, 16, 64}) {
