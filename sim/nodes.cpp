@@ -7,8 +7,10 @@
 #include <cmath>
 
 #include "base/at.h"
+#include "sim/cable/mass.h"
 #include "sim/compound.h"
 #include "sim/hanging.h"
+#include "sim/make_world.h"
 #include "sim/node_count.h"
 #include "sim/outline.h"
 #include "sim/scene_checks.h"
@@ -207,7 +209,15 @@ Cable piece_of(const Cable& whole, const NodedCable& made, int k, double piece, 
   return part;
 }
 
-NodedCable spread(Scene& scene, std::size_t c, Expected expected) {
+/// How an end moves with what holds it, by these bodies of the scene as they start.
+Flow flow_at(const Scene& scene, const World& bodies, const Attachment& end) {
+  if (end.body < 0) return {};
+  const Vec2 lever = place_of(scene, end) - at(bodies.position, end.body);
+  return {at(bodies.velocity, end.body) + at(bodies.angular_velocity, end.body) * left(lever), 0.0};
+}
+
+/// `bodies`: those of the scene, without nodes.
+NodedCable spread(Scene& scene, const World& bodies, std::size_t c, Expected expected) {
   const Cable whole = scene.cables[c];
   const std::string place = pointer("cables", c);
   refuse_what_has_no_nodes(whole, place);
@@ -232,13 +242,16 @@ NodedCable spread(Scene& scene, std::size_t c, Expected expected) {
   if (hangs) laid = hang_pieces(scene, whole, masses, piece, d, place);
   NodedCable made{static_cast<int>(c), static_cast<int>(scene.bodies.size()), pieces - 1,
                   static_cast<int>(scene.cables.size()), pieces - 1};
+  const Flow tail = flow_at(scene, bodies, whole.start), head = flow_at(scene, bodies, whole.end);
   Vec2 position = from;
   for (int k = 0; k < pieces; ++k) {
     const double spare = hangs ? piece - at(laid.lengths, k) : whole.slack / pieces;
     const Cable part = piece_of(whole, made, k, piece, spare);
     if (k + 1 < pieces) {
-      position += at(laid.lengths, k) * at(laid.directions, k);
-      scene.bodies.push_back(node_of(whole, k + 1, position, at(masses, k)));
+      const Vec2& along = at(laid.directions, k);
+      position += at(laid.lengths, k) * along;
+      Body& node = scene.bodies.emplace_back(node_of(whole, k + 1, position, at(masses, k)));
+      node.velocity = velocity_between(tail, head, (k + 1.0) / pieces, along);
     }
     if (k == 0) {
       scene.cables[c] = part;
@@ -296,11 +309,12 @@ std::vector<NodedCable> spread_nodes(Scene& scene) {
     const std::vector<Expected> found = expected_of(scene, open);  // before there are nodes
     for (std::size_t i = 0; i < open.size(); ++i) expected[open[i]] = found[i];
   }
+  const World bodies = bodies_of_scene(scene);
   for (std::size_t c = 0; c < count; ++c) {
     if (becomes_strung(scene.cables[c])) made.push_back(add_strung_nodes(scene, c, expected[c]));
   }
   for (std::size_t c = 0; c < count; ++c) {
-    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, c, expected[c]));
+    if (becomes_nodes(scene.cables[c])) made.push_back(spread(scene, bodies, c, expected[c]));
   }
   return made;
 }
