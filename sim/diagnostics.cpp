@@ -8,12 +8,11 @@
 #include <limits>
 
 #include "base/at.h"
-#include "sim/cable/bending.h"
 #include "sim/cable/cable.h"
-#include "sim/cable/creep.h"
 #include "sim/cable/held.h"
 #include "sim/cable/held_spans.h"
 #include "sim/cable/mass.h"
+#include "sim/energy.h"
 
 namespace pinchlab {
 
@@ -110,40 +109,17 @@ bool check_corners(const Scene& scene, World& world) {
 
 double potential_energy(const Scene& scene, const World& world) {
   double energy = 0.0;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const BodyProperties& body = world.bodies[b];
-    if (can_move(body)) energy -= body.mass * scene.gravity.dot(world.position[b]);
+  for (int b = 0; index(b) < world.bodies.size(); ++b) {
+    energy += potential_energy_of_body(scene, world, b);
   }
-  for (std::size_t c = 0; c < world.cables.size(); ++c) {
-    const double stiffness = scene.cables[c].axial_stiffness;
-    const CableState& cable = world.cables[c];
-    if (cable.bends_with >= 0) energy += bending_energy(world, cable);
-    if (is_massed(cable)) energy += potential_energy(world, cable, scene.gravity);
-    if (stiffness == infinity) continue;
-    for (std::size_t i = first_segment(cable); i < cable.segments.size(); ++i) {
-      const Segment& segment = cable.segments[i];
-      const double material = elastic_material(cable, segment);
-      if (segment.pinched || material == 0.0) continue;
-      double stretch = segment.length - segment.rest_length;
-      if (!cable.rod) stretch = std::max(stretch, 0.0);
-      energy += 0.5 * stiffness * stretch * stretch / material;
-    }
-    if (!cable.rims.empty()) energy += energy_carried(world, cable, stiffness);
+  for (int c = 0; index(c) < world.cables.size(); ++c) {
+    energy += potential_energy_of_cable(scene, world, c);
   }
   for (const NodeChain& chain : scene.chains) {
     energy += potential_energy_held(world, chain, scene.gravity);
   }
   return energy;
 }
-
-namespace {
-
-/// The share of what is after a kick, of the velocity at its time.
-double share_after(double lag, double length) {
-  return lag / (lag + 0.5 * length);
-}
-
-}  // namespace
 
 double kinetic_energy(const BodyProperties& body, const Vec2& v, double omega) {
   if (body.kind == BodyKind::fixed) return 0.0;
@@ -172,39 +148,13 @@ double kinetic_energy(const World& world, const Instant& before, double length, 
   return energy + kinetic_energy(world.bodies[b], v, omega);
 }
 
-namespace {
-
-double lag_of_cable(const World& world, const Instant& before, int cable) {
-  return before.lag[world.bodies.size() + index(cable)];
-}
-
-/// Links may have come and gone since: one of the cable's on the same body stands for the sleeve,
-/// or, where there is none any more, its motion before.
-double kinetic_energy(const World& world, double lag, double length, Sleeve sleeve) {
-  const std::vector<Link>& links = at(world.cables, sleeve.cable).links;
-  const auto is_it = [&sleeve](const Link& link) {
-    return link.body == sleeve.body && link.orientation != 0 && !link.pinch_middle;
-  };
-  Eigen::Vector3d now = sleeve.velocity;
-  if (index(sleeve.first) >= links.size() || !is_it(at(links, sleeve.first))) {
-    sleeve.first =
-        static_cast<int>(std::find_if(links.begin(), links.end(), is_it) - links.begin());
-  }
-  if (index(sleeve.first) < links.size()) now = velocity_of(world, sleeve);
-  const double after = share_after(lag, length);
-  const Eigen::Vector3d v = (1.0 - after) * sleeve.velocity + after * now;
-  return 0.5 * v.dot(sleeve.mass * v);
-}
-
-}  // namespace
-
 double kinetic_energy(const World& world, const Instant& before, double length) {
   double energy = 0.0;
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
     energy += kinetic_energy(world, before, length, b);
   }
   for (const Sleeve& sleeve : before.sleeves) {
-    energy += kinetic_energy(world, lag_of_cable(world, before, sleeve.cable), length, sleeve);
+    energy += kinetic_energy_of_sleeve(world, before, length, sleeve);
   }
   return energy;
 }
@@ -214,7 +164,7 @@ double kinetic_energy_of_sleeves(const World& world, const Instant& before, doub
   double energy = 0.0;
   for (const Sleeve& sleeve : before.sleeves) {
     if (sleeve.cable != cable) continue;
-    energy += kinetic_energy(world, lag_of_cable(world, before, cable), length, sleeve);
+    energy += kinetic_energy_of_sleeve(world, before, length, sleeve);
   }
   return energy;
 }

@@ -19,13 +19,6 @@
 namespace pinchlab {
 namespace {
 
-/// Nothing but gravity and elastic cables gives energy to the scene.
-bool is_undriven(const Scene& scene) {
-  return std::none_of(scene.bodies.begin(), scene.bodies.end(), [](const Body& body) {
-    return body.driven_angular_velocity.has_value() || body.torque != 0.0 || !body.motor.empty();
-  });
-}
-
 /// "12 %", "0.3 %", "4.12e+05 %".
 std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
@@ -38,24 +31,11 @@ std::string name_of_side(const Scene& scene, const World& world, int side) {
                    : fmt::format("the end of cable '{}'", at(scene.cables, cable).name);
 }
 
-/// J. Lengths and gaps are exact to the round-off d of the largest coordinate, and a step puts it
-/// right with velocities of d / h: where nothing else moves that is all the energy there is.
-double energy_of_round_off(const Scene& scene, const World& world) {
-  double largest = 0.0, mass = 0.0;  // m, kg
-  for (const Body& body : scene.bodies) {
-    largest = std::max(largest, body.position.cwiseAbs().maxCoeff() + body.radius);
-    if (can_move(body)) mass += body.mass;
-  }
-  const double speed = std::numeric_limits<double>::epsilon() * largest / world.step_length;
-  return 0.5 * mass * speed * speed;
-}
-
-/// Whether some bodies' velocities are those of their positions' time.
-bool has_instants(const World& world) {
-  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    if (!is_static(world.bodies[b]) && world.pace[b].lag == 0.0) return true;
-  }
-  return false;
+/// A body, or, counted on after all bodies, a cable.
+std::string name_of_item(const Scene& scene, int item) {
+  const auto bodies = static_cast<int>(scene.bodies.size());
+  return item < bodies ? fmt::format("body '{}'", at(scene.bodies, item).name)
+                       : fmt::format("cable '{}'", at(scene.cables, item - bodies).name);
 }
 
 }  // namespace
@@ -64,18 +44,8 @@ Promises::Promises(const Scene& scene, const World& world) {
   const bool direct = world.configuration.solver == Solver::direct;
   most_strain_ = direct ? limits_.strain : limits_.sweeps_strain;
   watches_gaps_ = direct && world.configuration.method == Method::pinch;
-  watches_energy_ = direct && is_undriven(scene);
-  if (!watches_energy_) return;
-  note_instant(world, before_);
-  potential_ = potential_energy(scene, world);
-  const double kinetic = kinetic_energy(world, before_, world.step_length);
-  for (const Body& body : scene.bodies) {
-    if (can_move(body)) at_play_ += body.mass * scene.gravity.norm() * body.radius;
-  }
-  round_off_ = energy_of_round_off(scene, world);
-  kinetic_ = kinetic;
-  start_energy_ = kinetic + potential_;
-  at_play_ = std::max(at_play_, kinetic);
+  watches_energy_ = direct;
+  if (watches_energy_) energy_.start(scene, world);
 }
 
 void Promises::note_value(Promise promise, double value, double limit, std::int64_t step, int item,
@@ -191,33 +161,15 @@ void Promises::note_contacts(const Scene& scene, const World& world) {
   }
 }
 
-// Energy at the step's start: velocities were from before it and are half an interval after it, and
-// between the two they change evenly. Where the step was divided that half is not known: then there
-// is at least what the lesser of the velocities before and after tells, but for what these and
-// positions can have exchanged meanwhile, no more than potential energy changes by in the step.
-void Promises::note_energy(const Scene& scene, const World& world) {
-  const double kinetic = kinetic_energy(world, before_, world.step_length);
-  at_play_ = std::max(at_play_, kinetic);
-  const bool whole = world.diagnostics.intervals - intervals_ <= 1 && !has_instants(world);
-  note_instant(world, before_);
-  const double kinetic_after = kinetic_energy(world, before_, world.step_length);
-  const double after = potential_energy(scene, world);
-  if (at_play_ > 0.0) {
-    const double sure = std::min(kinetic_, kinetic_after) - std::abs(after - potential_);
-    const double gained = (whole ? kinetic : sure) + potential_ - start_energy_ - round_off_;
-    note_value(Promise::energy, gained / at_play_, limits_.energy, world.step, -1, -1);
-  }
-  potential_ = after;
-  kinetic_ = kinetic_after;
-  intervals_ = world.diagnostics.intervals;
-}
-
 void Promises::note(const Scene& scene, const World& world) {
   now_.fill({});
   note_cables(scene, world);
   note_sag(scene, world);
   if (watches_gaps_) note_contacts(scene, world);
-  if (watches_energy_) note_energy(scene, world);
+  if (watches_energy_) {
+    const EnergyWatch::Gain gain = energy_.note(scene, world);
+    note_value(Promise::energy, gain.share, limits_.energy, world.step, gain.item, -1);
+  }
   if (world.diagnostics.fallbacks > fallbacks_) {
     note_value(Promise::settled, 1.0, 0.0, world.step, -1, -1);
     fallbacks_ = world.diagnostics.fallbacks;
@@ -258,9 +210,9 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
         break;
       case Promise::energy:
         what = fmt::format(
-            "the scene gained {} of the energy at play, and nothing drives it "
-            "(limit {})",
-            percent(w.value), percent(limits_.energy));
+            "{} and what has acted on it gained {} of the energy at play there, and nothing drives "
+            "them (limit {})",
+            name_of_item(scene, w.item), percent(w.value), percent(limits_.energy));
         break;
       case Promise::straight:
         what = fmt::format(

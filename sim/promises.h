@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/diagnostics.h"
+#include "sim/energy_watch.h"
 
 namespace pinchlab {
 
@@ -23,7 +23,7 @@ struct PromiseLimits {
   double sweeps_strain = 5e-2;
   double squeeze = 1e-3;  ///< of the pinched cable's width, or of the smaller radius without cable
   double length = 1e-6;   ///< wraps and spans against the cable's length, over it
-  double energy = 1e-2;   ///< gained since the start, of the energy at play; undriven scenes only
+  double energy = 1e-2;   ///< gained since the start, of the energy at play: energy_watch.h
   double sag = 0.125;     ///< that a span of a cable with mass would have, over its length
 };
 
@@ -53,7 +53,8 @@ class Promises {
     std::int64_t step = 0;          // after which it was so
     std::int64_t first_step = 0;    // after which the limit was first exceeded
     std::int64_t steps_broken = 0;  // 0: the promise has held
-    int item = -1, other = -1;      // cable; or bodies, `other` -1 - wall for an obstacle
+    int item = -1, other = -1;      // cable; or bodies, `other` -1 - wall for an obstacle; of
+                                    // energy, EnergyWatch::Gain::item
   };
 
   void note_value(Promise promise, double value, double limit, std::int64_t step, int item,
@@ -61,7 +62,6 @@ class Promises {
   void note_cables(const Scene& scene, const World& world);
   void note_sag(const Scene& scene, const World& world);
   void note_contacts(const Scene& scene, const World& world);
-  void note_energy(const Scene& scene, const World& world);
 
   PromiseLimits limits_;
   double most_strain_ = 0.0;  // of limits_
@@ -70,14 +70,7 @@ class Promises {
   std::array<Worst, static_cast<std::size_t>(Promise::count)> now_;  // of the step being noted
   std::int64_t fallbacks_ = 0;
 
-  double start_energy_ = 0.0;   // J
-  double round_off_ = 0.0;      // J, that positions' round-off may make of nothing
-  double at_play_ = 0.0;        // J: the largest kinetic energy so far, or what lifts each body
-                                // by its radius, whichever is more
-  double potential_ = 0.0;      // J, at the last step's end
-  double kinetic_ = 0.0;        // J, by the velocities of then
-  Instant before_;              // then
-  std::int64_t intervals_ = 0;  // Diagnostics::intervals
+  EnergyWatch energy_;
 };
 
 }  // namespace pinchlab

@@ -24,7 +24,7 @@ std::ptrdiff_t offset(std::size_t i) {
 }
 
 /// What the rim of the later of two links on a body carries becomes part of the earlier one's, from
-/// where that ends on. If a pinch between them had some material to itself, the next span has it.
+/// where that ends on.
 void take_over(CableState& cable, int link, int later) {
   if (cable.rims.empty() || at(cable.rims, link).laid.empty()) return;
   const Rim& other = at(cable.rims, later);
@@ -42,6 +42,15 @@ void take_over(CableState& cable, int link, int later) {
       all.push_back({place, laid.material + shift, laid.slope});
     }
   }
+}
+
+/// What the spans between two links had more than lies there now that these are one is with the
+/// span after it, of which `had` (m) was the material before: half of it goes to the other side.
+void share_excess(World& world, CableState& cable, int link, double had) {
+  const double excess = at(cable.segments, next_link(cable, link)).rest_length - had;
+  if (std::abs(excess) <= material_rounding(cable)) return;
+  shift_material(cable, link, 0.5 * excess);
+  update_wraps_and_rest_lengths(world, cable);
 }
 
 /// Notes it in Workspace::released, in its cable's place.
@@ -67,6 +76,8 @@ void remove_link(World& world, CableState& cable, int link) {
   const bool merge = before != after && one.body == other.body && one.corner == other.corner &&
                      one.orientation == other.orientation && one.orientation != 0;
   const bool of_corner = !merge && at(cable.links, link).corner >= 0;
+  const int kept = before - (link < before ? 1 : 0) - (after < before ? 1 : 0);  // in a merge
+  const double beyond = merge ? at(cable.segments, next_link(cable, after)).rest_length : 0.0;
   count_changes(world, cable, 1);
   // A segment goes with the link that it arrives at; the one that leaves from the link stays and is
   // computed anew from the link before. In a merge the earlier link on the body stays.
@@ -94,6 +105,7 @@ void remove_link(World& world, CableState& cable, int link) {
     }
   }
   update_wraps_and_rest_lengths(world, cable);
+  if (merge) share_excess(world, cable, kept, beyond);
   lay_down(world, cable);
 }
 

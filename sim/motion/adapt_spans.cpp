@@ -115,25 +115,79 @@ bool wants_other_nodes(const Scene& scene, const World& world, const BoxTree& ne
   return false;
 }
 
-int change_nodes(const Scene& scene, World& world, const BoxTree& near, int number) {
+namespace {
+
+/// Whether of two links the first is the nearer to its end of the cable, in the finest pieces; of
+/// two equally near, whether the cable bends less there. What is no node holds nothing up.
+bool is_nearer_end(const CableState& cable, int first, int last) {
+  const Link &one = at(cable.links, first), &other = at(cable.links, last);
+  if (!is_strung(cable, one)) return true;
+  if (!is_strung(cable, other)) return false;
+  const int before = one.body - cable.first_node + 1;
+  const int after = cable.nodes - (other.body - cable.first_node);
+  if (before != after) return before < after;
+  const auto bend = [&cable](int link) {
+    return std::abs(
+        cross(at(cable.segments, link).direction, at(cable.segments, link + 1).direction));
+  };
+  return bend(first) <= bend(last);
+}
+
+/// Makes two of a segment; three of an odd number of the finest, one of these in the middle, so
+/// that it is the same from either end. How many nodes have come.
+int split(World& world, CableState& cable, std::size_t segment) {
+  const int pieces = pieces_of(cable, segment), half = pieces / 2;
+  split_span(world, cable, segment, half);
+  if (pieces % 2 == 0) return 1;
+  split_span(world, cable, segment + 1, 1);
+  return 2;
+}
+
+/// Splits what is to be split, from both ends of the cable inwards, since what one is made of
+/// counts for the next: so it does not matter which end is the first. How many nodes have come.
+int split_spans(const Scene& scene, World& world, const BoxTree& near, int number) {
   CableState& cable = at(world.cables, number);
   int changes = 0;
-  for (std::size_t s = 1; s < cable.segments.size();) {
-    if (!is_to_split(scene, world, near, number, s)) {
-      ++s;
-      continue;
+  int first = 1, last = static_cast<int>(cable.segments.size()) - 1;
+  while (first <= last) {
+    const bool at_first = is_nearer_end(cable, first - 1, last);
+    const std::size_t segment = index(at_first ? first : last);
+    if (is_to_split(scene, world, near, number, segment)) {
+      const int come = split(world, cable, segment);
+      changes += come;
+      last += come;
+    } else {
+      at_first ? ++first : --last;
     }
-    split_span(world, cable, s, pieces_of(cable, s) / 2);
-    ++changes;
-  }
-  // What has just become two is not to become one: both limits are apart. One of every two nodes
-  // goes at most, so that pieces grow alike.
-  for (std::size_t s = 1; s < cable.segments.size(); ++s) {
-    if (!is_to_merge(scene, world, near, number, s)) continue;
-    merge_at_node(world, cable, static_cast<int>(s));
-    ++changes;
   }
   return changes;
+}
+
+/// The same of nodes that go: one of every two at most, so that pieces grow alike. How many have.
+int merge_spans(const Scene& scene, World& world, const BoxTree& near, int number) {
+  CableState& cable = at(world.cables, number);
+  int changes = 0;
+  int first = 1, last = static_cast<int>(cable.segments.size()) - 2;
+  while (first <= last) {
+    const bool at_first = is_nearer_end(cable, first, last);
+    const int link = at_first ? first : last;
+    const bool goes = is_to_merge(scene, world, near, number, index(link));
+    if (goes) {
+      merge_at_node(world, cable, link);
+      ++changes;
+      --last;
+    }
+    at_first ? ++first : --last;
+  }
+  return changes;
+}
+
+}  // namespace
+
+int change_nodes(const Scene& scene, World& world, const BoxTree& near, int number) {
+  const int split = split_spans(scene, world, near, number);
+  // What has just become two is not to become one: both limits are apart.
+  return split + merge_spans(scene, world, near, number);
 }
 
 void let_out_spans(const Scene& scene, World& world, int number) {

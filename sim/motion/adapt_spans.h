@@ -3,7 +3,8 @@
 // The number of nodes of a cable with mass that runs over bodies adapts as that of hanging ones
 // does (adapt_nodes.h), by spans between nodes which hold a bend (cable/held_spans.h). Any two that
 // are neighbours may become one; pieces beside rims and ends stay the finest. A span that loses its
-// tension becomes two, since it is no cable that could give way.
+// tension becomes two, since it is no cable that could give way. All that is so chosen is chosen
+// from both ends of the cable inwards, so that neither is its first.
 
 #include "sim/world.h"
 

@@ -124,10 +124,13 @@ int level_in_sim(const std::string& file) {
       {"sim/cable", 1}, {"sim/detect", 2}, {"sim/solve", 3}, {"sim/thesis", 4}, {"sim/motion", 5}};
   const auto room = of_room.find(room_of(file));
   if (room != of_room.end()) return room->second;
-  if (file == "sim/parts.cpp" || unit_of(file) == "sim/diagnostics") return of_room.at("sim/cable");
-  for (const char* above :
-       {"sim/at_steps", "sim/first_tensions", "sim/joints", "sim/make_world", "sim/node_count",
-        "sim/nodes", "sim/promises", "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
+  if (file == "sim/parts.cpp" || unit_of(file) == "sim/diagnostics" ||
+      unit_of(file) == "sim/energy") {
+    return of_room.at("sim/cable");
+  }
+  for (const char* above : {"sim/at_steps", "sim/energy_watch", "sim/first_tensions", "sim/joints",
+                            "sim/make_world", "sim/node_count", "sim/nodes", "sim/promises",
+                            "sim/scene_checks", "sim/scene_figures", "sim/step"}) {
     if (unit_of(file) == above) return 6;
   }
   return 0;

@@ -14,6 +14,7 @@
 #include "sim/cable/strung.h"
 #include "sim/make_world.h"
 #include "sim/motion/neighbourhoods.h"
+#include "sim/nodes.h"
 #include "sim/step.h"
 #include "sim/tangent.h"
 #include "sim/workspace.h"
@@ -46,6 +47,41 @@ TEST(TakingIn, WholeTurnsAboutANodeWindNothingUp) {
   for (std::size_t i = 0; i < rope.links.size(); ++i) {
     EXPECT_NEAR(rope.links[i].wrap, other.links[i].wrap, 1e-12);
     EXPECT_NEAR(rope.segments[i].rest_length, other.segments[i].rest_length, 1e-12);
+  }
+}
+
+/// A rope on a disc between two others, all free, which the disc draws on; from either end.
+Scene drawn_by_a_disc(bool other_end) {
+  Scene scene;
+  scene.gravity = Vec2::Zero();
+  scene.bodies = {body("a", BodyKind::free, -0.8, 0.0, 0.2, 1.0),
+                  body("b", BodyKind::free, 0.8, 0.1, 0.3, 2.0),
+                  body("disc", BodyKind::free, 0.0, 0.8, 0.25, 1.5)};
+  scene.bodies[2].velocity = {0.0, 1.0};
+  Attachment a = on(0), b = on(1);
+  a.point = {0.0, 0.2};
+  b.point = {0.0, 0.3};
+  scene.cables.push_back(other_end ? cable(b, {{2, 1, 0}}, a, 0.01)
+                                   : cable(a, {{2, -1, 0}}, b, 0.01));
+  scene.cables[0].mass_per_metre = 0.4;
+  scene.cables[0].nodes = 9;
+  scene.steps_per_frame = 16;
+  spread_nodes(scene);
+  return scene;
+}
+
+// Where the rope folds back on the disc about a node, it has more than lies there when the node is
+// taken in. That is slack on both sides alike, whichever end of the rope is called its start.
+TEST(TakingIn, WhatFoldsBackGivesToBothSides) {
+  const Scene scene = drawn_by_a_disc(false), other = drawn_by_a_disc(true);
+  World world = make_world(scene, measured()), reversed = make_world(other, measured());
+  run(scene, world, 900);
+  run(other, reversed, 900);
+  const int first = world.cables[0].first_node, nodes = world.cables[0].nodes;
+  for (int k = 0; k < nodes; ++k) {
+    const Vec2 apart = pinchlab::at(world.position, first + k) -
+                       pinchlab::at(reversed.position, first + nodes - 1 - k);
+    EXPECT_LT(apart.norm(), 1e-9) << k;
   }
 }
 
