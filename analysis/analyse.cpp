@@ -60,7 +60,7 @@ DemonstrationResult analyse_demonstration(const AnswersTable& table, std::uint16
                    ? reading_of_participants(pooled)
                    : no_reading("one participant; nothing is known of how participants differ");
   }
-  result.scale = scale_value(row.share, row.read.low, row.read.high);
+  result.scale = scale_value(row.counts, row.read.low, row.read.high);
   for (const Group& group : table.groups) {
     const auto& members = group.demonstrations;
     if (group.name != all_group &&
@@ -99,7 +99,7 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
                  : reading_of_answers(row, one_answer_each ? "exact binomial test"
                                                            : "exact binomial test that takes all "
                                                              "answers as independent");
-  result.scale = scale_value(row.share, row.read.low, row.read.high);
+  result.scale = scale_value(row.counts, row.read.low, row.read.high);
   return result;
 }
 

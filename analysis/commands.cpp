@@ -90,7 +90,7 @@ void add_power(CLI::App& app) {
       "  pinchlab power --share 0.6 --trials 8 --icc 0.1     eight answers a participant that "
       "resemble each other\n"
       "An earlier study's report.json names its intraclass correlation under `pooled`.");
-  add_truth(*command, *question, "True share of answers for one method, 0 to 1");
+  add_truth(*command, *question, "True share of answers for one method, above 0 and below 1");
   command->add_option("--power", question->power, "Probability of finding the difference")
       ->capture_default_str()
       ->check(number());
@@ -137,7 +137,7 @@ void add_stopping(CLI::App& app) {
   command->add_option("--bayes-factor", question->bayes_factor, "Stop from it on, and from 1 / it")
       ->capture_default_str()
       ->check(number());
-  add_truth(*command, question->truth, "True share to try it with, 0 to 1");
+  add_truth(*command, question->truth, "True share to try it with, above 0 and below 1");
   auto json = std::make_shared<std::filesystem::path>();
   command
       ->add_option("--json", *json,

@@ -225,7 +225,7 @@ std::vector<ReactionTimes> reaction_times(const AnswersTable& table, const std::
   return rows;
 }
 
-ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) {
+ScaleValue scale_value(const Counts& counts, const Estimate& low, const Estimate& high) {
   const auto z = [](double p) {
     return p > 0.0 && p < 1.0 ? Estimate(gsl_cdf_ugaussian_Pinv(p))
                               : Estimate::none("a share of 0 or 1 is infinitely far on the scale");
@@ -238,11 +238,18 @@ ScaleValue scale_value(double share, const Estimate& low, const Estimate& high) 
     const Estimate distance = z(p.value);
     return distance ? Estimate(distance.value / unit) : distance;
   };
+  const auto pinch = static_cast<double>(counts.pinch), cable = static_cast<double>(counts.cable);
+  // Of the lesser share, so that swapping the methods changes signs alone.
+  const double sign = pinch <= cable ? 1.0 : -1.0;
+  const double lesser = std::min(pinch, cable) / (pinch + cable);
+  const Estimate distance = z(lesser);
+  const auto times = [](double factor, const Estimate& of) {
+    return of ? Estimate(factor * of.value) : of;
+  };
   ScaleValue value;
-  const Estimate distance = z(share);
-  value.bradley_terry_log_odds = distance ? Estimate(std::log(share / (1.0 - share))) : distance;
-  value.thurstone_d = distance ? Estimate(std::sqrt(2.0) * distance.value) : distance;
-  value.jod = jod(Estimate(share));
+  value.bradley_terry_log_odds = distance ? Estimate(std::log(pinch) - std::log(cable)) : distance;
+  value.thurstone_d = times(sign * std::sqrt(2.0), distance);
+  value.jod = times(sign, jod(lesser));
   value.jod_low = jod(low);
   value.jod_high = jod(high);
   return value;

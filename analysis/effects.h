@@ -56,7 +56,7 @@ struct ScaleValue {
   Estimate thurstone_d;  ///< Thurstone's case V with unit variances: sqrt 2 Phi^-1(share)
   Estimate jod, jod_low, jod_high;  ///< just-objectionable differences: 1 JOD is a share of 3/4
 };
-/// `interval` is an interval of the share that is carried over to the JOD.
-ScaleValue scale_value(double share, const Estimate& low, const Estimate& high);
+/// `low` to `high` is an interval of the share of pinch that is carried over to the JOD.
+ScaleValue scale_value(const Counts& counts, const Estimate& low, const Estimate& high);
 
 }  // namespace pinchlab::analysis

@@ -58,11 +58,11 @@ void find_participants(const PowerQuestion& question, PowerAnswer& answer) {
 }  // namespace
 
 void check_question(const PowerQuestion& q) {
-  check(q.share > 0.0 && q.share < 1.0, "--share", "must be between 0 and 1");
+  check(q.share > 0.0 && q.share < 1.0, "--share", "must be above 0 and below 1");
   check(q.share != 0.5, "--share",
         "one half is what the test takes for granted; no number of participants "
         "shows it to be otherwise");
-  check(q.alpha > 0.0 && q.alpha < 1.0, "--alpha", "must be between 0 and 1");
+  check(q.alpha > 0.0 && q.alpha < 1.0, "--alpha", "must be above 0 and below 1");
   check(q.power > q.alpha && q.power < 1.0, "--power", "must be between alpha and 1");
   check(q.trials >= 1 && q.trials <= 1000, "--trials", "must be from 1 to 1000");
   check(q.icc >= 0.0 && q.icc <= 1.0, "--icc", "must be from 0 to 1");

@@ -29,27 +29,41 @@ double exact_binomial_p(const Counts& counts) {
   return std::min(1.0, 2.0 * binomial_upper_tail(larger, 0.5, counts.total()));
 }
 
+namespace {
+
+/// From the lower bound at any counts: the upper bound is that of the other method's. Both are 1
+/// less a number, so that swapping the methods mirrors them to the bit.
+template <class Lower>
+Interval mirrored_interval(const Counts& counts, const Lower& lower) {
+  const double low = lower(static_cast<double>(counts.pinch), static_cast<double>(counts.cable));
+  const double rest = lower(static_cast<double>(counts.cable), static_cast<double>(counts.pinch));
+  return {1.0 - (1.0 - low), 1.0 - rest};
+}
+
+}  // namespace
+
 Interval wilson_interval(const Counts& counts, double alpha) {
   const double z = gsl_cdf_ugaussian_Qinv(alpha / 2.0);
-  const auto n = static_cast<double>(counts.total());
-  const auto k = static_cast<double>(counts.pinch);
-  const double centre = (k + z * z / 2.0) / (n + z * z);
-  const double half = z / (n + z * z) * std::sqrt(k * (n - k) / n + z * z / 4.0);
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  // The lesser root of (n + z^2) p^2 - (2 k + z^2) p + k^2 / n = 0 by the greater: no difference of
+  // near numbers, and exactly 0 at k = 0.
+  return mirrored_interval(counts, [z](double k, double rest) {
+    const double n = k + rest;
+    return k * k / n / (k + z * z / 2.0 + z * std::sqrt(k * rest / n + z * z / 4.0));
+  });
 }
 
 Interval clopper_pearson_interval(const Counts& counts, double alpha) {
-  const auto k = static_cast<double>(counts.pinch);
-  const auto rest = static_cast<double>(counts.cable);
   // A bound p solves "the tail at k has probability alpha/2"; tails of the binomial are those of a
   // beta.
-  const double low = counts.pinch == 0 ? 0.0 : beta_quantile(alpha / 2.0, k, rest + 1.0);
-  const double high = counts.cable == 0 ? 1.0 : beta_quantile(1.0 - alpha / 2.0, k + 1.0, rest);
-  return {low, high};
+  return mirrored_interval(counts, [alpha](double k, double rest) {
+    return k == 0.0 ? 0.0 : beta_quantile(alpha / 2.0, k, rest + 1.0);
+  });
 }
 
-double cohens_h(double share) {
-  return 2.0 * std::asin(std::sqrt(share)) - M_PI / 2.0;
+double cohens_h(const Counts& counts) {
+  // 2 asin sqrt(p) - pi/2 = asin(2 p - 1)
+  return std::asin(static_cast<double>(counts.pinch - counts.cable) /
+                   static_cast<double>(counts.total()));
 }
 
 double log_bayes_factor(const Counts& counts) {
@@ -130,7 +144,7 @@ Row make_row(const std::string& name, const Counts& counts, double alpha) {
   row.p_exact = exact_binomial_p(counts);
   row.wilson = wilson_interval(counts, alpha);
   row.clopper_pearson = clopper_pearson_interval(counts, alpha);
-  row.cohens_h = cohens_h(row.share);
+  row.cohens_h = cohens_h(counts);
   row.log_bayes_factor = log_bayes_factor(counts);
   return row;
 }

@@ -27,13 +27,15 @@ double chi_square_p(double chi_square, double df);
 double exact_binomial_p(const Counts& counts);
 
 /// Wilson's score interval for the share of pinch, no continuity correction. `alpha` in (0, 1).
+/// Like Clopper and Pearson's it begins at exactly 0 where nobody chose pinch, and ends at exactly
+/// 1 where all did.
 Interval wilson_interval(const Counts& counts, double alpha);
 
 /// Clopper and Pearson's exact interval for the share of pinch.
 Interval clopper_pearson_interval(const Counts& counts, double alpha);
 
 /// Cohen's h = 2 asin sqrt(share) - 2 asin sqrt(1/2): 0.2 small, 0.5 medium, 0.8 large.
-double cohens_h(double share);
+double cohens_h(const Counts& counts);
 
 /// Natural logarithm of the Bayes factor of "share ~ Beta(1, 1)" (uniform) against "share = 1/2":
 /// ln [B(pinch + 1, cable + 1) 2^n].

@@ -129,6 +129,27 @@ void refuse_overlaps(const Scene& scene, const World& world, const BroadPhase& b
   }
 }
 
+/// No wrap takes a cable round a body that one of its ends lies in.
+void refuse_ends_inside(const Scene& scene, const World& world, const SpanPair& pair) {
+  const CableState& cable = at(world.cables, pair.cable);
+  const Segment& segment = at(cable.segments, pair.segment);
+  const Body& body = at(scene.bodies, pair.body);
+  const auto refuse = [&](const Link& link, const char* end, const Vec2& point) {
+    if (link.orientation != 0 || (link.body >= 0 && at(scene.bodies, link.body).node)) return;
+    const double distance = is_polygon(body)
+                                ? outside_of(corners_of(world, pair.body), point).distance
+                                : (point - body.position).norm();
+    const double depth = rim_radius(body) + cable.half_width - distance;
+    if (depth <= overlap_allowed(scene)) return;
+    throw SceneError(pointer("cables", index(pair.cable)) + end,
+                     fmt::format("the cable's end lies {} inside of body '{}' (half width "
+                                 "included); move one of them, or fix the end to the body",
+                                 in_mm(depth), body.name));
+  };
+  refuse(at(cable.links, previous_link(cable, pair.segment)), "/start", segment.tail);
+  refuse(at(cable.links, pair.segment), "/end", segment.head);
+}
+
 void refuse_cables_through_bodies(const Scene& scene, const World& world, const BroadPhase& broad) {
   const double allowed = overlap_allowed(scene);
   for (const SpanPair& pair : broad.span_pairs) {
@@ -144,6 +165,7 @@ void refuse_cables_through_bodies(const Scene& scene, const World& world, const 
                          : distance_from_line(segment.tail, segment.head, body.position);
     const double overlap = rim_radius(body) + cable.half_width - distance;
     if (overlap > allowed) {
+      refuse_ends_inside(scene, world, pair);
       throw SceneError(
           pointer("cables", index(pair.cable)),
           fmt::format("the cable runs through body '{}' ({} deep) on its way to {}; add the body "

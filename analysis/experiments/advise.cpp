@@ -232,14 +232,14 @@ namespace {
 /// s that are asked for.
 double seconds_of(const Question& question, const Scene& scene) {
   const double clip = static_cast<double>(scene.frame_count) / scene.frames_per_second;
-  if (question.seconds <= 0.0) return clip;
-  const double frames = std::round(question.seconds * scene.frames_per_second);
+  if (!question.seconds) return clip;
+  const double frames = std::round(*question.seconds * scene.frames_per_second);
   if (frames < 1.0 || frames > scene.frame_count) {
     throw std::invalid_argument(fmt::format(
         "{}: --time must be {:.3g} to {} s, from a frame to the whole clip, not {}",
-        question.scene.string(), 1.0 / scene.frames_per_second, clip, question.seconds));
+        question.scene.string(), 1.0 / scene.frames_per_second, clip, *question.seconds));
   }
-  return question.seconds;
+  return *question.seconds;
 }
 
 /// The scene's own solution, as sure as is asked for or can be had.
@@ -346,9 +346,11 @@ void add_advise_command(CLI::App& app) {
       ->type_name("M")
       ->required()
       ->check(number_in(1e-12, 1e3));
-  command->add_option("--time", question->seconds, "How much of the clip counts, s [all of it]")
+  command
+      ->add_option("--time", question->seconds,
+                   "How much of the clip counts, s, at least a frame [all of it]")
       ->type_name("S")
-      ->check(number_in(0.05, 600.0));
+      ->check(number());
   add_time_limit(*command, question->time_limit, "Give up");
   command->add_flag("--all", question->all, "Show all that was tried, not one row a configuration");
   command->footer(

@@ -17,7 +17,7 @@ namespace pinchlab::experiments {
 struct Question {
   std::filesystem::path scene;
   double error_m = 1e-3;             ///< > 0
-  double seconds = 0.0;              ///< 0: the whole clip
+  std::optional<double> seconds;     ///< from a frame to the whole clip, which none stands for
   bool all = false;                  ///< show every rung, not one a configuration
   int most_steps = 256;              ///< a frame, that are tried
   int most_reference_steps = 4096;   ///< a frame, of the scene's own solution

@@ -221,7 +221,7 @@ void add_bench_commands(CLI::App& app) {
       "Each writes raw tables (CSV) and a page that says in words what they show; where there is "
       "something to\ndraw, figures too (SVG and PDF, by gnuplot).\n\n"
       "Examples:\n"
-      "  pinchlab bench all --quick                        everything, in less than two minutes\n"
+      "  pinchlab bench all --quick                        everything, in several minutes\n"
       "  pinchlab bench all --out analysis/results         the published results\n"
       "  pinchlab bench render demos/03-drop.json          what a frame of one clip costs");
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/experiments/growth.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +10,7 @@
 #include <utility>
 
 #include "analysis/experiments/counted_scenes.h"
+#include "analysis/experiments/experiment.h"
 #include "base/at.h"
 #include "demos/scenes/library.h"
 
@@ -66,7 +65,7 @@ double first_steps_seconds(const Scene& scene, int count, const Effort& effort) 
   return spread(samples).median;
 }
 
-/// Leaves nothing of what was read before in any cache of the processor.
+/// Leaves nothing of what was read before in any cache that one core fills.
 class EmptyCaches {
  public:
   void operator()() {
@@ -75,20 +74,18 @@ class EmptyCaches {
   }
 
  private:
-  static std::size_t size() {
-    constexpr long least = 96L << 20;  // B: what a virtual machine tells may be too little
-    return static_cast<std::size_t>(std::max(3 * sysconf(_SC_LEVEL3_CACHE_SIZE), least));
-  }
-  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(size());
+  /// B: three times the 32 MB that eight cores of a server share. What the system tells is no
+  /// measure: a virtual machine tells too little, or what all cores of its host have together.
+  static constexpr std::size_t size = std::size_t{96} << 20;
+  std::vector<unsigned char> bytes_ = std::vector<unsigned char>(size);
 };
 
 /// Of a call on a scene that finds its memory in no cache: a step, the mean of the first
 /// `growing.steps`, or make_world. The program's code is there, and the processor has seen its
-/// branches: the least scene has just done the same.
-double cold_seconds(const GrowingScene& growing, int size, const Effort& effort) {
-  constexpr std::size_t most_samples = 15;
+/// branches: the least scene has just done the same. With --quick one in five is timed.
+double cold_seconds(const GrowingScene& growing, int size, EmptyCaches& empty_caches,
+                    const Effort& effort) {
   const Scene scene = growing.scene(size), least = growing.scene(growing.sizes.front());
-  EmptyCaches empty_caches;
   const auto timed = [&](const auto& before, const auto& call) {
     empty_caches();
     before();
@@ -97,7 +94,7 @@ double cold_seconds(const GrowingScene& growing, int size, const Effort& effort)
     return cpu_seconds() - start;
   };
   std::vector<double> samples;
-  const std::size_t count = std::min(effort.samples, most_samples);
+  const std::size_t apart = effort.samples < Effort().samples ? 5 : 1, count = 15 / apart;
   if (growing.steps == 0) {
     while (samples.size() < count) {
       samples.push_back(timed([&least] { make_world(least, awake()); },
@@ -107,12 +104,18 @@ double cold_seconds(const GrowingScene& growing, int size, const Effort& effort)
   }
   Steps steps(scene), before(least);
   steps.step();  // its storage is not there yet
-  const std::size_t first = index(growing.steps - 1);
-  while (samples.size() < (first > 0 ? first : count)) {
-    samples.push_back(timed([&before] { before.step(); }, [&steps] { steps.step(); }));
+  const bool differ = growing.steps > 1;
+  const std::size_t first = differ ? index(growing.steps - 1) : count;
+  for (std::size_t k = 0; k < first; ++k) {
+    if (differ && k % apart > 0) {
+      before.step();
+      steps.step();
+    } else {
+      samples.push_back(timed([&before] { before.step(); }, [&steps] { steps.step(); }));
+    }
   }
-  if (first == 0) return spread(samples).median;
-  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(first);
+  if (!differ) return spread(samples).median;
+  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
 }
 
 double make_seconds(const Scene& scene, const Effort& effort) {
@@ -146,6 +149,16 @@ double GrowthResult::taken_by_copy() const {
 }
 
 std::vector<GrowthResult> measure_growth(const Effort& effort) {
+  // Rough processor time of a size: where steps differ many are taken.
+  const auto expected_work = [](const GrowingScene& growing) {
+    return growing.steps > 1 ? 4.0 : 1.0;
+  };
+  double work = 0.0;
+  for (const GrowingScene& growing : growing_scenes()) {
+    work += expected_work(growing) * static_cast<double>(growing.sizes.size());
+  }
+  Progress progress("stress, many things that share nothing", work);
+  EmptyCaches empty_caches;
   std::vector<GrowthResult> results;
   for (const GrowingScene& growing : growing_scenes()) {
     GrowthResult result{growing.what, growing.sizes, {}, {}, {}};
@@ -155,8 +168,9 @@ std::vector<GrowthResult> measure_growth(const Effort& effort) {
                                : growing.steps == 1
                                    ? step_seconds(scene, effort)
                                    : first_steps_seconds(scene, growing.steps, effort));
-      result.cold_seconds.push_back(cold_seconds(growing, size, effort));
+      result.cold_seconds.push_back(cold_seconds(growing, size, empty_caches, effort));
       result.copy_seconds.push_back(copy_seconds(scene, growing.steps > 0, effort));
+      progress.done(expected_work(growing));
     }
     results.push_back(std::move(result));
   }

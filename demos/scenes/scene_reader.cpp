@@ -156,13 +156,14 @@ Attachment Reader::read_attachment(const json& from, const std::string& place, c
     const double distance =
         outside_of(body.corners, attachment.point).distance - body.corner_radius;
     if (distance > half_width * (1.0 + 1e-9)) {
-      problem(place + "/point_m",
-              fmt::format("lies {} m outside of the body; at most half_width_m, {}, is possible",
-                          distance, half_width));
+      problem(
+          place + "/point_m",
+          fmt::format("lies {:.12g} m outside of the body; at most half_width_m, {}, is possible",
+                      distance, half_width));
     }
   } else if (attachment.point.norm() > radius * (1.0 + 1e-9)) {
     problem(place + "/point_m",
-            fmt::format("lies {} m from the body's centre, outside of its radius of {} m",
+            fmt::format("lies {:.12g} m from the body's centre, outside of its radius of {} m",
                         attachment.point.norm(), radius));
   }
   return attachment;
@@ -358,8 +359,8 @@ void Reader::read_timing(const json& from, SceneContent& to) {
   if (whole < 1.0 || std::abs(frames - whole) > 1e-9 * frames) {
     const double nearest = std::max(whole, 1.0) / scene.frames_per_second;
     problem("/duration_s",
-            fmt::format("must be a whole number of frames: {} at {} a second are {}; "
-                        "the nearest is {}",
+            fmt::format("must be a whole number of frames: {} at {} a second are {:.12g}; "
+                        "the nearest is {:.12g}",
                         duration, scene.frames_per_second, frames, nearest));
     return;
   }

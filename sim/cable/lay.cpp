@@ -77,6 +77,31 @@ bool is_beside(const World& world, const Link& link, const Vec2& point, const Ve
   });
 }
 
+/// Of an end on a polygon that the cable is wound on: how far it is outside of that (m).
+double distance_outside(const World& world, const Link& end) {
+  const BodyProperties& body = at(world.bodies, end.body);
+  return outside_of(body.corners, end.offset).distance - body.corner_radius;
+}
+
+/// Why there is none of these tangents.
+[[noreturn]] void refuse_to_join(const Scene& scene, const World& world, const Course& course,
+                                 int stop, const Link& leaves, const Link& arrives) {
+  const bool at_start = leaves.orientation == 0;
+  if (leaves.body != arrives.body || (!at_start && arrives.orientation != 0)) {
+    throw SceneError(
+        place_of_stop(course, stop),
+        fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
+                    "move them apart or give the wrap the other `turn`",
+                    name_of_body(scene, leaves.body), name_of_body(scene, arrives.body)));
+  }
+  const double distance = distance_outside(world, at_start ? leaves : arrives);
+  throw SceneError(
+      place_of_stop(course, at_start ? stop - 1 : stop),
+      fmt::format("an end on the body that the cable is wound on must lie at its rim, {:.12g} m "
+                  "outside of one of its sides (half width), not {:.12g} m{}",
+                  course.given.half_width, std::abs(distance), distance < 0.0 ? " inside" : ""));
+}
+
 /// Of all tangents from one of the first links to one of the others, the one that leaves no corner
 /// on its outer side; whether there is one.
 bool join(const World& world, std::span<const Link> from, std::span<const Link> to, double allowed,
@@ -153,12 +178,8 @@ void lay_links(const Scene& scene, const World& world, Course& course) {
              arrives[i])) {
       continue;
     }
-    throw SceneError(
-        place_of_stop(course, static_cast<int>(i) + first_stop),
-        fmt::format("the cable finds no way from {} to {}, one of which is in its way; "
-                    "move them apart or give the wrap the other `turn`",
-                    name_of_body(scene, leaves[before].body),
-                    name_of_body(scene, arrives[i].body)));
+    refuse_to_join(scene, world, course, static_cast<int>(i) + first_stop, leaves[before],
+                   arrives[i]);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const int stop = static_cast<int>(i) + first_stop;
@@ -185,7 +206,7 @@ void lay_tangents(const Scene& scene, const World& world, Course& course) {
       throw SceneError(
           place_of(course, from.orientation == 0 ? tail : i),
           fmt::format("an end on the body that the cable is wound on must lie at its rim, "
-                      "{} m from the centre (radius + half width), not {} m",
+                      "{:.12g} m from the centre (radius + half width), not {:.12g} m",
                       needed, distance));
     }
     if (distance < needed - course.allowed) {
@@ -315,7 +336,8 @@ void lay_material(const World& world, Course& course) {
   cable.length = taut + slack;
   if (!(free_length + slack > 0.0)) {
     throw SceneError(pointer("cables", course.number),
-                     "the cable has no free length; give it slack or move its ends apart");
+                     fmt::format("the cable has no free length; give it slack or move its {} apart",
+                                 cable.closed ? "bodies" : "ends"));
   }
   const double stretch = free_length > 0.0 ? 1.0 + slack / free_length : 0.0;
   double reached = 0.0;

@@ -2,6 +2,7 @@
 // Values computed with R 4.6, to be met to six digits.
 #include <cmath>
 
+#include "analysis/effects.h"
 #include "analysis/tests_2afc.h"
 #include "tests/analysis/support.h"
 
@@ -150,6 +151,36 @@ TEST(Row, SwappingTheMethodsMirrorsEverything) {
     EXPECT_NEAR(row.wilson.low, 1.0 - mirror.wilson.high, 1e-14);
     EXPECT_NEAR(row.clopper_pearson.low, 1.0 - mirror.clopper_pearson.high, 1e-12);
     EXPECT_NEAR(row.log_bayes_factor, mirror.log_bayes_factor, 1e-9);
+  }
+}
+
+// Where every answer is the same an interval ends at exactly 0 or 1, and nothing has a last bit that
+// depends on which method is called which: 16 of 16 once ended at 1 - 2^-53, 12 JOD up the scale.
+TEST(Row, SwappingTheMethodsMirrorsIntervalsAndScalesToTheBit) {
+  for (int n = 1; n <= 60; ++n) {
+    for (int k = 0; k <= n; ++k) {
+      SCOPED_TRACE(fmt::format("{} of {}", k, n));
+      const Row row = make_row("x", {k, n - k}, 0.05), mirror = make_row("x", {n - k, k}, 0.05);
+      const auto expect_mirrored = [k, n](const Interval& interval, const Interval& other) {
+        EXPECT_EQ(interval.low, 1.0 - other.high);
+        EXPECT_EQ(interval.high, 1.0 - other.low);
+        EXPECT_EQ(interval.low == 0.0, k == 0);
+        EXPECT_EQ(interval.high == 1.0, k == n);
+      };
+      expect_mirrored(row.wilson, mirror.wilson);
+      expect_mirrored(row.clopper_pearson, mirror.clopper_pearson);
+      EXPECT_EQ(row.cohens_h, -mirror.cohens_h);
+      EXPECT_EQ(row.log_bayes_factor, mirror.log_bayes_factor);
+      const ScaleValue a = scale_value(row.counts, row.wilson.low, row.wilson.high);
+      const ScaleValue b = scale_value(mirror.counts, mirror.wilson.low, mirror.wilson.high);
+      EXPECT_EQ(bool(a.jod), 0 < k && k < n);
+      EXPECT_EQ(bool(a.jod_low), k > 0);
+      EXPECT_EQ(bool(a.jod_high), k < n);
+      EXPECT_EQ(a.bradley_terry_log_odds.value, -b.bradley_terry_log_odds.value);
+      EXPECT_EQ(a.thurstone_d.value, -b.thurstone_d.value);
+      EXPECT_EQ(a.jod.value, -b.jod.value);
+      EXPECT_EQ(a.jod_low.value, -b.jod_high.value);
+    }
   }
 }
 

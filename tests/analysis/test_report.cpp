@@ -207,7 +207,7 @@ TEST(Properties, SwappingTheMethodsFlipsSigns) {
 }
 
 TEST(Scale, OneJodIsThreeQuarters) {
-  const ScaleValue value = scale_value(0.75, 0.5, 1.0);
+  const ScaleValue value = scale_value({3, 1}, 0.5, 1.0);
   EXPECT_NEAR(value.jod.value, 1.0, 1e-12);
   EXPECT_NEAR(value.jod_low.value, 0.0, 1e-12);
   EXPECT_FALSE(value.jod_high);

@@ -46,7 +46,13 @@ const BadUse bad_uses[] = {
     // Half read
     {{"still", "01-small.json", "--time", "0,,1", "--out", "x.png"}, "--time must be 0 to 2 s"},
     {{"still", "01-small.json", "--time", "0,", "--out", "x.png"}, "--time must be 0 to 2 s"},
-    // It was simulated beyond the clip's end
+    {{"power", "--share", "1"}, "--share: must be above 0 and below 1"},
+    {{"power", "--share", "0"}, "--share: must be above 0 and below 1"},
+    // It was simulated beyond the clip's end, and what was out of other bounds was told by those
+    {{"advise", "01-small.json", "--error", "0.01", "--time", "0.01"},
+     "01-small.json: --time must be 0.0333 to 2 s, from a frame to the whole clip, not 0.01"},
+    {{"advise", "01-small.json", "--error", "0.01", "--time", "1000"},
+     "01-small.json: --time must be 0.0333 to 2 s, from a frame to the whole clip, not 1000"},
     {{"advise", "01-small.json", "--error", "0.01", "--time", "2.1"},
      "01-small.json: --time must be 0.0333 to 2 s, from a frame to the whole clip, not 2.1"},
     {{"stopping", "--participants", "16,,32", "--share", "0.7"}, "--participants: 16,,32 is not"},

@@ -157,6 +157,48 @@ TEST(MakeWorld, RefusesAnEndOffTheRimItIsWoundOn) {
   expect_refused(scene, "/cables/0/end", "must lie at its rim");
 }
 
+TEST(MakeWorld, RefusesAnEndOffThePolygonItIsWoundOn) {
+  Scene scene = drum_scene();
+  make_polygon(scene.bodies[0], {{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.3}, {-0.3, 0.3}}, 0.0);
+  const std::vector<std::pair<double, const char*>> off_the_rim{
+      {0.0, "0.3 m inside"}, {-0.3, "0 m"}, {-0.31, "0.01 m"}};
+  for (const auto& [x, where] : off_the_rim) {
+    scene.cables[0] = cable({0, {x, 0.0}}, {{0, -1, 0}}, at(0.4, -2.0), 0.02);
+    expect_refused(scene, "/cables/0/start",
+                   std::string("must lie at its rim, 0.02 m outside of one of its sides (half "
+                               "width), not ") +
+                       where);
+  }
+  scene.cables[0] = cable(at(-0.4, -2.0), {{0, -1, 0}}, {0, {0.0, 0.0}}, 0.02);
+  expect_refused(scene, "/cables/0/end", "must lie at its rim, 0.02 m outside");
+  scene.cables[0] = cable({0, {-0.32, 0.0}}, {{0, -1, 0}}, at(0.4, -2.0), 0.02);
+  EXPECT_NO_THROW(make_world(scene, Method::pinch));
+}
+
+// No wrap takes a cable out of a body that its end lies in.
+TEST(MakeWorld, RefusesAnEndInsideABody) {
+  Scene scene = drum_scene();
+  scene.cables[0] = cable(at(0.0, 0.1), {}, at(2.0, 0.0));
+  expect_refused(scene, "/cables/0/start", "the cable's end lies 450 mm inside of body 'drum'");
+  scene.cables[0] = cable(at(2.0, 0.0), {}, at(0.0, 0.1));
+  expect_refused(scene, "/cables/0/end", "fix the end to the body");
+  scene.cables[0] = cable({0, {0.0, 0.1}}, {}, at(2.0, 0.0));
+  EXPECT_NO_THROW(make_world(scene, Method::pinch));
+  scene.cables[0] = cable(at(-2.0, 0.1), {}, at(2.0, 0.0));
+  expect_refused(scene, "/cables/0", "runs through body 'drum'");
+}
+
+TEST(MakeWorld, AClosedCableHasNoEndsToMove) {
+  Scene scene;
+  scene.bodies.push_back(body("a", BodyKind::fixed_axle, -0.5, 0.0, 0.3, 1.0));
+  scene.bodies.push_back(body("b", BodyKind::fixed_axle, 0.14, 0.0, 0.3, 1.0));
+  scene.cables.push_back(cable({}, {{0, -1, 0}, {1, 1, 0}}, {}, 0.02));
+  scene.cables[0].closed = true;
+  expect_refused(scene, "/cables/0", "give it slack or move its bodies apart");
+  scene.cables[0].slack = 0.01;
+  EXPECT_NO_THROW(make_world(scene, Method::pinch));
+}
+
 TEST(MakeWorld, LaysCablesTaut) {
   Scene scene = drum_scene();
   World world = make_world(scene, Method::pinch);

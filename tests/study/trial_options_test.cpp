@@ -183,6 +183,26 @@ TEST(TrialOptions, OtherOptionsAreAnotherStudy) {
   }
 }
 
+// What the README marks with `?` can be left out of an answer, and nothing else.
+TEST(TrialOptions, EveryKeyOfAnAnswerIsDocumented) {
+  const std::string readme = read_whole(fs::path(PINCHLAB_SOURCE_DIR) / "study/README.md");
+  const std::size_t begin = readme.find("Keys of `POST /api/answer`");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string keys = readme.substr(begin, readme.find("\n\nAny request", begin) - begin);
+  json whole = answer_body(0);
+  whole.update({{"reason", "jumps"},
+                {"where_side", "left"},
+                {"where_x", 0.5},
+                {"where_y", 0.5},
+                {"where_time_s", 1}});
+  for (const auto& [key, value] : whole.items()) {
+    json without = whole;
+    without.erase(key);
+    const bool may_be_left_out = refused([&] { parse_answer(without); }) == 0;
+    EXPECT_NE(keys.find("`" + key + (may_be_left_out ? "?`" : "`")), std::string::npos) << key;
+  }
+}
+
 // Simulated grades: the truth's sign is found again, ties are reported and in no count.
 TEST(TrialOptions, SimulatedGradesAreAnalysed) {
   const fs::path folder = scratch_folder();

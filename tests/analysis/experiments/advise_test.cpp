@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "analysis/experiments/steady_times.h"
 #include "demos/scenes/scene_json.h"
@@ -215,6 +216,16 @@ int exit_code(std::vector<std::string> arguments) {
   return 0;
 }
 
+// A clip of 10 ms could be given no --time, nor one of 700 s.
+TEST_F(Advise, TakesATimeOfAnyClip) {
+  Question question = ask("pendulum", pendulum_json, 1.0);
+  nlohmann::json scene = nlohmann::json::parse(pendulum_json);
+  scene["frames_per_second"] = 1000;
+  scene["duration_s"] = 0.01;
+  std::ofstream(question.scene) << scene;
+  EXPECT_EQ(exit_code({"advise", question.scene.string(), "--error", "1", "--time", "0.002"}), 0);
+}
+
 TEST_F(Advise, CommandLineIsStrict) {
   const std::string scene = ask("pendulum", pendulum_json, 1.0).scene.string();
   using CLI::ExitCodes;
@@ -224,7 +235,12 @@ TEST_F(Advise, CommandLineIsStrict) {
   for (const char* error : {"0", "-1", "nan", "inf", "much", "1e-3x"}) {
     EXPECT_EQ(exit_code({"advise", scene, "--error", error}), invalid) << error;
   }
-  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--time", "0"}), invalid);
+  EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--time", "1s"}), invalid);
+  for (const char* time : {"0", "-1", "0.001", "1.5", "1000"}) {
+    EXPECT_THROW(exit_code({"advise", scene, "--error", "1", "--time", time}),
+                 std::invalid_argument)
+        << time;
+  }
   EXPECT_EQ(exit_code({"advise", scene, "--error", "1", "--steps", "4"}),
             static_cast<int>(ExitCodes::ExtrasError));
 }

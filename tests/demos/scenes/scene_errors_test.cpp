@@ -159,7 +159,7 @@ const BadScene bad_scenes[] = {
     {"/duration_s", "0.01",
      "s.json: /duration_s: must be a whole number of frames: 0.01 at 30 a second are 0.3; the "
      "nearest is "
-     "0.03333333333333333"},
+     "0.0333333333333"},
     {"/poster_time_s", "2.5", "s.json: /poster_time_s: must be within duration_s, 2"},
     // Kinds and what goes with them
     {"/bodies/2/rail_axis", nullptr,
@@ -201,6 +201,9 @@ const BadScene bad_scenes[] = {
     {"/cables/0/end/point_m", "[0, 0.3]",
      "s.json: /cables/0/end/point_m: lies 0.3 m from the body's centre, outside of its radius of "
      "0.2 m"},
+    {"/cables/0/end/point_m", "[0.1, 0.2]",
+     "s.json: /cables/0/end/point_m: lies 0.22360679775 m from the body's centre, outside of its "
+     "radius of 0.2 m"},
     {"/cables/0/wraps/-", R"({"body": "wheel", "turn": "clockwise"})",
      "s.json: /cables/0/wraps/1: is on the same body as the wrap before it; say extra_turns for "
      "more than one "
