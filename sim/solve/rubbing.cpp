@@ -88,8 +88,8 @@ void find_sleeves(const World& world, const Parts& parts, const Part& part, Part
 
 namespace {
 
-/// N, what a span's row and what flows there is more than X at its end on a sleeve, which turns with
-/// its rim at w and moves at `velocity`.
+/// N, what a span's row and what flows there is more than X at its end on a sleeve, which turns
+/// with its rim at w and moves at `velocity`.
 double bend_at(const MassedSpan& span, const Laying& end, const Eigen::Vector3d& velocity,
                double w) {
   return span.density * (end.keeps ? w * w : 0.5 * (w * w + velocity.head<2>().squaredNorm()));

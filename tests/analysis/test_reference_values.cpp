@@ -154,8 +154,8 @@ TEST(Row, SwappingTheMethodsMirrorsEverything) {
   }
 }
 
-// Where every answer is the same an interval ends at exactly 0 or 1, and nothing has a last bit that
-// depends on which method is called which: 16 of 16 once ended at 1 - 2^-53, 12 JOD up the scale.
+// Where every answer is the same an interval ends at exactly 0 or 1, and nothing has a last bit
+// that depends on which method is called which: 16 of 16 once ended at 1 - 2^-53, 12 JOD up.
 TEST(Row, SwappingTheMethodsMirrorsIntervalsAndScalesToTheBit) {
   for (int n = 1; n <= 60; ++n) {
     for (int k = 0; k <= n; ++k) {

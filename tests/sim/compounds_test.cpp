@@ -116,8 +116,8 @@ TEST(Compounds, OfOneShapeIsThatShape) {
   }
 }
 
-// A corner that a rope with mass comes on to takes up momentum, which the shape that it is of learns
-// of at once.
+// A corner that a rope with mass comes on to takes up momentum, which the shape that it is of
+// learns of at once.
 TEST(Compounds, OfOneShapeCarriesARopeThatSlipsAsThatShape) {
   Shape pentagon;
   pentagon.properties.corners = build::regular_corners(5, 0.3);

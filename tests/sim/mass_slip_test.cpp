@@ -248,8 +248,8 @@ Scene from_the_other_end(Scene scene) {
   return scene;
 }
 
-// Ends that move apart stretch a rope evenly, or catch it; a belt on discs of which one turns begins
-// between their speeds. Which end comes first is no matter.
+// Ends that move apart stretch a rope evenly, or catch it; a belt on discs of which one turns
+// begins between their speeds. Which end comes first is no matter.
 TEST(MassSlip, TheStartIsTheSameFromEitherEnd) {
   for (const double stiffness : {2000.0, infinity}) {
     Scene open;
