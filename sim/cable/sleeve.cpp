@@ -249,10 +249,11 @@ struct Between {
   }
 };
 
-/// Before sleeve k of a cable that has these, and no others.
+/// Before sleeve k of a cable that has these, and no others. A side of a polygon slips as one.
 Between before_sleeve(const World& world, const CableState& cable,
                       const std::vector<Sleeve>& sleeves, std::size_t k) {
   Between way;
+  if (sleeves[k].goes_on) return way;
   int i = sleeves[k].first;
   const int last = sleeves[(k + sleeves.size() - 1) % sleeves.size()].last;
   way.add(world, cable, i);
