@@ -96,7 +96,7 @@ TEST(PressedSlip, AThinnerCableBesideThePressedOneSlipsFreely) {
     Scene scene = scene_of(with);
     scene.bodies.push_back(body("left", BodyKind::free, -side, -2.0, 0.1, with.light));
     scene.bodies.push_back(body("right", BodyKind::free, side, -1.0, 0.1, with.heavy));
-    for (const std::size_t i : {4U, 5U}) scene.bodies[i].outlined = false;
+    for (const std::size_t i : {1U, 2U, 4U, 5U}) scene.bodies[i].outlined = false;
     Cable beside = cable(on(4), {{0, -1, 0}}, on(5), thin);
     beside.name = "beside";
     scene.cables.insert(first ? scene.cables.begin() : scene.cables.end(), beside);
