@@ -239,12 +239,13 @@ Eigen::Vector3d momentum_of(const Scene& scene, const World& world) {
 }
 
 // Two weights whirl about a polygon, or a compound, that flies and turns. Of the angular momentum
-// what the rope's span loses as a corner divides it is left out: half of it is at either end.
+// what the rope's span loses as a corner divides it is left out: half of it is at either end. Of
+// order 1.5 at least over a ladder of 16: where in a step a corner comes on makes errors uneven.
 TEST(MassSlipOnMovers, KeepsMomentumInFreeFlight) {
   for (const int corners : {0, 5}) {
     for (const double mu : {0.0, 0.15}) {
       double error = 0.0;
-      for (const int steps : {4, 16}) {
+      for (const int steps : {4, 64}) {
         Scene scene = swinging_over(steps, mu, BodyKind::free, corners);
         scene.cables.pop_back();
         scene.gravity = Vec2::Zero();
@@ -262,11 +263,11 @@ TEST(MassSlipOnMovers, KeepsMomentumInFreeFlight) {
           change.z() = 0.0;
         }
         if (error > 0.0) {
-          EXPECT_GT(error / change.norm(), 8.0) << corners << ", " << mu;
+          EXPECT_GT(error / change.norm(), 64.0) << corners << ", " << mu;
         }
         error = change.norm();
       }
-      EXPECT_LT(error, 5e-6) << corners << ", " << mu;
+      EXPECT_LT(error, 5e-8) << corners << ", " << mu;
     }
   }
 }
