@@ -10,6 +10,7 @@
 #include "sim/cable/sleeve.h"
 #include "sim/compound.h"
 #include "sim/motion/impact.h"
+#include "sim/motion/missed.h"
 #include "sim/solve/active_set.h"
 #include "sim/solve/forces.h"
 #include "sim/solve/light_bodies.h"
@@ -109,8 +110,7 @@ std::vector<RowMotion> motions_of(const Scene& scene, const Around& now, Workspa
 
 /// Friction of bare surfaces has its own already (change_of_sliding), what stretches its length.
 bool takes_curvature(const Row& row) {
-  if (row.kind == RowKind::tangent || is_of_sleeve(row) || row.compliance > 0.0) return false;
-  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
+  return row.compliance == 0.0 && is_exact_row(row);
 }
 
 /// As solve_again, with the rows' motions.

@@ -297,8 +297,9 @@ void begin_slip(const World& world, CableState& cable, const std::vector<Sleeve>
   for (std::size_t k = 0; k < run.count; ++k) {
     speed -= ways[k].stretching - strain_rate * ways[k].material;
     speeds.push_back(speed);
-    flow += material_at(cable, sleeve(k)) * speed;
-    material += material_at(cable, sleeve(k));
+    const double moved = material_at(cable, sleeve(k));
+    flow += moved * speed;
+    material += moved;
   }
   const double mean = run.round ? flow / material : 0.0;
   for (std::size_t k = 0; k < run.count; ++k) {

@@ -17,11 +17,6 @@ namespace pinchlab {
 
 namespace {
 
-bool is_exact_row(const Row& row) {
-  if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
-  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
-}
-
 /// Whether a row's condition changes by J v and nothing else: that of a segment between circles
 /// which have not moved, as its length stands and its material turns evenly, or of a middle body
 /// where nothing of its cable's course has.
@@ -58,6 +53,11 @@ double slid_in(const World& world, const Row& row) {
 }
 
 }  // namespace
+
+bool is_exact_row(const Row& row) {
+  if (row.kind == RowKind::tangent || is_of_sleeve(row)) return false;
+  return row.kind != RowKind::pinch_middle || row.slip == Slip::stick;
+}
 
 double add_missed(const World& world, const Parts& parts, const Part& part, const SolveScratch& set,
                   const TimeSpan& t, PartSystem& s, IntervalTrial& trial) {

@@ -15,6 +15,7 @@
 #include "sim/make_world.h"
 #include "sim/outline.h"
 #include "tests/sim/course.h"
+#include "tests/sim/other_end.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
 #include "tests/sim/scenes.h"
@@ -236,16 +237,6 @@ TEST(MassSlip, ABeltIsDraggedAlongAtSpeed) {
     }
     EXPECT_NEAR(world.angle[1], x / radius, 1e-8 * x / radius);
   }
-}
-
-/// The same with every cable written from its other end; closed ones from their last link.
-Scene from_the_other_end(Scene scene) {
-  for (Cable& c : scene.cables) {
-    std::swap(c.start, c.end);
-    std::reverse(c.wraps.begin(), c.wraps.end());
-    for (Wrap& wrap : c.wraps) wrap.orientation = -wrap.orientation;
-  }
-  return scene;
 }
 
 /// Two weights that fly apart, on a rope over two that turn, of which one may be a pentagon.

@@ -8,6 +8,7 @@
 #include "analysis/experiments/population.h"
 #include "analysis/experiments/population_scenes.h"
 #include "tests/analysis/experiments/watched.h"
+#include "tests/sim/other_end.h"
 
 namespace pinchlab::experiments {
 namespace {
@@ -76,17 +77,6 @@ TEST(Population, WhatStretchesKeepsItsLengthAsAPinchOpens) {
   }
 }
 
-/// The scene with its cables from their ends to their starts.
-Scene from_the_ends(Scene scene) {
-  for (Cable& cable : scene.cables) {
-    if (cable.piece) continue;
-    std::swap(cable.start, cable.end);
-    std::ranges::reverse(cable.wraps);
-    for (Wrap& wrap : cable.wraps) wrap.orientation = -wrap.orientation;
-  }
-  return scene;
-}
-
 // Rough rims on which an elastic cable slides in part (sim/cable/partial_slip.h). Where the pulls
 // of both spans meet on a rim a 24th of it went to one of them (8), and rims at either end of a
 // span (74) took from it one after the other: 0.7 um and 0.04 um apart after 0.3 s.
@@ -94,7 +84,7 @@ TEST(Population, WhatStretchesMovesTheSameFromEitherEnd) {
   for (const int seed : {8, 74}) {
     const ShapelyScene drawn = stretched_shapes(static_cast<std::uint64_t>(seed));
     const Soundness one = run_scene(drawn.scene, watched(), 4, 18);
-    const Soundness other = run_scene(from_the_ends(drawn.scene), watched(), 4, 18);
+    const Soundness other = run_scene(testing::from_the_other_end(drawn.scene), watched(), 4, 18);
     for (std::size_t b = 0; b < drawn.bodies; ++b) {
       EXPECT_LE((one.positions[b] - other.positions[b]).norm(), 1e-9) << seed << ", body " << b;
     }
