@@ -123,13 +123,27 @@ bool is_solid_end(const World& world, const CableState& cable, const Link& link)
   return false;
 }
 
+/// Whether what is at the side of a span is at that of the piece beyond the node at its end, too.
+bool is_over_next_piece(const CableState& cable, std::size_t s, bool over_tail, const Vec2& centre,
+                        double side) {
+  const int head = static_cast<int>(s);
+  const Segment& next =
+      at(cable.segments, over_tail ? previous_link(cable, head) : next_link(cable, head));
+  return cross(next.direction, centre - (over_tail ? next.head : next.tail)) * side > 0.0;
+}
+
 /// The side (m) from which something comes upon a span over an end of it, beyond which it was so
-/// far along (m): from over an end of its cable that bars the way, and which it has come round, or
-/// a rim, away from which it lay, or lies where that has given off the cable below it. Else 0.
-double side_over_end(const World& world, const CableState& cable, std::size_t s,
+/// far along (m): from over an end of its cable that bars the way, and which it has come round; a
+/// rim, away from which it lay, or lies where that has given off the cable below it; or a free
+/// node, which has kept it off, from over the piece beyond. Else 0.
+double side_over_end(const World& world, const CableState& cable, std::size_t s, const Vec2& centre,
                      double along_before, double side_before, double side) {
   const int head = static_cast<int>(s), tail = previous_link(cable, head);
-  const Link& link = at(cable.links, along_before <= 0.0 ? tail : head);
+  const bool over_tail = along_before <= 0.0;
+  const Link& link = at(cable.links, over_tail ? tail : head);
+  if (is_strung(cable, link) && !link.moored) {
+    return is_over_next_piece(cable, s, over_tail, centre, side) ? side : 0.0;
+  }
   if (link.orientation * side_before < 0.0) return side_before;
   if (link.corner < 0 && link.orientation * side < 0.0) return side;
   return is_solid_end(world, cable, link) ? side : 0.0;
@@ -163,7 +177,8 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   double old_side = side_before != 0.0 ? side_before : side;
   if (locates_events(world.configuration) && !beside_before &&
       std::abs(side_before) < margin * (1.0 - in_touch)) {
-    old_side = within ? side_over_end(world, cable, s, along_before, side_before, side) : 0.0;
+    old_side =
+        within ? side_over_end(world, cable, s, circle.now, along_before, side_before, side) : 0.0;
     if (old_side == 0.0) return hit;
   }
   bool reached = within;
@@ -188,7 +203,7 @@ Hit test_circle(const World& world, const Workspace& work, const CableState& cab
   const double along_then = along_before + share * (along - along_before);
   const double length_then = length_before + share * (segment.length - length_before);
   if (along_then > -unsure && along_then < length_then + unsure) return hit;
-  hit.found = side_over_end(world, cable, s, along_then, old_side, old_side) != 0.0;
+  hit.found = side_over_end(world, cable, s, circle.now, along_then, old_side, old_side) != 0.0;
   return hit;
 }
 

@@ -104,7 +104,8 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     // SHAKE's first correction is the curvature of the way, and the second what the constraints'
     // turning on that way makes of it: of the order of the interval's own error.
     const double missed = add_missed(world, work.parts, part, set, t, s, trial);
-    const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty();
+    const bool corrects = t.length >= shortest_corrected * t.repair;
+    const bool follows = round < 2 && attempt.most_rounds > 0 && !s.carried.empty() && corrects;
     if (follows) follow_flow(scene, work.start, work.parts, part, t, s);
     watch.lap(Stage::update_segments);
     // Of what was foreseen there is nothing left but where it goes otherwise than foreseen.
@@ -115,8 +116,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     // short an interval there is nothing to correct but round-off.
     const bool helps = round < 2 || missed < 0.5 * before_last;
     const bool may_stay = !helps && s.carried.empty();
-    const bool meets = missed <= (may_stay ? t.made_up : s.tolerance()) ||
-                       t.length < shortest_corrected * t.repair;
+    const bool meets = missed <= (may_stay ? t.made_up : s.tolerance()) || !corrects;
     if (meets && !follows) {
       if (round > 0) trial.turned = turned_square(world, bodies, t.length, s);
       return true;
