@@ -253,17 +253,27 @@ void add_flow_forces(const MassedSpan& span, const Vec2& gravity, const Vector3d
   end(at_b, v_b, u_b, -gain_of_rim(span, at_b, v_b, turning), f_b);
 
   // By the flow of material, whose kinetic energy is the mean of the ends'; from and to what rims
-  // keep too.
-  const double mean = 0.5 * (e_a + e_b);
+  // keep too. For what of that is along a span the momentum goes that flows through its middle.
   const double flow_a = laid.a * span.p_a, flow_b = laid.b * span.p_b;  // m^2 a radian, of material
-  f_a.z() += (at_a.keeps ? mean - e_a : mean) * flow_a;
-  f_b.z() -= (at_b.keeps ? mean - e_b : mean) * flow_b;
+  double mean_a = 0.5 * (e_a + e_b), mean_b = mean_a;
+  if (!span.pinched) {
+    const double along_a = u_a.dot(span.direction), along_b = u_b.dot(span.direction);
+    const double flow = 0.5 * (flow_a * (v_a.z() - turning) + flow_b * (v_b.z() - turning));  // m/s
+    const Vec2 momentum = 0.5 * rho * flow * (along_a + along_b) * span.direction;            // N
+    f_a -= on_body(momentum, span.z_a);
+    f_b += on_body(momentum, span.z_b);
+    const double apart = 0.25 * rho * (along_a * along_a - along_b * along_b);
+    mean_a += apart;
+    mean_b -= apart;
+  }
+  f_a.z() += (at_a.keeps ? mean_a - e_a : mean_a) * flow_a;
+  f_b.z() -= (at_b.keeps ? mean_b - e_b : mean_b) * flow_b;
   // By the direction: the flow to and from rims, and the ends' own places.
   const double weight = mass * gravity.dot(n);  // N, of what moves by dp across the span
   const double along = span.pinched ? 0.0 : 0.5 * rho * gravity.dot(span.direction);        // N/m
   const double spare_a = along * (span.material - laid.a * span.length) - span.strained_a;  // N
   const double spare_b = along * (span.material - laid.b * span.length) + span.strained_b;
-  const double about = mean * (flow_b - flow_a) + e_a * flow_a - e_b * flow_b +
+  const double about = mean_b * flow_b - mean_a * flow_a + e_a * flow_a - e_b * flow_b +
                        mass * v_a.z() * (span.p_a * n + span.slope_a * span.direction).dot(u_a) +
                        mass * v_b.z() * (span.p_b * n + span.slope_b * span.direction).dot(u_b) -
                        weight * (span.slope_a + span.slope_b) + spare_a * span.p_a +

@@ -27,6 +27,16 @@
 // Rows know the first term. The second is by what comes on to a rim or goes off it there without
 // its strain: at a the power T^2 / 2 EA p (omega - phi'), at b as much less.
 //
+// The row of a span has the tension T at its middle. Either half of it, with what that moves with,
+// is a body that material enters and leaves. In the middle it has the mean q of both flows (m/s of
+// material) and the mean u of both velocities, and takes the momentum rho q (u . e) e along from
+// the half at a to that at b. Of a span that cannot stretch this might as well be left to the row,
+// whose force would be less by it: then it would be less in a frame that moves along the span, and
+// no sign of what is slack. Its power rho q (u . e) (u_b - u_a) . e is, by the mean q, that of what
+// the flow's kinetic energy along the span does at its ends,
+//     rho (q_a + q_b) ((u_b . e)^2 - (u_a . e)^2) / 4,
+// which it takes the place of: energy is as it was.
+//
 // A drum that fills (Layers) is as if each moment its outermost turn were its rim: p changes with
 // what is wound up, dp = s d(theta - angle), theta being the span's direction and s its slope. What
 // lies below is fixed to the drum, and the spiral's moments are integrals over it,

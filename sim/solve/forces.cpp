@@ -2,6 +2,7 @@
 #include "sim/solve/forces.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/at.h"
 #include "sim/cable/bending.h"
@@ -87,15 +88,16 @@ BodyProperties driven_now(const Body& body, const TimeSpan& t, BodyProperties no
   return now;
 }
 
-/// Whether a motor without a limit has left its body to the cables in the interval before an
-/// instant, `lag` after that interval's middle.
-bool has_stalled(const Body& body, const TimeSpan& instant, double omega) {
+/// The speed (rad/s) of a motor without a limit in the interval before an instant, `lag` after that
+/// interval's middle, in which it has left its body to the cables; nothing if it has not.
+std::optional<double> speed_of_stalled(const Body& body, const TimeSpan& instant, double omega) {
   constexpr double rounding = 1e-9;
-  if (body.torque_limit < infinity) return false;
+  if (body.torque_limit < infinity) return {};
   const double asked =
       body.motor.empty() ? *body.driven_angular_velocity
                          : mean_drive(body.motor, instant.start - 2.0 * instant.lag, instant.start);
-  return std::abs(omega - asked) > rounding * std::abs(asked);
+  if (std::abs(omega - asked) <= rounding * std::abs(asked)) return {};
+  return asked;
 }
 
 /// The free velocity of a body with a motor, or a table of torques.
@@ -109,10 +111,12 @@ void drive_body(const Scene& scene, const World& world, const TimeSpan& t, int b
   free = free_velocity(forcing_of(scene, now, t.kick), at(world.velocity, body), omega);
   if (!now.driven_angular_velocity) return;
   free.z() = *now.driven_angular_velocity;
-  if (t.held_only && t.kick > 0.0 && has_stalled(given, t, omega)) {
-    free.z() = omega;
-    add_stalled_motor(always, place, omega, s);
-    return;
+  if (t.held_only && t.kick > 0.0) {
+    if (const auto asked = speed_of_stalled(given, t, omega)) {
+      free.z() = omega;
+      add_stalled_motor(always, place, *asked, omega, s);
+      return;
+    }
   }
   add_motor(always, place, free.z(), omega, t.kick, s);
 }

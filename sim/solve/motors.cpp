@@ -14,7 +14,7 @@ namespace {
 // Of a torque, or an angular velocity: far above round-off of sums of rows, and no motor's table
 // tells so little apart.
 constexpr double rounding = 1e-9;
-// Of a rim's speed: far above round-off, far below its share.
+// Of a rim's or a motor's speed: far above round-off, far below its share.
 constexpr double contradicting = 1e-6;
 
 /// Angular impulse of the rows on a body (N m s).
@@ -124,7 +124,8 @@ bool stall(const World& world, const Parts& parts, const Part& part, PartSystem&
   bool changed = false, joined = false;
   for (Motor& motor : s.motors) {
     const double rim = std::abs(motor.speed) * at(world.bodies, bodies[index(motor.place)]).radius;
-    if (motor.most < infinity || rim == 0.0 || motor.state == MotorState::insists) continue;
+    if (motor.most < infinity || motor.pauses || rim == 0.0) continue;
+    if (motor.state == MotorState::insists || motor.state == MotorState::keeps) continue;
     if (any_stretched <= contradicting * rim && any_given <= thrown * rim) continue;
     if (!joined) join_rows(s, set);
     joined = true;
@@ -156,6 +157,7 @@ Motor& append_motor(const BodyProperties& body, int place, double speed, double 
   motor.place = place;
   motor.speed = speed;
   motor.before = before;
+  motor.kept = (speed - before) * before > 0.0 ? 0.0 : before;
   motor.inertia = inertia_of(body);
   motor.moves = can_move(body);
   motor.most = infinity;
@@ -172,8 +174,11 @@ void add_motor(const BodyProperties& body, int place, double speed, double befor
   find_first_state(motor);
 }
 
-void add_stalled_motor(const BodyProperties& body, int place, double before, PartSystem& s) {
-  append_motor(body, place, before, before, s).state = MotorState::stalls;
+void add_stalled_motor(const BodyProperties& body, int place, double speed, double before,
+                       PartSystem& s) {
+  Motor& motor = append_motor(body, place, speed, before, s);
+  motor.pauses = true;
+  motor.state = MotorState::stalls;
 }
 
 void find_first_state(Motor& motor) {
@@ -187,22 +192,46 @@ void find_first_state(Motor& motor) {
 
 void drive(PartSystem& s) {
   for (const Motor& motor : s.motors) {
-    const bool holds = motor.state == MotorState::holds || motor.state == MotorState::insists;
+    const bool keeps = motor.state == MotorState::keeps;
+    const bool holds =
+        keeps || motor.state == MotorState::holds || motor.state == MotorState::insists;
     double& mobility = at(s.mobility, motor.place).angular;
     double& free = at(s.free_velocity, motor.place).z();
     const double before = mobility;
     mobility = holds ? 0.0 : 1.0 / motor.inertia;
     at(s.mobile, motor.place) = motor.moves || !holds;
     s.mobility_changed = s.mobility_changed || mobility != before;
-    free = motor.speed;
+    free = keeps ? motor.kept : motor.pauses ? motor.before : motor.speed;
     if (motor.state == MotorState::forward) free = motor.before + motor.most / motor.inertia;
     if (motor.state == MotorState::backward) free = motor.before - motor.most / motor.inertia;
   }
 }
 
+namespace {
+
+/// What one without a limit is to do that has stalled.
+MotorState next_of_stalled(const PartSystem& s, const Motor& motor) {
+  const double lacks = motor.speed - motor.kept, least = contradicting * lacks * lacks;
+  if (motor.state == MotorState::stalls) {
+    const double gained = at(s.velocity, motor.place).z() - motor.kept;
+    return gained * lacks < -least ? MotorState::keeps : MotorState::stalls;
+  }
+  const double given =
+      motor.inertia * (motor.kept - motor.before) - impulse_of_rows(s, motor.place);
+  return given * lacks < -motor.inertia * least ? MotorState::stalls : MotorState::keeps;
+}
+
+}  // namespace
+
 bool change_limited_motors(PartSystem& s) {
   bool changed = false;
   for (Motor& motor : s.motors) {
+    if (motor.state == MotorState::stalls || motor.state == MotorState::keeps) {
+      const MotorState next = next_of_stalled(s, motor);
+      changed = changed || next != motor.state;
+      motor.state = next;
+      continue;
+    }
     if (motor.most == 0.0 || motor.most == infinity) continue;
     const double turning = at(s.velocity, motor.place).z();
     const double least = rounding * std::max(std::abs(motor.speed), std::abs(motor.before));

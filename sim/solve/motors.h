@@ -17,9 +17,10 @@ namespace pinchlab {
 void add_motor(const BodyProperties& body, int place, double speed, double before, double kick,
                PartSystem& system);
 
-/// Adds one without a limit that stalls, and goes on to leave its body, of that angular velocity
-/// (rad/s), to the cables.
-void add_stalled_motor(const BodyProperties& body, int place, double before, PartSystem& system);
+/// Adds one without a limit that is to turn at `speed`, but has stalled, for an instant: its body
+/// turns at `before` (rad/s).
+void add_stalled_motor(const BodyProperties& body, int place, double speed, double before,
+                       PartSystem& system);
 
 /// Whether it can hold its speed by itself, or gives all it can.
 void find_first_state(Motor& motor);
@@ -34,7 +35,9 @@ void drive(PartSystem& system);
 /// Whether motors with a limit have to do something else than what was just solved for. What a
 /// motor gives is what its body's angular momentum has changed by otherwise than by rows, M = I
 /// (omega+ - omega-) - sum p j. One that holds its speed gives where M is beyond its limit, one
-/// that gives all it can holds its speed where it would turn faster.
+/// that gives all it can holds its speed where it would turn faster. One without a limit that has
+/// stalled lets nothing turn its body back, nor further back than it turned before, as long as that
+/// takes a torque its own way.
 bool change_limited_motors(PartSystem& system);
 
 /// The same for all motors. Where cables that pull at its body cannot give and contradict a motor

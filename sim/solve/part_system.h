@@ -179,6 +179,7 @@ enum class MotorState : std::int8_t {
   forward,   // turns that way with all its torque
   backward,  // likewise
   stalls,    // turns its body only as far as cables let it
+  keeps,     // has stalled, and lets nothing turn its body back
   insists,   // holds for all that: its stalling has not helped
 };
 
@@ -192,6 +193,8 @@ struct Motor {
   bool moves = false;      // the body can do more than turn
   bool threw = false;      // something in this kick, when it held its speed
   double stretched = 0.0;  // m/s, a cable at most, then
+  double kept = 0.0;       // rad/s, below which it lets nothing turn its body when it has stalled
+  bool pauses = false;     // it has stalled in the kick before this instant
   MotorState state = MotorState::holds;
 };
 

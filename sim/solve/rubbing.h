@@ -20,9 +20,9 @@
 // way and in the centre's velocity. Slipping, friction is that f; sticking, it is no more than that
 // either way.
 //
-// The force of a span's row is not its tension: what flows from one half of the span to the other
-// takes momentum along. A sleeve's turning feels the row's force with flow_tensions (mass.h) and
-// the half's own inertia; at the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more,
+// A sleeve's turning feels the force of a span's row, the tension at its middle, with flow_tensions
+// (mass.h) and the half's own inertia, as what flows from one half of the span to the other takes
+// momentum along. At the end of the arc the tension T is that and (w^2 - v^2) rho / 2 more,
 // where v is the centre's velocity (from the momentum of the rope beyond; test
 // MovesAlongWithItsFrame). So X is it less (w^2 + v^2) rho / 2. Where a rim keeps what lies on it,
 // stretched as it came on, flow_tensions has that difference, and X is it less rho w^2.
