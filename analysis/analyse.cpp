@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string_view>
 
 #include "analysis/report.h"
 #include "base/input_error.h"
@@ -103,6 +105,24 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
   return result;
 }
 
+// Who gave only ties, and what was answered by ties only, is in no count of choices.
+Input input_of(const AnswersTable& table) {
+  Input input;
+  for (const Counts& counts : table.counts) input.answers += counts.total();
+  std::set<std::string_view> participants(table.participants.begin(), table.participants.end());
+  std::set<std::string_view> demonstrations(table.demonstrations.begin(),
+                                            table.demonstrations.end());
+  for (const GradedAnswer& answer : table.graded) {
+    input.ties += answer.grade == 0 ? 1 : 0;
+    participants.insert(answer.participant);
+    demonstrations.insert(answer.demonstration);
+  }
+  input.answers += input.ties;
+  input.participants = participants.size();
+  input.demonstrations = demonstrations.size();
+  return input;
+}
+
 }  // namespace
 
 Difference difference_read(const GroupResult& group) {
@@ -151,6 +171,7 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   check_options(options);
   Report report;
   report.options = options;
+  report.input = input_of(table);
   for (size_t i = 0; i < table.demonstrations.size(); ++i) {
     report.demonstrations.push_back(
         analyse_demonstration(table, static_cast<std::uint16_t>(i), options));

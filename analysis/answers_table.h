@@ -59,7 +59,8 @@ struct Exclusion {
 /// A preference that was given in grades (comparison scale of ITU-R BT.500).
 struct GradedAnswer {
   std::string participant, demonstration;
-  int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
+  int grade = 0;     ///< -3 to 3, positive for the method under test; 0: a tie
+  int position = 0;  ///< as Answer::position
 };
 
 /// A click on where it looks wrong.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 #include "base/did_you_mean.h"
@@ -241,6 +242,22 @@ void TableBuilder::check_doubles() const {
 }
 
 // Whoever has answered must have answered every demonstration as often as the design says, ties
+// Nor by a tie.
+void TableBuilder::check_places_of_ties() const {
+  if (ties_.empty()) return;
+  std::set<std::pair<std::string_view, int>> taken;
+  for (const Answer& answer : table_.answers)
+    taken.emplace(table_.participants[answer.participant], answer.position);
+  for (const GradedAnswer& tie : table_.graded) {
+    if (tie.grade != 0 || tie.position == 0) continue;
+    if (taken.emplace(tie.participant, tie.position).second) continue;
+    throw InputError(table_.sources.back(),
+                     fmt::format("participant `{}` has two answers at position {}, a tie among "
+                                 "them; positions count the trials of one participant",
+                                 tie.participant, tie.position));
+  }
+}
+
 // included; who has not is an error, or is listed.
 void TableBuilder::check_times(const std::string& participant, const std::vector<size_t>& times,
                                const std::vector<std::string>& demonstrations,
@@ -325,6 +342,7 @@ AnswersTable TableBuilder::finish() {
   if (!table_.answers.empty()) {
     check_doubles();
     check_missing();
+    check_places_of_ties();
     for (const Answer& answer : table_.answers) {
       Counts& counts = table_.counts[answer.demonstration];
       ++(answer.chose_pinch ? counts.pinch : counts.cable);
