@@ -42,8 +42,9 @@ Reading reading_of_answers(const Row& row, const char* test) {
           .interval = "Wilson"};
 }
 
-Reading no_reading(const std::string& reason) {
-  const Estimate none = Estimate::none(reason);
+Reading no_reading_of_one() {
+  const Estimate none =
+      Estimate::none("one participant; nothing is known of how participants differ");
   return {.p = none, .test = "no test", .low = none, .high = none, .interval = "no interval"};
 }
 
@@ -58,9 +59,7 @@ DemonstrationResult analyse_demonstration(const AnswersTable& table, std::uint16
     row.why_not_independent = repeated;
     const Pooled pooled =
         pooled_tests(table, {row.name, {index}}, options.alpha, options.bootstrap, options.seed);
-    row.read = pooled.participants > 1
-                   ? reading_of_participants(pooled)
-                   : no_reading("one participant; nothing is known of how participants differ");
+    row.read = pooled.participants > 1 ? reading_of_participants(pooled) : no_reading_of_one();
   }
   result.scale = scale_value(row.counts, row.read.low, row.read.high);
   for (const Group& group : table.groups) {
@@ -96,11 +95,12 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
   const bool one_answer_each =
       group.demonstrations.size() == 1 && !(table.answers_per_demonstration > 1);
   Row& row = result.row;
-  row.read = result.pooled.participants > 1 && !one_answer_each
-                 ? reading_of_participants(result.pooled)
-                 : reading_of_answers(row, one_answer_each ? "exact binomial test"
-                                                           : "exact binomial test that takes all "
-                                                             "answers as independent");
+  row.read =
+      one_answer_each                  ? reading_of_answers(row, "exact binomial test")
+      : result.pooled.participants > 1 ? reading_of_participants(result.pooled)
+      : table.participants.empty()
+          ? reading_of_answers(row, "exact binomial test that takes all answers as independent")
+          : no_reading_of_one();
   result.scale = scale_value(row.counts, row.read.low, row.read.high);
   return result;
 }
