@@ -328,3 +328,10 @@ TEST(Freeze, RulesAreCheckedWholly) {
 
 }  // namespace
 }  // namespace pinchlab::study
+  // As `analyse` would refuse them, after the study.
+  const json none = {{"format", "pinchlab-rules 1"},
+                     {"analysis", {{"guess", 0.9}, {"lapse", "free"}}}};
+  EXPECT_NE(message_of<InputError>([&] {
+              parse_rules(none, "r.json", AnswersKind::graded);
+            }).find("r.json: /analysis: `guess` and `lapse`"),
+            std::string::npos);
