@@ -117,6 +117,12 @@ TEST(Usage, WhatIsOfUseIsNot) {
       {"simulate", "01-small.json", "--out", "a.csv", "--method", "cable", "--error", "0"},
       {"simulate", "01-small.json", "--out", "a.csv", "--error", "0.001"},
       {"still", "01-small.json", "--time", "0,1", "--neutral", "--size", "64x64", "--out", "x.png"},
+      // The scene may stand behind any option
+      {"still", "--time", "0", "--time", "1", "01-small.json", "--size", "64x64", "--out", "x.png"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--pair", "pinch,cable", "01-small.json"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--slow", "0.1-0.2:0.5", "01-small.json"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--freeze", "1:0.1", "--freeze", "0.5:0.1",
+       "01-small.json"},
       {"stopping", "--participants", "40", "--share", "0.7", "--rule", "fixed"},
       {"power", "--share", "0.8", "--trials", "2", "--icc", "0.1"}};
   for (const auto& command : good) {
