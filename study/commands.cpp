@@ -378,6 +378,7 @@ void add_import(CLI::App& study) {
     const Imported imported = import_jatos(options->results, options->key, options->answers);
     fmt::print("{} imported, {} were there already\n", counted(imported.added, "participant"),
                imported.known);
+    for (const std::string& note : imported.notes) fmt::print(stderr, "{}\n", note);
   });
 }
 
