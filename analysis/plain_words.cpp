@@ -6,6 +6,7 @@
 
 #include "analysis/design_check.h"
 #include "analysis/document.h"
+#include "base/counted.h"
 
 namespace pinchlab::analysis {
 
@@ -53,9 +54,9 @@ std::string bound_in_words(const Row& all, const std::optional<DesignCheck>& des
   }
   if (design && design->p_at_most) {
     return fmt::format(
-        "; p at most {:.3g} is what the design asks for at this look, p and interval are as for a "
-        "single one",
-        *design->p_at_most);
+        "; p at most {:.3g} is what the design asks for at its look at {}, p and interval are as "
+        "for a single one",
+        *design->p_at_most, counted(design->look, "participant"));
   }
   return "";
 }

@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/csv_columns.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -241,7 +242,6 @@ void TableBuilder::check_doubles() const {
   }
 }
 
-// Whoever has answered must have answered every demonstration as often as the design says, ties
 // Nor by a tie.
 void TableBuilder::check_places_of_ties() const {
   if (ties_.empty()) return;
@@ -258,6 +258,7 @@ void TableBuilder::check_places_of_ties() const {
   }
 }
 
+// Whoever has answered must have answered every demonstration as often as the design says, ties
 // included; who has not is an error, or is listed.
 void TableBuilder::check_times(const std::string& participant, const std::vector<size_t>& times,
                                const std::vector<std::string>& demonstrations,
@@ -341,8 +342,8 @@ AnswersTable TableBuilder::finish() {
   sort_names();
   if (!table_.answers.empty()) {
     check_doubles();
-    check_missing();
     check_places_of_ties();
+    check_missing();
     for (const Answer& answer : table_.answers) {
       Counts& counts = table_.counts[answer.demonstration];
       ++(answer.chose_pinch ? counts.pinch : counts.cable);
@@ -352,8 +353,8 @@ AnswersTable TableBuilder::finish() {
   for (const Counts& counts : table_.counts) total += counts.total();
   if (total == 0) {
     throw InputError(table_.sources.empty() ? "input" : table_.sources.front(),
-                     table_.graded.empty() ? "no answers; a report needs at least one"
-                                           : "all answers are ties; a report needs a choice");
+                     !table_.graded.empty() ? "all answers are ties; a report needs a choice"
+                                            : why_nothing_is_left(table_.exclusions));
   }
   if (total > 2000000000) {
     throw InputError(table_.sources.front(),
