@@ -369,9 +369,8 @@ void add_import(CLI::App& study) {
   add_answers(*command, options->answers);
   command->footer(
       "In JATOS: Results, Export Results, Data Only, Plain Text. Who is in the folder already is "
-      "not "
-      "imported\nagain. Remove who withdrew in JATOS too, or the next import brings the answers "
-      "back.\n\n"
+      "not imported\nagain, and refused with other choices. Remove who withdrew in JATOS too, or "
+      "the next import brings\nthe answers back.\n\n"
       "Example:\n"
       "  pinchlab study import --jatos results.txt --key study.key.json --answers answers");
   command->callback([options] {
