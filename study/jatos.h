@@ -38,8 +38,8 @@ struct Imported {
 
 /// Turns results that JATOS gave back ("data only" as text, or the data.txt files of an unpacked
 /// results archive, folders searched for .txt) into answer files. All is checked before the first
-/// is written, also that nobody chose otherwise in an earlier result. Throws std::runtime_error with
-/// file and line.
+/// is written, also that nobody chose otherwise in an earlier result. Throws std::runtime_error
+/// with file and line.
 Imported import_jatos(const std::vector<std::filesystem::path>& results,
                       const std::filesystem::path& key, const std::filesystem::path& answers);
 
