@@ -280,6 +280,16 @@ std::map<std::string, json> read_questionnaires(JsonObject& result, const Key& k
   return checked;
 }
 
+// An answer file has no saved_utc before started_utc; what it has for both is to be told.
+std::string clock_note(const std::string& place, const ordered_json& file,
+                       const std::string& saved_utc) {
+  if (file.at("saved_utc") == saved_utc) return "";
+  return fmt::format(
+      "{}: saved_utc {} is before started_utc; the participant's clock was set back, and the "
+      "answer file has {} for both",
+      place, saved_utc, file.at("saved_utc").get<std::string>());
+}
+
 // One line of the results: what jatos_server.js submitted.
 Result read_result(const std::string& line, const std::string& place, const Key& key) {
   json document;
@@ -334,12 +344,7 @@ Result read_result(const std::string& line, const std::string& place, const Key&
               answer_file(session, {key.options, key.shown}, shown, parse_free_text(free_text),
                           saved_utc, code_hash),
               ""};
-    if (result.file.at("saved_utc") != saved_utc) {
-      result.note = fmt::format(
-          "{}: saved_utc {} is before started_utc; the participant's clock was set back, and the "
-          "answer file has {} for both",
-          place, saved_utc, session.started_utc);
-    }
+    result.note = clock_note(place, result.file, saved_utc);
   } catch (const std::exception& error) {
     throw InputError(place, error.what());
   }
