@@ -86,6 +86,7 @@ void add_clip_options(CLI::App& command, BatchOptions& options, Size& size) {
           "Compare these two of the methods above, e.g. pinch,thesis, in both left/right orders; "
           "several --pair make several pairs [pinch,baseline]")
       ->type_name("A,B")
+      ->allow_extra_args(false)
       ->excludes("--method");
   add_size(command, size,
            "Pixels of one picture, even for h264 and vp9; 720x1280 is a portrait [960x960]");
@@ -118,7 +119,8 @@ void add_playback(CLI::App& command, Playback& playback) {
           },
           "Slow motion of a part, from steps between the frames: 1.2-1.6:0.25 shows these 0.4 s in "
           "1.6 s")
-      ->type_name("FROM-TO:FACTOR");
+      ->type_name("FROM-TO:FACTOR")
+      ->allow_extra_args(false);
   command
       .add_option_function<std::vector<std::string>>(
           "--freeze",
@@ -128,7 +130,8 @@ void add_playback(CLI::App& command, Playback& playback) {
             }
           },
           "Hold the frame at a time for so long: 1.2:0.5")
-      ->type_name("TIME:SECONDS");
+      ->type_name("TIME:SECONDS")
+      ->allow_extra_args(false);
 }
 
 /// What is made besides each scene's two clips, or instead of them.
@@ -220,9 +223,10 @@ void add_frames(CLI::App& command, StillCommand& options) {
   add_scene(command, options.scene);
   command
       .add_option("--time", options.times,
-                  "Time to show, s; several, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
+                  "Time to show, s; several --time, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
                   "frames from one time to another")
       ->type_name("S")
+      ->allow_extra_args(false)
       ->required();
   command
       .add_option("--out", options.out,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string_view>
 
 #include "analysis/report.h"
 #include "base/input_error.h"
@@ -40,8 +42,9 @@ Reading reading_of_answers(const Row& row, const char* test) {
           .interval = "Wilson"};
 }
 
-Reading no_reading(const std::string& reason) {
-  const Estimate none = Estimate::none(reason);
+Reading no_reading_of_one() {
+  const Estimate none =
+      Estimate::none("one participant; nothing is known of how participants differ");
   return {.p = none, .test = "no test", .low = none, .high = none, .interval = "no interval"};
 }
 
@@ -56,9 +59,7 @@ DemonstrationResult analyse_demonstration(const AnswersTable& table, std::uint16
     row.why_not_independent = repeated;
     const Pooled pooled =
         pooled_tests(table, {row.name, {index}}, options.alpha, options.bootstrap, options.seed);
-    row.read = pooled.participants > 1
-                   ? reading_of_participants(pooled)
-                   : no_reading("one participant; nothing is known of how participants differ");
+    row.read = pooled.participants > 1 ? reading_of_participants(pooled) : no_reading_of_one();
   }
   result.scale = scale_value(row.counts, row.read.low, row.read.high);
   for (const Group& group : table.groups) {
@@ -94,13 +95,32 @@ GroupResult analyse_group(const AnswersTable& table, const Group& group,
   const bool one_answer_each =
       group.demonstrations.size() == 1 && !(table.answers_per_demonstration > 1);
   Row& row = result.row;
-  row.read = result.pooled.participants > 1 && !one_answer_each
-                 ? reading_of_participants(result.pooled)
-                 : reading_of_answers(row, one_answer_each ? "exact binomial test"
-                                                           : "exact binomial test that takes all "
-                                                             "answers as independent");
+  row.read =
+      one_answer_each                  ? reading_of_answers(row, "exact binomial test")
+      : result.pooled.participants > 1 ? reading_of_participants(result.pooled)
+      : table.participants.empty()
+          ? reading_of_answers(row, "exact binomial test that takes all answers as independent")
+          : no_reading_of_one();
   result.scale = scale_value(row.counts, row.read.low, row.read.high);
   return result;
+}
+
+// Who gave only ties, and what was answered by ties only, is in no count of choices.
+Input input_of(const AnswersTable& table) {
+  Input input;
+  for (const Counts& counts : table.counts) input.answers += counts.total();
+  std::set<std::string_view> participants(table.participants.begin(), table.participants.end());
+  std::set<std::string_view> demonstrations(table.demonstrations.begin(),
+                                            table.demonstrations.end());
+  for (const GradedAnswer& answer : table.graded) {
+    input.ties += answer.grade == 0 ? 1 : 0;
+    participants.insert(answer.participant);
+    demonstrations.insert(answer.demonstration);
+  }
+  input.answers += input.ties;
+  input.participants = participants.size();
+  input.demonstrations = demonstrations.size();
+  return input;
 }
 
 }  // namespace
@@ -151,6 +171,7 @@ Report analyse_table(const AnswersTable& table, const AnalysisOptions& options) 
   check_options(options);
   Report report;
   report.options = options;
+  report.input = input_of(table);
   for (size_t i = 0; i < table.demonstrations.size(); ++i) {
     report.demonstrations.push_back(
         analyse_demonstration(table, static_cast<std::uint16_t>(i), options));

@@ -91,6 +91,20 @@ Rate rate_of(const char* flag, const std::string& text, double most_fixed, doubl
   return {false, *value, most_free};
 }
 
+// A function needs room between guesses and lapses, wherever free ones come to lie.
+void check_room(const Rate& guess, const Rate& lapse) {
+  const auto most = [](const Rate& rate) { return rate.free ? rate.most : rate.value; };
+  const auto in_words = [&](const Rate& rate) {
+    return fmt::format("{}{:g}", rate.free ? "up to " : "", most(rate));
+  };
+  if (most(guess) + most(lapse) < 1.0) return;
+  throw CLI::ValidationError(
+      "--guess, --lapse",
+      fmt::format("guesses of {} and lapses of {} leave no room for a function that rises between "
+                  "them; give rates with a sum below 1",
+                  in_words(guess), in_words(lapse)));
+}
+
 /// What rate_of takes.
 CLI::Validator rate_up_to(double most) {
   return {[most](const std::string& text) {
@@ -289,6 +303,7 @@ void analyse_levels(Arguments& args) {
                                          : "0",
                         most_guessed, 0.5);
   model.lapse = rate_of("--lapse", args.lapse, most_lapsed, 0.1);
+  check_room(model.guess, model.lapse);
   if (!args.is_given("--bootstrap") && !args.design) args.analyse.bootstrap = threshold_resamples;
   const ThresholdReport report = analyse_thresholds(
       levels, model, {args.analyse.alpha, args.analyse.bootstrap, args.analyse.seed});

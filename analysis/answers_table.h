@@ -59,7 +59,8 @@ struct Exclusion {
 /// A preference that was given in grades (comparison scale of ITU-R BT.500).
 struct GradedAnswer {
   std::string participant, demonstration;
-  int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
+  int grade = 0;     ///< -3 to 3, positive for the method under test; 0: a tie
+  int position = 0;  ///< as Answer::position
 };
 
 /// A click on where it looks wrong.
@@ -89,6 +90,7 @@ struct DesignCheck {
   /// What the look that was reached asks for, of designs that may stop early: a preference is
   /// claimed up to this p, or from this Bayes factor on.
   std::optional<double> p_at_most, bayes_factor;
+  std::int64_t look = 0;  ///< participants at the look that p_at_most is of
 };
 
 /// All answers, checked and in an order that does not depend on the order of the inputs:

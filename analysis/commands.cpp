@@ -34,7 +34,9 @@ void add_truth(CLI::App& command, PowerQuestion& truth, const char* share) {
       ->capture_default_str()
       ->check(whole_in(1, 1000));
   command
-      .add_option("--icc", truth.icc, "Intraclass correlation of one participant's answers, 0 to 1")
+      .add_option("--icc", truth.icc,
+                  "Intraclass correlation of one participant's answers, 0 to 1; for an estimate "
+                  "below 0 give 0, for one above 1 give 1")
       ->capture_default_str()
       ->check(number());
 }

@@ -53,6 +53,11 @@ Row row_of(const CsvColumns& csv) {
   if (row.left == row.right)
     csv.fail(fmt::format("`{}` is compared with itself; a pair shows two methods", row.left));
   if (csv.has(choice)) {
+    if (row.left == "tie" || row.right == "tie") {
+      csv.fail(
+          "`tie` as `choice` is neither of the two, so that no method can have that name; "
+          "give it another");
+    }
     const std::string_view chosen = csv.at(choice);
     row.left_wins = chosen == row.left ? 1 : 0;
     row.right_wins = chosen == row.right ? 1 : 0;
@@ -194,7 +199,9 @@ ComparisonsTable read_comparisons(const std::vector<fs::path>& inputs, const Rea
   table.exclusions = exclusions.finish();
   fill(rows, table);
   if (table.answers == 0)
-    throw InputError(table.sources.front(), "no answers; a report needs some");
+    throw InputError(table.sources.front(), why_nothing_is_left(table.exclusions));
+  if (table.answers == table.ties)
+    throw InputError(table.sources.front(), "all answers are ties; a scale needs choices");
   return table;
 }
 

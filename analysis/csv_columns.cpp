@@ -170,4 +170,10 @@ std::vector<Exclusion> Exclusions::finish() const {
   return list_;
 }
 
+std::string why_nothing_is_left(const std::vector<Exclusion>& exclusions) {
+  return exclusions.empty() ? "no answers; a report needs at least one"
+                            : "all participants are left out, by --exclude or by the rules of the "
+                              "design; a report needs at least one";
+}
+
 }  // namespace pinchlab::analysis

@@ -86,4 +86,7 @@ class Exclusions {
   std::map<std::string, bool> found_;
 };
 
+/// Why there is nothing to report where no answer is left.
+std::string why_nothing_is_left(const std::vector<Exclusion>& exclusions);
+
 }  // namespace pinchlab::analysis

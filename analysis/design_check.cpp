@@ -137,7 +137,9 @@ void note_bound(const Sample& sample, std::size_t analysed, DesignCheck& check) 
   } else if (sample.looks.size() > 1) {
     const auto next = std::ranges::upper_bound(sample.looks, static_cast<std::int64_t>(analysed));
     const auto passed = static_cast<std::size_t>(next - sample.looks.begin());
-    check.p_at_most = sample.p_at_most.at(std::max<std::size_t>(passed, 1) - 1);
+    const std::size_t last = std::max<std::size_t>(passed, 1) - 1;
+    check.p_at_most = sample.p_at_most.at(last);
+    check.look = sample.looks[last];
   }
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "analysis/clustered.h"
 
@@ -142,33 +143,59 @@ SideBias side_bias(const AnswersTable& table, std::uint64_t seed) {
   return result;
 }
 
-OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
-  OrderEffect result;
+namespace {
+
+// Where each participant's ties are, in the order of positions.
+std::map<std::string, std::vector<int>> places_of_ties(const AnswersTable& table) {
+  std::map<std::string, std::vector<int>> places;
+  for (const GradedAnswer& answer : table.graded) {
+    if (answer.grade == 0 && answer.position > 0)
+      places[answer.participant].push_back(answer.position);
+  }
+  for (auto& [participant, of_one] : places) std::ranges::sort(of_one);
+  return places;
+}
+
+// Counts the answers by their ranks, and returns a score a participant: n sum(rank y) - sum(rank)
+// sum(y), the covariance of rank and choice in integers. Ties take their places in the session, so
+// that a session in the opposite order has the opposite score.
+std::vector<std::int64_t> order_scores(const AnswersTable& table, OrderEffect& result) {
   std::vector<std::int64_t> scores;
   std::vector<const Answer*> in_order;
+  const auto ties = places_of_ties(table);
   each_participant(table, [&](const Answer* first, const Answer* last) {
     in_order.clear();
     for (const Answer* answer = first; answer != last; ++answer) {
       if (answer->position > 0) in_order.push_back(answer);
     }
-    std::sort(in_order.begin(), in_order.end(),
-              [](const Answer* a, const Answer* b) { return a->position < b->position; });
-    // n sum(rank y) - sum(rank) sum(y): the participant's covariance of rank and choice, in
-    // integers.
-    const auto n = static_cast<std::int64_t>(in_order.size());
-    std::int64_t pinch = 0;
-    std::int64_t pinch_ranks = 0;
+    std::ranges::sort(in_order, {}, &Answer::position);
+    const auto tied = ties.find(table.participants[first->participant]);
+    std::int64_t ranks = 0, pinch = 0, pinch_ranks = 0;
     for (size_t i = 0; i < in_order.size(); ++i) {
-      if (result.by_position.size() <= i) result.by_position.emplace_back();
-      Counts& counts = result.by_position[i];
+      size_t rank = i + 1;
+      if (tied != ties.end()) {
+        const auto& places = tied->second;
+        rank += static_cast<size_t>(std::ranges::lower_bound(places, int{in_order[i]->position}) -
+                                    places.begin());
+      }
+      if (result.by_position.size() < rank) result.by_position.resize(rank);
+      Counts& counts = result.by_position[rank - 1];
       ++(in_order[i]->chose_pinch ? counts.pinch : counts.cable);
+      ranks += static_cast<std::int64_t>(rank);
       if (!in_order[i]->chose_pinch) continue;
       ++pinch;
-      pinch_ranks += static_cast<std::int64_t>(i + 1);
+      pinch_ranks += static_cast<std::int64_t>(rank);
     }
-    scores.push_back(n * pinch_ranks - n * (n + 1) / 2 * pinch);
+    scores.push_back(static_cast<std::int64_t>(in_order.size()) * pinch_ranks - ranks * pinch);
   });
+  return scores;
+}
 
+}  // namespace
+
+OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
+  OrderEffect result;
+  std::vector<std::int64_t> scores = order_scores(table, result);
   const auto all = [&](const std::string& reason) {
     result.share_by_place = result.chi_square = result.p_trend = result.p_sign_flip =
         Estimate::none(reason);
@@ -188,7 +215,9 @@ OrderEffect order_effect(const AnswersTable& table, std::uint64_t seed) {
     xy += position * static_cast<double>(result.by_position[i].pinch);
   }
   if (pinch == 0.0 || pinch == n) return all("every answer is the same");
-  if (result.by_position.size() < 2) return all("one answer a participant has no order");
+  const auto places = std::ranges::count_if(
+      result.by_position, [](const Counts& counts) { return counts.total() > 0; });
+  if (places < 2) return all("every answer is at the same place of its session");
   const double share = pinch / n;
   const double covariance = xy - share * x;
   const double squares = xx - x * x / n;

@@ -28,7 +28,7 @@ struct SideBias {
 SideBias side_bias(const AnswersTable& table, std::uint64_t seed);
 
 /// Did the preference change in the course of the session? Position is the rank among the
-/// participant's answers.
+/// participant's answers, ties among them, though these are in no count.
 struct OrderEffect {
   std::vector<Counts> by_position;  ///< [i]: the (i + 1)-th answer of each participant
   Estimate share_by_place;  ///< by which the share of pinch rises from one position to the next:

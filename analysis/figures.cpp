@@ -152,6 +152,7 @@ std::string order_panel(const Report& report) {
   std::string data = "$order << EOD\n";
   const size_t shown = std::min<size_t>(positions.size(), 200);
   for (size_t i = 0; i < shown; ++i) {
+    if (positions[i].total() == 0) continue;  // all ties
     data += point_line(static_cast<double>(i + 1), positions[i], report.options.alpha);
   }
   return data + "EOD\n" +

@@ -13,16 +13,17 @@ namespace {
 std::vector<Block> went_in(const Report& report, const AnswersTable& table) {
   Document part;
   part.add(Heading{"What went in"});
-  const std::int64_t answers = report.all().row.counts.total();
+  const Input& input = report.input;
+  const std::string answers = counted(input.answers, "answer");
+  const std::string demonstrations = counted(input.demonstrations, "demonstration");
   std::string text =
       table.participants.empty()
-          ? fmt::format("A table of counts with {} to {}; who gave which is not known.",
-                        counted(answers, "answer"),
-                        counted(table.demonstrations.size(), "demonstration"))
-          : fmt::format("{} of {} to {}, read from {}.", counted(answers, "answer"),
-                        counted(table.participants.size(), "participant"),
-                        counted(table.demonstrations.size(), "demonstration"),
-                        counted(table.sources.size(), "file"));
+          ? fmt::format("A table of counts with {} to {}; who gave which is not known.", answers,
+                        demonstrations)
+          : fmt::format("{} of {}{} to {}, read from {}.", answers,
+                        counted(input.participants, "participant"),
+                        input.ties > 0 ? fmt::format(", {} of them ties,", input.ties) : "",
+                        demonstrations, counted(table.sources.size(), "file"));
   if (!table.incomplete.empty()) {
     const size_t shown = std::min<size_t>(table.incomplete.size(), 20);
     const std::vector<std::string> names(

@@ -153,7 +153,7 @@ LevelsTable read_levels(const std::vector<fs::path>& inputs, const ReadOptions& 
   }
   table.is_pilot = same_study.is_pilot();
   table.exclusions = exclusions.finish();
-  if (cells.empty()) throw InputError(table.sources.front(), "no answers; a report needs some");
+  if (cells.empty()) throw InputError(table.sources.front(), why_nothing_is_left(table.exclusions));
   if (std::ranges::any_of(cells, mixes_names)) {
     throw InputError(table.sources.front(),
                      "some inputs name participants and some do not; analyse them in two runs");

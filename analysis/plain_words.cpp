@@ -6,6 +6,7 @@
 
 #include "analysis/design_check.h"
 #include "analysis/document.h"
+#include "base/counted.h"
 
 namespace pinchlab::analysis {
 
@@ -53,14 +54,15 @@ std::string bound_in_words(const Row& all, const std::optional<DesignCheck>& des
   }
   if (design && design->p_at_most) {
     return fmt::format(
-        "; p at most {:.3g} is what the design asks for at this look, p and interval are as for a "
-        "single one",
-        *design->p_at_most);
+        "; p at most {:.3g} is what the design asks for at its look at {}, p and interval are as "
+        "for a single one",
+        *design->p_at_most, counted(design->look, "participant"));
   }
   return "";
 }
 
-std::string verdict(const Report& report, const std::optional<DesignCheck>& design) {
+std::string verdict(const Report& report, const AnswersTable& table) {
+  const std::optional<DesignCheck>& design = table.design;
   const GroupResult& all = report.all();
   const Reading& read = all.row.read;
   const std::string& pinch = report.options.pinch_label;
@@ -74,11 +76,11 @@ std::string verdict(const Report& report, const std::optional<DesignCheck>& desi
   const std::string where =
       one ? fmt::format(" in demonstration {}", report.demonstrations[0].row.name)
           : fmt::format(" over the {} demonstrations", report.demonstrations.size());
-  return fmt::format(
-      "{}: {} {}{} ({}; {}, {}{}).", found,
-      one ? out_of(all.row.counts) + " preferred" : out_of(all.row.counts) + " answers chose",
-      pinch, where, percent(all.row.share), p_in_words(read.p), read.test,
-      bound_in_words(all.row, design));
+  const bool are_people = one && table.answers_per_demonstration == 1;
+  return fmt::format("{}: {} {} {}{} ({}; {}, {}{}).", found, out_of(all.row.counts),
+                     are_people ? "preferred" : "answers chose", pinch, where,
+                     percent(all.row.share), p_in_words(read.p), read.test,
+                     bound_in_words(all.row, design));
 }
 
 std::string demonstrations_in_words(const Report& report) {
@@ -138,7 +140,7 @@ std::string groups_in_words(const Report& report) {
 }  // namespace
 
 std::string plain_words(const Report& report, const AnswersTable& table) {
-  std::string text = (table.is_pilot ? "Answers of a pilot. " : "") + verdict(report, table.design);
+  std::string text = (table.is_pilot ? "Answers of a pilot. " : "") + verdict(report, table);
   if (report.demonstrations.size() > 1) {
     text += demonstrations_in_words(report);
     text += groups_in_words(report);

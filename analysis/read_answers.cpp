@@ -57,7 +57,8 @@ class AnswerFiles {
     answer.reaction_time_s = trial.reaction_time_s;
     if (trial.preference) {
       const int sign = answer.pinch_side == Side::left ? -1 : 1;
-      builder_.add_graded({file.participant, trial.demonstration, sign * *trial.preference});
+      builder_.add_graded(
+          {file.participant, trial.demonstration, sign * *trial.preference, trial.position});
     }
     if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
   }

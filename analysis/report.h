@@ -53,8 +53,15 @@ struct Difference {
 };
 Difference difference_read(const GroupResult& group);
 
+/// How much went in, ties among it.
+struct Input {
+  std::int64_t answers = 0, ties = 0;
+  size_t participants = 0, demonstrations = 0;
+};
+
 struct Report {
   AnalysisOptions options;
+  Input input;
   std::vector<DemonstrationResult> demonstrations;
   std::vector<GroupResult> groups;  ///< the last one is "all"
   SideBias side_bias;

@@ -179,8 +179,9 @@ ordered_json times_json(const std::vector<ReactionTimes>& rows) {
 ordered_json input_json(const Report& report, const AnswersTable& table) {
   ordered_json object;
   object["files"] = table.sources.size();
-  object["participants"] = table.participants.size();
-  object["answers"] = report.all().row.counts.total();
+  object["participants"] = report.input.participants;
+  object["answers"] = report.input.answers;
+  if (!report.graded.empty()) object["ties"] = report.input.ties;
   object["answers_per_demonstration"] = table.answers_per_demonstration;
   object["groups_from"] = table.groups_from;
   object["incomplete_participants"] = table.incomplete;

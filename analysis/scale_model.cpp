@@ -172,6 +172,31 @@ std::vector<bool> reached(const std::vector<std::vector<bool>>& won, std::size_t
   return seen;
 }
 
+// Whether the likelihood never falls as ties become more likely: wins must then lie at least as far
+// apart as the margin of ties grows, and ties at most so far. Bellman and Ford's search finds such
+// values unless some circle of methods has more wins than ties.
+bool ties_outweigh(std::size_t methods, const std::vector<PairChoices>& choices) {
+  std::vector<int> value(methods, 0);
+  const auto lower = [&](std::size_t method, int most) {
+    const bool is_above = value[method] > most;
+    value[method] = std::min(value[method], most);
+    return is_above;
+  };
+  for (std::size_t round = 0; round <= methods; ++round) {
+    bool is_changed = false;
+    for (const PairChoices& pair : choices) {
+      const auto compare = [&](std::size_t winner, std::size_t loser, bool has_won) {
+        if (has_won) is_changed |= lower(loser, value[winner] - 1);
+        if (pair.ties > 0) is_changed |= lower(loser, value[winner] + 1);
+      };
+      compare(pair.left, pair.right, pair.left_wins > 0);
+      compare(pair.right, pair.left, pair.right_wins > 0);
+    }
+    if (!is_changed) return true;
+  }
+  return false;
+}
+
 // Empty, or why there is no finite scale. A tie is half a win of each.
 std::string why_no_scale(std::size_t methods, const std::vector<PairChoices>& choices) {
   std::vector<std::vector<bool>> won(methods, std::vector<bool>(methods));
@@ -185,6 +210,11 @@ std::string why_no_scale(std::size_t methods, const std::vector<PairChoices>& ch
       return "some methods were never chosen over the others, so that the scale has no finite "
              "values";
     }
+  }
+  const bool has_ties =
+      std::ranges::any_of(choices, [](const PairChoices& pair) { return pair.ties > 0; });
+  if (has_ties && ties_outweigh(methods, choices)) {
+    return "no choices contradict one another but for ties, so that the scale has no finite values";
   }
   return "";
 }

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <tuple>
 
+#include "analysis/csv_columns.h"
 #include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
@@ -240,6 +242,22 @@ void TableBuilder::check_doubles() const {
   }
 }
 
+// Nor by a tie.
+void TableBuilder::check_places_of_ties() const {
+  if (ties_.empty()) return;
+  std::set<std::pair<std::string_view, int>> taken;
+  for (const Answer& answer : table_.answers)
+    taken.emplace(table_.participants[answer.participant], answer.position);
+  for (const GradedAnswer& tie : table_.graded) {
+    if (tie.grade != 0 || tie.position == 0) continue;
+    if (taken.emplace(tie.participant, tie.position).second) continue;
+    throw InputError(table_.sources.back(),
+                     fmt::format("participant `{}` has two answers at position {}, a tie among "
+                                 "them; positions count the trials of one participant",
+                                 tie.participant, tie.position));
+  }
+}
+
 // Whoever has answered must have answered every demonstration as often as the design says, ties
 // included; who has not is an error, or is listed.
 void TableBuilder::check_times(const std::string& participant, const std::vector<size_t>& times,
@@ -324,6 +342,7 @@ AnswersTable TableBuilder::finish() {
   sort_names();
   if (!table_.answers.empty()) {
     check_doubles();
+    check_places_of_ties();
     check_missing();
     for (const Answer& answer : table_.answers) {
       Counts& counts = table_.counts[answer.demonstration];
@@ -334,8 +353,8 @@ AnswersTable TableBuilder::finish() {
   for (const Counts& counts : table_.counts) total += counts.total();
   if (total == 0) {
     throw InputError(table_.sources.empty() ? "input" : table_.sources.front(),
-                     table_.graded.empty() ? "no answers; a report needs at least one"
-                                           : "all answers are ties; a report needs a choice");
+                     !table_.graded.empty() ? "all answers are ties; a report needs a choice"
+                                            : why_nothing_is_left(table_.exclusions));
   }
   if (total > 2000000000) {
     throw InputError(table_.sources.front(),

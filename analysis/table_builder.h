@@ -73,6 +73,7 @@ class TableBuilder {
   [[nodiscard]] std::string place_of(const Answer& answer) const;
   void sort_names();
   void check_doubles() const;
+  void check_places_of_ties() const;
   void check_times(const std::string& participant, const std::vector<std::size_t>& times,
                    const std::vector<std::string>& demonstrations, const std::string& where);
   void check_missing();

@@ -389,7 +389,11 @@ std::string threshold_words(const ThresholdReport& report, const LevelsTable& ta
     const std::vector<LevelCell> totals = totals_of(series);
     if (fit.threshold.value < totals.front().level || fit.threshold.value > totals.back().level)
       text += " It lies outside of the levels that were shown, so do not rely on it.";
-    if (!fit.slope) text += fmt::format(" Take its interval: {}.", fit.slope.why_not);
+    const bool has_interval = fit.threshold_low || fit.threshold_high;
+    if (!fit.slope) {
+      text += fmt::format(" {}: {}.", has_interval ? "Take its interval" : "Do not rely on it",
+                          fit.slope.why_not);
+    }
     if (fit.p_deviance && fit.p_deviance.value < report.options.alpha) {
       text += fmt::format(" The function does not fit these answers well ({}).",
                           p_equation(fit.p_deviance));

@@ -11,6 +11,7 @@
 #include "base/json_object.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
+#include "base/text_checks.h"
 
 namespace pinchlab {
 namespace {
@@ -104,6 +105,19 @@ void read_analysis(JsonObject object, Rules& rules) {
     rules.analysis[option.key] =
         text_of(object, option.key, option.words, option.low, option.high, option.is_whole);
   }
+}
+
+// As `pinchlab analyse` refuses them.
+void check_room(const JsonObject& object, const Rules& rules) {
+  const auto most = [&](const char* key, double most_free) {
+    const auto found = rules.analysis.find(key);
+    if (found == rules.analysis.end()) return 0.0;
+    return found->second == "free" ? most_free : *parse_number(found->second);
+  };
+  if (most("guess", 0.5) + most("lapse", 0.1) < 1.0) return;
+  object.fail("analysis",
+              "`guess` and `lapse`, the most that a free one may be, leave no room "
+              "for a function that rises between them; give rates with a sum below 1");
 }
 
 void read_exclusions(JsonObject object, Rules& rules) {
@@ -210,6 +224,7 @@ Rules parse_rules(const json& document, const std::string& file, AnswersKind kin
   Rules rules;
   rules.analysis = usual_analysis(kind);
   read_rules(object, rules);
+  check_room(object, rules);
   return rules;
 }
 

@@ -292,4 +292,17 @@ Clips open_clips(const fs::path& folder, const Config& config) {
   return clips;
 }
 
+std::vector<std::string> same_clips(const Clips& clips) {
+  std::vector<std::string> sentences;
+  for (const auto& [name, files] : clips) {
+    const Clip &left = *files.mp4.left, &right = *files.mp4.right;
+    if (left.sha256() != right.sha256()) continue;
+    sentences.push_back(
+        fmt::format("the pair `{}` cannot be told apart: {} and {} are the same (SHA-256); look at "
+                    "them, and render them anew or leave the pair out",
+                    name, left.name(), right.name()));
+  }
+  return sentences;
+}
+
 }  // namespace pinchlab::study

@@ -77,4 +77,8 @@ std::vector<std::string> rendered_pairs(const std::filesystem::path& folder, Pai
 /// std::runtime_error with the file and the cure.
 Clips open_clips(const std::filesystem::path& folder, const Config& config);
 
+/// A sentence a pair whose two files are the same: nobody can tell by them which method, or which
+/// answer, is on which side.
+std::vector<std::string> same_clips(const Clips& clips);
+
 }  // namespace pinchlab::study

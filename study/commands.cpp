@@ -369,15 +369,15 @@ void add_import(CLI::App& study) {
   add_answers(*command, options->answers);
   command->footer(
       "In JATOS: Results, Export Results, Data Only, Plain Text. Who is in the folder already is "
-      "not "
-      "imported\nagain. Remove who withdrew in JATOS too, or the next import brings the answers "
-      "back.\n\n"
+      "not imported\nagain, and refused with other choices. Remove who withdrew in JATOS too, or "
+      "the next import brings\nthe answers back.\n\n"
       "Example:\n"
       "  pinchlab study import --jatos results.txt --key study.key.json --answers answers");
   command->callback([options] {
     const Imported imported = import_jatos(options->results, options->key, options->answers);
     fmt::print("{} imported, {} were there already\n", counted(imported.added, "participant"),
                imported.known);
+    for (const std::string& note : imported.notes) fmt::print(stderr, "{}\n", note);
   });
 }
 

@@ -121,13 +121,16 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
     }
     // The number is taken before the disk is waited for, without holding up the others.
     take(session);
+    starting_.insert(session.number);
   }
   try {
     write_durably(session_path(session.id), to_json(session).dump());
     const std::scoped_lock lock(mutex_);
     add(entry, address);
+    starting_.erase(session.number);
   } catch (const std::exception& error) {
     const std::scoped_lock lock(mutex_);
+    starting_.erase(session.number);
     give_back(session);
     options_.tell(fmt::format("a participant could not start: {}", error.what()));
     throw Refused(503, "the disk does not take it");

@@ -199,8 +199,9 @@ class Desk {
   std::map<std::string, Place> places_;  // by participant, who is running
   std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;
-  std::set<std::uint64_t> taken_;    // numbers of running and finished participants
-  std::set<std::string> recruited_;  // their ids at the site that sent them
+  std::set<std::uint64_t> taken_;     // numbers of running and finished participants
+  std::set<std::uint64_t> starting_;  // of them, whose session is not on the disk yet
+  std::set<std::string> recruited_;   // their ids at the site that sent them
   std::size_t finished_ = 0, left_ = 0;
 };
 

@@ -289,6 +289,12 @@ std::uint64_t Desk::number_for(const std::string& link) {
   if (options_.config.one_time_links) {
     for (std::uint64_t number = 0; number < limit; ++number) {
       if (equal_in_constant_time(link, link_of(number))) {
+        // Since who_makes_room() was asked.
+        const bool is_just_opened =
+            starting_.contains(number) || std::ranges::any_of(places_, [&](const auto& place) {
+              return place.second.entry->session.number == number && !place.second.is_shown;
+            });
+        if (is_just_opened) throw Refused(503, "this link is just being opened");
         if (taken_.contains(number) || study_.used_links.contains(number)) {
           throw Refused(403, "this link was used");
         }

@@ -262,8 +262,9 @@ Key read_key(const fs::path& path) {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): of the same move
 struct Result {
-  std::string id;
+  std::string id, place;
   ordered_json file;
+  std::string note;  // what is not as it was submitted; mostly empty
 };
 
 // What was answered to each part that was asked.
@@ -277,6 +278,16 @@ std::map<std::string, json> read_questionnaires(JsonObject& result, const Key& k
   }
   answers.finish();
   return checked;
+}
+
+// An answer file has no saved_utc before started_utc; what it has for both is to be told.
+std::string clock_note(const std::string& place, const ordered_json& file,
+                       const std::string& saved_utc) {
+  if (file.at("saved_utc") == saved_utc) return "";
+  return fmt::format(
+      "{}: saved_utc {} is before started_utc; the participant's clock was set back, and the "
+      "answer file has {} for both",
+      place, saved_utc, file.at("saved_utc").get<std::string>());
 }
 
 // One line of the results: what jatos_server.js submitted.
@@ -329,8 +340,11 @@ Result read_result(const std::string& line, const std::string& place, const Key&
           key.files.at(trial.demonstration).at(to_string(encoding)).at(to_string(trial.pinch));
       return ShownFile{file.at("name"), file.at("sha256")};
     };
-    result = {session.id, answer_file(session, {key.options, key.shown}, shown,
-                                      parse_free_text(free_text), saved_utc, code_hash)};
+    result = {session.id, place,
+              answer_file(session, {key.options, key.shown}, shown, parse_free_text(free_text),
+                          saved_utc, code_hash),
+              ""};
+    result.note = clock_note(place, result.file, saved_utc);
   } catch (const std::exception& error) {
     throw InputError(place, error.what());
   }
@@ -354,6 +368,25 @@ std::vector<fs::path> text_files(const std::vector<fs::path>& paths) {
   }
   std::ranges::sort(files);
   return files;
+}
+
+// A participant answers once: who is there already must have chosen the same.
+void check_same_choices(const Result& result, const json& before, const std::string& where) {
+  const auto choices = [](const json& file) {
+    json all = json::array();
+    for (const json& trial : file.at("trials")) {
+      json choice = json::array();
+      for (const char* key : {"demonstration", "left", "right", "choice", "preference"})
+        choice.push_back(trial.value(key, json()));
+      all.push_back(choice);
+    }
+    return all;
+  };
+  if (choices(json(result.file)) == choices(before)) return;
+  throw InputError(result.place,
+                   fmt::format("participant {} chose otherwise in {}; find out which counts, and "
+                               "remove the other",
+                               result.id, where));
 }
 
 }  // namespace
@@ -419,6 +452,17 @@ Imported import_jatos(const std::vector<fs::path>& results, const fs::path& key_
       }
     }
   }
+  std::map<std::string, const Result*> first;
+  for (const Result& result : all) {
+    const auto [found, is_new] = first.emplace(result.id, &result);
+    const fs::path path = answer_path(answers, result.id);
+    if (!is_new) check_same_choices(result, json(found->second->file), found->second->place);
+    if (fs::exists(path)) {
+      const json before = read_answer_json(path);
+      parse_answer_file(before, path.string());
+      check_same_choices(result, before, path.string());
+    }
+  }
   make_folders(answers);
   Imported imported;
   for (const Result& result : all) {
@@ -429,6 +473,7 @@ Imported import_jatos(const std::vector<fs::path>& results, const fs::path& key_
     }
     save_answers(path, result.file);
     ++imported.added;
+    if (!result.note.empty()) imported.notes.push_back(result.note);
   }
   return imported;
 }

@@ -32,12 +32,14 @@ void export_jatos(const Config& config, const Clips& clips, std::uint64_t seed,
 
 struct Imported {
   int added = 0;
-  int known = 0;  ///< participants whose answers were in the folder already
+  int known = 0;                   ///< participants whose answers were in the folder already
+  std::vector<std::string> notes;  ///< what was not written as it was submitted, in words
 };
 
 /// Turns results that JATOS gave back ("data only" as text, or the data.txt files of an unpacked
 /// results archive, folders searched for .txt) into answer files. All is checked before the first
-/// is written. Throws std::runtime_error with file and line.
+/// is written, also that nobody chose otherwise in an earlier result. Throws std::runtime_error
+/// with file and line.
 Imported import_jatos(const std::vector<std::filesystem::path>& results,
                       const std::filesystem::path& key, const std::filesystem::path& answers);
 

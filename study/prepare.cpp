@@ -82,7 +82,11 @@ Clips prepare(Config& config, const Stimuli& stimuli, const fs::path& clips, boo
         clips.string()));
   }
   render_missing(stimuli, clips, no_webm, config);
-  return open_clips(clips, config);
+  Clips opened = open_clips(clips, config);
+  for (const std::string& sentence : same_clips(opened)) {
+    fmt::print(stderr, "Warning: {}: {}\n", clips.string(), sentence);
+  }
+  return opened;
 }
 
 }  // namespace pinchlab::study

@@ -26,8 +26,9 @@ struct Stimuli {
 Config read_or_default(const std::filesystem::path& path);
 
 /// Names the demonstrations of a configuration that names none, renders the clips that are missing
-/// and can be rendered (MP4, and WebM unless `no_webm`), and opens all. Throws std::runtime_error
-/// with the cure, also if the program was built without the page.
+/// and can be rendered (MP4, and WebM unless `no_webm`), opens all, and warns of same_clips() on
+/// standard error. Throws std::runtime_error with the cure, also if the program was built without
+/// the page.
 Clips prepare(Config& config, const Stimuli& stimuli, const std::filesystem::path& clips,
               bool no_webm);
 

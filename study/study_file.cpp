@@ -60,6 +60,15 @@ void check_simulated(const json& plan, const Config& config, const fs::path& ans
                                   : "was simulated by another truth"));
 }
 
+void check_pilot(const json& plan, const Config& config, const fs::path& answers) {
+  const bool was_pilot = plan.is_object() && plan.contains("pilot");
+  if (was_pilot == config.is_pilot) return;
+  throw std::runtime_error(
+      fmt::format("{}: {}, or use another --answers", answers.string(),
+                  was_pilot ? "is the folder of a pilot; go on with that by `study serve --pilot`"
+                            : "is the folder of a study that is no pilot; leave --pilot out"));
+}
+
 }  // namespace
 
 fs::path running_folder(const fs::path& answers) {
@@ -124,14 +133,15 @@ StudyFile open_study_file(const fs::path& answers, const Config& config, const j
     }
     study.used_links.insert(number.get<std::uint64_t>());
   }
+  const json& plan = object.need("plan");
+  check_simulated(plan, config, answers);
+  check_pilot(plan, config, answers);
   if (seed && *seed != study.seed) {
     throw std::runtime_error(
         fmt::format("{1}: the study in this folder has the seed {0}, not {2}; say --seed {0}, "
                     "or use another --answers",
                     study.seed, answers.string(), *seed));
   }
-  const json& plan = object.need("plan");
-  check_simulated(plan, config, answers);
   if (plan != fingerprint(config)) {
     throw std::runtime_error(
         fmt::format("{}: the study in this folder shows something else; use its configuration, or "

@@ -10,6 +10,7 @@
 #include "base/answer_file.h"
 #include "base/input_error.h"
 #include "tests/analysis/support.h"
+#include "tests/base/message_of.h"
 
 namespace pinchlab::analysis {
 namespace {
@@ -75,6 +76,38 @@ TEST(Comparisons, ReadsCountsOfThePublishedTable) {
   EXPECT_TRUE(report["equal"]["p_sign_flip"].is_null());
   EXPECT_TRUE(report["left"]["value"].is_null());
   EXPECT_FALSE(report["left"]["value_reason"].get<std::string>().empty());
+}
+
+TEST(Comparisons, NoMethodIsCalledTie) {
+  const test::TemporaryFolder folder;
+  EXPECT_NE(why(folder.write("a.csv", "left,right,choice\na,b,a\na,tie,tie\n"))
+                .find("a.csv:3: `tie` as `choice` is neither of the two"),
+            std::string::npos);
+  EXPECT_EQ(why(folder.write("b.csv", "left,right,left_wins,right_wins\na,tie,3,2\n")), "");
+}
+
+TEST(Comparisons, TiesAloneHaveNoScale) {
+  const test::TemporaryFolder folder;
+  EXPECT_NE(why(folder.write("a.csv", "left,right,choice\na,b,tie\nb,a,tie\n"))
+                .find("all answers are ties; a scale needs choices"),
+            std::string::npos);
+}
+
+TEST(Comparisons, WhereAllAreLeftOutThatIsSaid) {
+  const test::TemporaryFolder folder;
+  ReadOptions options;
+  options.exclude_file = folder.write("out.csv", "participant,reason\np,late\n");
+  const auto message = [&](const char* csv, const auto& read) {
+    return pinchlab::test::message_of<InputError>(
+        [&] { read({folder.write("a.csv", csv)}, options); });
+  };
+  const std::string expected = "all participants are left out, by --exclude or by the rules";
+  EXPECT_NE(message("participant,left,right,choice\np,a,b,a\n", read_comparisons).find(expected),
+            std::string::npos);
+  EXPECT_NE(message("participant,level,correct\np,1,1\n", read_levels).find(expected),
+            std::string::npos);
+  EXPECT_NE(message("participant,demonstration,choice\np,a,pinch\n", read_answers).find(expected),
+            std::string::npos);
 }
 
 TEST(Comparisons, TheOrderOfTheInputChangesNothing) {

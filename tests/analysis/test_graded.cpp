@@ -151,6 +151,88 @@ TEST(Graded, TiesCountAsGiven) {
   EXPECT_NE(refusal(whole + "p3,B,tie,left,0\n").find("`p3` gave 1 of 2"), std::string::npos);
 }
 
+// Ties come first in each session, so that the choices are at the second to fourth places.
+TEST(Graded, TiesTakeTheirPlacesInTheOrder) {
+  std::string csv = "participant,demonstration,choice,side,preference,position\n";
+  for (int p = 0; p < 6; ++p) {
+    csv += fmt::format("p{0},a,tie,left,0,3\np{0},b,{1},left,{2},5\n", p, p < 2 ? "pinch" : "cable",
+                       p < 2 ? -1 : 1);
+    csv += fmt::format("p{0},c,{1},left,{2},7\np{0},d,pinch,left,-3,9\n", p,
+                       p < 4 ? "pinch" : "cable", p < 4 ? -1 : 1);
+  }
+  csv += "p6,a,tie,left,0,3\np6,b,tie,left,0,5\np6,c,tie,left,0,7\np6,d,cable,left,1,9\n";
+  const AnswersTable table = test::table_of(csv);
+  const OrderEffect order = order_effect(table, 1);
+  ASSERT_EQ(order.by_position.size(), 4U);
+  EXPECT_EQ(order.by_position[0].total(), 0);
+  const std::vector<std::pair<int, int>> counts = {{0, 0}, {2, 4}, {4, 2}, {6, 1}};
+  for (size_t i = 0; i < counts.size(); ++i) {
+    EXPECT_EQ(order.by_position[i].pinch, counts[i].first) << i;
+    EXPECT_EQ(order.by_position[i].cable, counts[i].second) << i;
+  }
+  EXPECT_TRUE(order.p_trend);
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  EXPECT_EQ(make_figures(report).back().script.find("nan"), std::string::npos);
+  // Those at one place only tell nothing of an order.
+  const OrderEffect none =
+      order_effect(test::table_of("participant,demonstration,choice,side,preference,position\n"
+                                  "p1,a,tie,left,0,1\np1,b,pinch,left,-1,2\np2,b,tie,left,0,1\n"
+                                  "p2,a,cable,left,1,2\n"),
+                   1);
+  EXPECT_FALSE(none.p_trend);
+  EXPECT_NE(none.p_trend.why_not.find("same place"), std::string::npos);
+}
+
+// Swapping first and last turns a trend round, wherever the ties are.
+TEST(Graded, ASessionTheOtherWayRoundHasTheOppositeTrend) {
+  const auto trend = [](int first, int step) {
+    std::string csv = "participant,demonstration,choice,side,preference,position\n";
+    for (const char* who : {"p", "q"}) {
+      for (int i = 0; i < 5; ++i) {
+        const char* choice = i < 2 ? "tie" : i < 3 ? "cable" : "pinch";
+        csv += fmt::format("{},{},{},left,{},{}\n", who, i, choice,
+                           i < 2   ? 0
+                           : i < 3 ? 1
+                                   : -1,
+                           first + i * step);
+      }
+    }
+    return order_effect(test::table_of(csv), 1).share_by_place.value;
+  };
+  EXPECT_NEAR(trend(1, 1), 0.5, 1e-12);
+  EXPECT_NEAR(trend(5, -1), -0.5, 1e-12);
+}
+
+TEST(Graded, WhatWentInHasTheTiesToo) {
+  const AnswersTable table = test::table_of(
+      "participant,demonstration,choice,side,preference\np1,A,pinch,left,-1\np1,B,tie,left,0\n"
+      "p2,A,cable,left,1\np2,B,tie,left,0\np3,A,tie,left,0\np3,B,tie,left,0\n");
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  EXPECT_NE(report_markdown(report, table, {})
+                .find("6 answers of 3 participants, 4 of them ties, to 2 demonstrations, read"),
+            std::string::npos);
+  const json input = json::parse(report_json(report, table))["input"];
+  EXPECT_EQ(input["answers"], 6);
+  EXPECT_EQ(input["ties"], 4);
+  EXPECT_EQ(input["participants"], 3);
+}
+
+TEST(Graded, APlaceIsTakenByATieToo) {
+  const auto refusal = [](const char* rows) -> std::string {
+    try {
+      test::table_of(std::string("participant,demonstration,choice,side,preference,position\n") +
+                     rows);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal("p1,A,pinch,left,-1,1\np1,B,tie,left,0,2\n"), "");
+  EXPECT_NE(refusal("p1,A,pinch,left,-1,2\np1,B,tie,left,0,2\n")
+                .find("`p1` has two answers at position 2, a tie among them"),
+            std::string::npos);
+}
+
 TEST(Graded, NothingChangesWithout) {
   const TemporaryFolder folder;
   folder.write("a.json", test::answer_document("p-1").dump());

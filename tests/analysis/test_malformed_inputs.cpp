@@ -398,7 +398,7 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
            {"participant,reason\n,x\n", "bad participant"},
            {"participant,reason\na,x\na,y\n", "listed twice"},
            {"participant,reason\naa,x\n", "in no input"},
-           {"participant,reason\na,x\n", "no answers"}}) {
+           {"participant,reason\na,x\n", "all participants are left out, by --exclude"}}) {
     options.exclude_file = folder.write("exclude.csv", content);
     expect_says(message({tidy}, options), says);
   }

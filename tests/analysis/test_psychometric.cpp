@@ -324,6 +324,20 @@ TEST(ThresholdReport, SaysWhatItTookParticipantsFor) {
   EXPECT_NE(methods(two).find("| all answers | 2 | 400 |"), std::string::npos) << methods(two);
 }
 
+TEST(ThresholdReport, PointsToNoIntervalThatIsNotThere) {
+  const TemporaryFolder folder;
+  const LevelsTable table =
+      read_levels({folder.write("a.csv", "level,correct,trials\n1,5,10\n2,8,10\n3,10,10\n")}, {});
+  ThresholdReport report = analyse_thresholds(table, {}, {.resamples = 0});
+  PsychometricFit& fit = report.fits[0];
+  ASSERT_TRUE(fit.threshold);
+  fit.slope = Estimate::none("it jumps");
+  fit.threshold_low = 1.5;
+  EXPECT_NE(threshold_words(report, table).find("Take its interval: it jumps"), std::string::npos);
+  fit.threshold_low = fit.threshold_high = Estimate::none("it is flat");
+  EXPECT_NE(threshold_words(report, table).find("Do not rely on it: it jumps"), std::string::npos);
+}
+
 TEST(ThresholdReport, WritesEveryFileAndEveryReason) {
   const TemporaryFolder folder;
   const LevelsTable table = read_levels(

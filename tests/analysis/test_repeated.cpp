@@ -117,6 +117,33 @@ TEST(RepeatedAnswers, OneParticipantIsRefusedWithTheReason) {
   EXPECT_NE(plain_words(report, table).find("cannot be tested one by one"), std::string::npos);
 }
 
+// Whatever one participant chose, nothing follows for people.
+TEST(RepeatedAnswers, NothingIsClaimedOfOneParticipant) {
+  ReadOptions options;
+  options.repetitions = 8;
+  std::string csv = "participant,demonstration,choice\n";
+  for (int i = 0; i < 24; ++i) csv += fmt::format("a,{},pinch\n", i % 3);
+  const AnswersTable table = test::table_of(csv, options);
+  const Report report = analyse_table(table, {});
+  EXPECT_FALSE(report.all().row.read.p);
+  EXPECT_FALSE(report.all().row.read.low);
+  const std::string words = plain_words(report, table);
+  EXPECT_TRUE(words.starts_with("No clear preference between pinch and cable: 24 of 24 answers"))
+      << words;
+  EXPECT_NE(words.find("no p-value: one participant"), std::string::npos) << words;
+}
+
+TEST(RepeatedAnswers, AnswersAreNotCalledPeople) {
+  ReadOptions options;
+  options.repetitions = 4;
+  std::string csv = "participant,demonstration,choice\n";
+  for (int i = 0; i < 24; ++i) csv += fmt::format("p{},d,{}\n", i % 6, i < 20 ? "pinch" : "cable");
+  const AnswersTable table = test::table_of(csv, options);
+  const std::string words = plain_words(analyse_table(table, {}), table);
+  EXPECT_NE(words.find("20 of 24 answers chose pinch in demonstration d"), std::string::npos)
+      << words;
+}
+
 // Of two demonstrations one was answered by a single participant, twice for pinch: nothing is known
 // of how participants differ there, whichever comes first.
 void expect_one_untested(const std::string& untested, const std::string& tested) {

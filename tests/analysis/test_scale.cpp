@@ -142,6 +142,23 @@ TEST(ScaleModel, SaysWhyThereIsNoScale) {
   EXPECT_NE(sides.why_not.find("sides"), std::string::npos) << sides.why_not;
 }
 
+// A scale with ties is finite where a circle of choices has more wins than ties.
+TEST(ScaleModel, TiesThatNoChoicesContradictHaveNoScale) {
+  for (const ScaleModel model : {ScaleModel::bradley_terry, ScaleModel::thurstone}) {
+    const auto why = [&](std::size_t methods, const std::vector<PairChoices>& choices) {
+      return fit_scale(model, methods, choices).why_not;
+    };
+    const PairChoices win{0, 0, 0, 1, 5, 0, 0}, next{0, 0, 1, 2, 5, 0, 0};
+    EXPECT_NE(why(2, {{0, 0, 0, 1, 0, 0, 7}}).find("contradict"), std::string::npos);
+    EXPECT_NE(why(2, {{0, 0, 0, 1, 5, 0, 7}}).find("contradict"), std::string::npos);
+    EXPECT_EQ(why(2, {{0, 0, 0, 1, 5, 1, 7}}), "");
+    // Twice ahead of a tie it is finite, once it is not.
+    EXPECT_EQ(why(3, {win, next, {0, 0, 0, 2, 0, 0, 7}}), "");
+    EXPECT_NE(why(3, {win, {0, 0, 1, 2, 0, 0, 7}, {0, 0, 0, 2, 0, 0, 7}}).find("contradict"),
+              std::string::npos);
+  }
+}
+
 // Kendall and Babington Smith (1940), their table of frequencies.
 TEST(ScaleTests, CircularTriadsHaveThePublishedFrequencies) {
   EXPECT_EQ(triad_counts(3), (std::vector<double>{6, 2}));

@@ -161,7 +161,10 @@ TEST(Sequential, APreferenceIsClaimedAsTheLookAsks) {
   table.design = DesignCheck{};
   EXPECT_TRUE(claims());  // of one look
   table.design->p_at_most = 0.0188;
+  table.design->look = 24;  // whether so many were analysed or more
   EXPECT_FALSE(claims());
+  EXPECT_NE(plain_words(report, table).find("the design asks for at its look at 24 participants"),
+            std::string::npos);
   table.design->p_at_most = p;
   EXPECT_TRUE(claims());
   table.design->p_at_most.reset();

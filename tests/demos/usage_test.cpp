@@ -81,6 +81,12 @@ const BadUse bad_uses[] = {
      "--until: is given 2 times; give it once"},
     {{"analyse", "a.csv", "--out", "set", "--lapse", "no"},
      "--lapse: no is neither `free` nor a number from 0 to 0.5"},
+    // No room for a function
+    {{"analyse", "levels.csv", "--out", "set", "--guess", "0.6", "--lapse", "0.5"},
+     "--guess, --lapse: guesses of 0.6 and lapses of 0.5 leave no room"},
+    {{"analyse", "levels.csv", "--out", "set", "--guess", "free", "--lapse", "0.5"},
+     "--guess, --lapse: guesses of up to 0.5 and lapses of 0.5 leave no room"},
+    {{"analyse", "levels.csv", "--out", "set", "--lapse", "0.5"}, "leave no room"},
     // Without the option's name nobody knows which is meant
     {{"render", "01-small.json", "--slow", "1"}, "--slow: 1 is not FROM-TO:FACTOR"},
     {{"render", "01-small.json", "--freeze", "1"}, "--freeze: 1 is not TIME:SECONDS"},
@@ -92,6 +98,7 @@ const BadUse bad_uses[] = {
 
 TEST(Usage, WhatWouldDoNothingIsRefused) {
   const fs::path folder = folder_with_scene();
+  std::ofstream(folder / "levels.csv") << "level,correct,trials\n0.1,5,10\n0.2,8,10\n0.3,9,10\n";
   for (const BadUse& bad : bad_uses) {
     const RunResult run = run_program(folder, bad.command);
     const std::string command = fmt::format("{}", fmt::join(bad.command, " "));
@@ -110,6 +117,12 @@ TEST(Usage, WhatIsOfUseIsNot) {
       {"simulate", "01-small.json", "--out", "a.csv", "--method", "cable", "--error", "0"},
       {"simulate", "01-small.json", "--out", "a.csv", "--error", "0.001"},
       {"still", "01-small.json", "--time", "0,1", "--neutral", "--size", "64x64", "--out", "x.png"},
+      // The scene may stand behind any option
+      {"still", "--time", "0", "--time", "1", "01-small.json", "--size", "64x64", "--out", "x.png"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--pair", "pinch,cable", "01-small.json"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--slow", "0.1-0.2:0.5", "01-small.json"},
+      {"render", "--codec", "ffv1", "--size", "64x64", "--freeze", "1:0.1", "--freeze", "0.5:0.1",
+       "01-small.json"},
       {"stopping", "--participants", "40", "--share", "0.7", "--rule", "fixed"},
       {"power", "--share", "0.8", "--trials", "2", "--icc", "0.1"}};
   for (const auto& command : good) {

@@ -54,5 +54,23 @@ TEST(Clips, OfSeriesAndChecksThatAreMissingAreNamedWithWhoNamesThem) {
             std::string::npos);
 }
 
+TEST(Clips, ThatAreTheSameAreNamed) {
+  const fs::path folder = scratch_folder();
+  write_clips(folder);
+  EXPECT_TRUE(same_clips(open_clips(folder, small_config())).empty());
+  fs::remove(folder / "manifest.json");
+  Config config = default_config();
+  config.demonstrations = {"03-drop"};
+  config.methods = {"pinch", "cable"};
+  write_text(folder / "03-drop.pinch-cable.mp4", "a");
+  write_text(folder / "03-drop.cable-pinch.mp4", "a");
+  const std::vector<std::string> same = same_clips(open_clips(folder, config));
+  ASSERT_EQ(same.size(), 1U);
+  EXPECT_NE(same[0].find("cannot be told apart: 03-drop.pinch-cable.mp4 and "
+                         "03-drop.cable-pinch.mp4 are the same"),
+            std::string::npos)
+      << same[0];
+}
+
 }  // namespace
 }  // namespace pinchlab::study

@@ -133,6 +133,22 @@ TEST(Desk, LimitsAndLinks) {
   desk.start(links[0], "");
 }
 
+// Nothing was shown by it yet: who comes in between is to try again.
+TEST(Desk, ALinkThatIsJustBeingOpenedIsNotUsed) {
+  DeskOptions options = desk_options(scratch_folder());
+  options.config.participant_limit = 1;
+  options.config.one_time_links = true;
+  Desk desk(std::move(options));
+  std::vector<int> statuses(16, -1);
+  std::vector<std::thread> threads;
+  for (int& status : statuses) {
+    threads.emplace_back([&] { status = refused([&] { desk.start(desk.links()[0], ""); }); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const int status : statuses) EXPECT_TRUE(status == 0 || status == 503) << status;
+  EXPECT_EQ(desk.overview().running.size(), 1U);
+}
+
 TEST(Desk, AStartThatFailedCostsNobodyTheLink) {
   const fs::path folder = scratch_folder();
   const auto options = [&] {

@@ -13,6 +13,7 @@
 #include "base/read_file.h"
 #include "base/strict_json.h"
 #include "study/utc.h"
+#include "tests/base/message_of.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -20,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using pinchlab::test::message_of;
 
 const json good_rules = {{"format", "pinchlab-rules 1"},
                          {"hypotheses", {"Pinch joints look more realistic."}},
@@ -153,6 +155,12 @@ TEST(Freeze, NothingElseCanBeServedAfterwards) {
   refuses([](DeskOptions& o) { o.config.repetitions = 2; });
   refuses([](DeskOptions& o) { o.config.texts["question"] = "Which looks worst?"; });
   refuses([](DeskOptions& o) { o.config.is_pilot = true; });
+  DeskOptions pilot = desk_options(folder);
+  pilot.config.is_pilot = true;
+  EXPECT_NE(message_of<std::runtime_error>([&] {
+              Desk{std::move(pilot)};
+            }).find("is the folder of a study that is no pilot; leave --pilot out"),
+            std::string::npos);
   EXPECT_NO_THROW(Desk{desk_options(folder)});
 }
 
@@ -324,6 +332,13 @@ TEST(Freeze, RulesAreCheckedWholly) {
   EXPECT_NE(why({{"analysis", {{"scale", "thurstone"}}}}), "");  // of three methods and more
   EXPECT_NE(why({{"analysis", {{"bootstrap", 1.5}}}}), "");
   EXPECT_NE(why({{"sample", 3}}), "");
+  // As `analyse` would refuse them, after the study.
+  const json none = {{"format", "pinchlab-rules 1"},
+                     {"analysis", {{"guess", 0.9}, {"lapse", "free"}}}};
+  EXPECT_NE(message_of<InputError>([&] {
+              parse_rules(none, "r.json", AnswersKind::graded);
+            }).find("r.json: /analysis: `guess` and `lapse`"),
+            std::string::npos);
 }
 
 }  // namespace

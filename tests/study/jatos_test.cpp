@@ -290,6 +290,49 @@ TEST(Jatos, WhatCannotBeIsToldAndNothingIsWritten) {
   EXPECT_EQ(error(good.dump()), "no error");
 }
 
+TEST(Jatos, AParticipantDoesNotChooseTwice) {
+  const Exported study = exported(small_config());
+  const auto bring = [&](const std::vector<json>& results) {
+    std::string text;
+    for (const json& one : results) text += one.dump() + "\n";
+    write_text(study.folder / "results.txt", text);
+    return import_jatos({study.folder / "results.txt"}, study.folder / "study.key.json",
+                        study.folder / "answers");
+  };
+  const json first = result(study.input, 0, 3, "0123456789abcdef");
+  json other = first, later = first;
+  other["answers"][2]["choice"] = "right";
+  later["saved_utc"] = "2026-11-20T12:16:00.000Z";
+  const auto refusal = [&](const std::vector<json>& results) -> std::string {
+    try {
+      bring(results);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal({first, other}).find("results.txt:2: participant 0123456789abcdef chose"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(study.folder / "answers"));
+  EXPECT_EQ(bring({first, later}).known, 1);
+  EXPECT_NE(refusal({other}).find("chose otherwise in " + (study.folder / "answers").string()),
+            std::string::npos);
+  EXPECT_EQ(bring({first}).known, 1);
+}
+
+TEST(Jatos, AClockThatWasSetBackIsTold) {
+  const Exported study = exported(small_config());
+  json document = result(study.input, 0, 3, "0123456789abcdef");
+  document["saved_utc"] = "2026-11-20T11:15:00.000Z";
+  write_text(study.folder / "results.txt", document.dump());
+  const Imported imported = import_jatos({study.folder / "results.txt"},
+                                         study.folder / "study.key.json", study.folder / "answers");
+  EXPECT_EQ(imported.added, 1);
+  ASSERT_EQ(imported.notes.size(), 1U);
+  EXPECT_NE(imported.notes[0].find("results.txt:1: saved_utc 2026-11-20T11:15:00.000Z is before"),
+            std::string::npos);
+}
+
 // A key that was changed by hand: what it makes of good results is no answer file.
 TEST(Jatos, NothingIsWrittenWithADamagedKey) {
   const Exported study = exported(small_config());

@@ -379,8 +379,10 @@ TEST(Simulate, AFolderHoldsAnswersByOneTruth) {
   options.config.is_pilot = true;
   options.answers = folder / "people";
   { Desk desk(std::move(options)); }
-  EXPECT_EQ(refusal(folder, line + "people --truth truth.json --seed 7", 1),
-            "people: is not of simulated participants; use another --answers\n");
+  for (const char* seed : {"7", "8"}) {
+    EXPECT_EQ(refusal(folder, line + "people --truth truth.json --seed " + seed, 1),
+              "people: is not of simulated participants; use another --answers\n");
+  }
 }
 
 }  // namespace
