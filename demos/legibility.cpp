@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "render/mesh.h"
@@ -10,10 +11,33 @@
 
 namespace pinchlab {
 
+namespace {
+
+/// Empty, or that nothing is where pictures of this size (px) look, by `scale` (px/m), at the start.
+std::string nothing_in_view(const Scene& scene, const View& view, double scale, int width,
+                            int height) {
+  const Vec2 middle = 0.5 * (view.low + view.high), half = 0.5 / scale * Vec2(width, height);
+  const auto is_in_view = [&](const Body& body) {
+    const Vec2 off = (body.position - middle).cwiseAbs() - half;
+    return off.maxCoeff() < body.radius;
+  };
+  if (scene.bodies.empty() || std::ranges::any_of(scene.bodies, is_in_view)) return "";
+  return fmt::format(
+      "no body is in the picture at the start, which shows x from {:.3g} to {:.3g} m and y from "
+      "{:.3g} to {:.3g} m; give another \"view\", or \"fit\"",
+      middle.x() - half.x(), middle.x() + half.x(), middle.y() - half.y(), middle.y() + half.y());
+}
+
+}  // namespace
+
 std::vector<std::string> hard_to_see(const Scene& scene, const Scenery& scenery, int width,
                                      int height) {
   std::vector<std::string> lines;
   const double scale = Fit(scenery.view, 0, width, height).scale;  // px/m
+  if (const std::string line = nothing_in_view(scene, scenery.view, scale, width, height);
+      !line.empty()) {
+    lines.push_back(line);
+  }
   for (const Cable& cable : scene.cables) {
     const double wide = 2.0 * scale * cable.half_width;
     if (cable.joint != Joint::none || wide >= 0.5) continue;

@@ -9,8 +9,9 @@
 
 namespace pinchlab {
 
-/// A line for each cable that is thinner than half a pixel, and for each label with letters that
-/// the font lacks, in pictures of this size, px. Throws std::runtime_error as Font does.
+/// A line where no body is in the picture at the start, for each cable that is thinner than half a
+/// pixel, and for each label with letters that the font lacks, in pictures of this size, px. Throws
+/// std::runtime_error as Font does.
 std::vector<std::string> hard_to_see(const Scene& scene, const Scenery& scenery, int width,
                                      int height);
 

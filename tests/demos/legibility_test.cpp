@@ -19,6 +19,17 @@ TEST(Legibility, CablesThinnerThanHalfAPixelAreNamed) {
   EXPECT_TRUE(hard_to_see(scene, set_scenery(scene), 500, 500).empty());
 }
 
+// A picture that is wider than the view shows more of the world on either side.
+TEST(Legibility, AViewOfNothingIsNamed) {
+  Scene scene = testing::atwood();
+  scene.frame_count = 2;
+  scene.view = {Vec2(20.0, 0.0), Vec2(24.0, 4.0)};
+  const std::vector<std::string> lines = hard_to_see(scene, set_scenery(scene), 500, 500);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(lines[0].starts_with("no body is in the picture at the start")) << lines[0];
+  EXPECT_TRUE(hard_to_see(scene, set_scenery(scene), 6000, 500).empty());
+}
+
 TEST(Legibility, LettersThatTheFontLacksAreNamed) {
   Scene scene = testing::atwood();
   scene.frame_count = 2;
