@@ -13,7 +13,7 @@ namespace pinchlab {
 
 namespace {
 
-/// Empty, or that nothing is where pictures of this size (px) look, by `scale` (px/m), at the start.
+/// Empty, or that no body is in pictures of this size (px), by `scale` (px/m), at the start.
 std::string nothing_in_view(const Scene& scene, const View& view, double scale, int width,
                             int height) {
   const Vec2 middle = 0.5 * (view.low + view.high), half = 0.5 / scale * Vec2(width, height);
