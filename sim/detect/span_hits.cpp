@@ -8,6 +8,7 @@
 #include "sim/cable/joins.h"
 #include "sim/cable/strung.h"
 #include "sim/cable/taking_in.h"
+#include "sim/detect/corner_end.h"
 #include "sim/detect/detect.h"
 #include "sim/outline.h"
 #include "sim/tangent.h"
@@ -219,47 +220,6 @@ bool wraps(const World& world, const Link& other, const Circle& circle, const Li
   }
   const Tangent span = common_tangent(beyond, other.signed_radius(), circle.now, radius);
   return end.orientation * cross(span.direction, -side) >= 0.0;
-}
-
-/// The end of a span that holds it at a corner of a polygon, and the other. Of both ends the tail,
-/// if both hold it so.
-struct CornerEnd {
-  const Link *end = nullptr, *other = nullptr;
-  bool leaves = false;  // the span does, there
-};
-
-/// That at which the body holds a span; none (null) if it does not, or by no corner of it.
-CornerEnd corner_end(const CableState& cable, std::size_t s, int body) {
-  const Link &to = cable.links[s],
-             &from = at(cable.links, previous_link(cable, static_cast<int>(s)));
-  const auto holds = [body](const Link& link) {
-    return link.body == body && link.corner >= 0 && !link.moored;
-  };
-  if (holds(from)) return {&from, &to, true};
-  if (holds(to)) return {&to, &from, false};
-  return {};
-}
-
-/// m, by which a circle is on the inner side of the arc with which the cable goes on beyond a span,
-/// if it turns the same way there: as on the span's inner side before. Infinity where the circle is
-/// not beside that arc.
-double clearance_of_arc(const World& world, const CableState& cable, std::size_t s,
-                        const CornerEnd& corner, const Vec2& centre, double margin) {
-  const Link& other = *corner.other;
-  const bool turns = other.orientation == corner.end->orientation && !other.pinch_middle &&
-                     !other.moored && other.body != corner.end->body;
-  if (!turns) return infinity;
-  const int head = static_cast<int>(s);
-  const Segment &span = cable.segments[s],
-                &next = at(cable.segments,
-                           corner.leaves ? next_link(cable, head) : previous_link(cable, head));
-  if (next.pinched || !(next.length > 0.0)) return infinity;
-  const auto is_past = [&centre](const Segment& segment, bool leaves) {
-    return leaves ? segment.direction.dot(centre - segment.head) > 0.0
-                  : segment.direction.dot(centre - segment.tail) < 0.0;
-  };
-  if (!is_past(span, corner.leaves) || !is_past(next, !corner.leaves)) return infinity;
-  return other.radius - margin - (centre - link_centre(world, other)).norm();
 }
 
 /// A span that leaves a polygon on which its cable lies meets the next corner of it, on the inner
