@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/at.h"
 #include "sim/joints.h"
 #include "sim/make_world.h"
 #include "tests/sim/momentum.h"
