@@ -55,11 +55,14 @@ void add_bar(Scene& scene, const std::string& name, const Attachment& start,
 
 void add_hinge(Scene& scene, const std::string& name, int body, int other, const Vec2& point) {
   refuse_idle(name, body, other);
-  const double arm = at(scene.bodies, other >= 0 ? other : body).radius;
+  const auto distance = [&](int b) { return (point - at(scene.bodies, b).position).norm(); };
+  const bool swapped = other >= 0 && distance(other) < distance(body);
+  const int pinned = swapped ? other : body, holder = swapped ? body : other;
+  const double arm = at(scene.bodies, holder >= 0 ? holder : body).radius * (swapped ? -1.0 : 1.0);
   for (const Vec2& axis : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
-    Cable bar =
-        segment_of(scene, name + (axis.x() > 0.0 ? ":x" : ":y"), Joint::pin,
-                   attached_at(scene, body, point), attached_at(scene, other, point + arm * axis));
+    Cable bar = segment_of(scene, name + (axis.x() > 0.0 ? ":x" : ":y"), Joint::pin,
+                           attached_at(scene, pinned, point),
+                           attached_at(scene, holder, point + arm * axis));
     bar.rod = true;
     scene.cables.push_back(bar);
   }

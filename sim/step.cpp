@@ -52,7 +52,7 @@ void solve_parts(const Scene& scene, World& world, Workspace& work, Stopwatch& w
     if (part.asleep) continue;
     if (!solve_at_steps(scene, world, work, part, whole_step(world), watch)) ++d.fallbacks;
     PartSystem& s = at(work.systems, part.system);
-    store_solution(work.parts, part, s, work.solve.capstan, whole_step(world).kick, world);
+    store_solution(work.parts, part, s, work.solve.capstan, whole_step(world), world);
     if (world.configuration.solver == Solver::iterative && !s.rows.empty()) {
       store_middles(s, work.solve, work.sweeps, world);
     }

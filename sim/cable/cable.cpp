@@ -126,23 +126,29 @@ bool is_fastened_inside(const World& world, const CableState& cable, const Link&
 namespace {
 
 /// The radius of a drum's outermost turn depends on the direction of the span that leaves it, which
-/// depends on that radius: by d(alpha)/dR = 1 / length, so that simple iteration contracts by
+/// depends on that radius, and on that of the drum at its other end, if there is one: by
+/// d(alpha)/dR = 1 / length, so that simple iteration contracts by
 ///     w / (pi length)
-/// each time.
-void lay_outermost_turn(const World& world, CableState& cable, std::size_t i, Link& drum,
-                        const Link& from, const Link& to) {
-  // A span as long as half of the cable's width gains a factor pi with each, all bits with 33; what
-  // is shorter still has no room for a turn more or less.
-  constexpr int most_rounds = 60;
-  const Segment& span = cable.segments[i];
+/// each time, or, between two drums, by twice that.
+void lay_outermost_turns(const World& world, const CableState& cable, std::size_t i, Link& from,
+                         Link& to) {
+  const bool at_tail = from.layers.way > 0 && from.orientation != 0;
+  const bool at_head = to.layers.way < 0 && to.orientation != 0;
+  if (!at_tail && !at_head) return;
+  // A span as long as half of the cable's width gains a factor pi / 2 with each, all bits with 81;
+  // what is shorter still has no room for a turn more or less.
+  constexpr int most_rounds = 90;
   const Vec2 a = link_centre(world, from), b = link_centre(world, to);
-  const double angle = body_angle(world, drum);
+  const auto stands = [&world](Link& drum, double alpha) {
+    const double before = drum.radius, turned = turned_until(drum, alpha, body_angle(world, drum));
+    drum.radius = drum.layers.radius(std::max(0.0, turned));
+    return std::abs(drum.radius - before) <= 1e-16 * drum.radius;  // not by a bit
+  };
   for (int round = 0; round < most_rounds; ++round) {
     const Vec2 e = common_tangent(a, from.signed_radius(), b, to.signed_radius()).direction;
-    const double alpha = unwrapped(heading(e), span.alpha);
-    const double before = drum.radius;
-    drum.radius = drum.layers.radius(std::max(0.0, turned_until(drum, alpha, angle)));
-    if (std::abs(drum.radius - before) <= 1e-16 * drum.radius) return;  // not by a bit
+    const double alpha = unwrapped(heading(e), cable.segments[i].alpha);
+    const bool tail_stands = !at_tail || stands(from, alpha);
+    if ((!at_head || stands(to, alpha)) && tail_stands) return;
   }
 }
 
@@ -168,12 +174,7 @@ void update_tangent(const World& world, CableState& cable, std::size_t i, const 
   Link& from = cable.links[tail_link(cable, i)];
   Link& to = cable.links[i];
   if (cable.fills && !wound_end(from, to) && !is_side(from, to)) {
-    if (from.layers.way > 0 && from.orientation != 0) {
-      lay_outermost_turn(world, cable, i, from, from, to);
-    }
-    if (to.layers.way < 0 && to.orientation != 0) {
-      lay_outermost_turn(world, cable, i, to, from, to);
-    }
+    lay_outermost_turns(world, cable, i, from, to);
   }
   Segment& segment = cable.segments[i];
   const double parting = parting_of(world, cable, segment, from, to, a);

@@ -48,7 +48,7 @@ void let_fill(const Link& from, const Link& to, MassedSpan& span) {
   span.laying_b.keeps = span.laying_b.keeps || to.layers.way < 0;
   if (span.pinched) return;
   // The first has no bound on a span as short as the slope, w / pi, which has no room for a turn
-  // more or less (lay_outermost_turn).
+  // more or less (lay_outermost_turns).
   span.distance = std::max(span.distance + span.slope_b - span.slope_a, 0.5 * span.distance);
 }
 

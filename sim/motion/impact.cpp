@@ -110,7 +110,7 @@ void strike(const Scene& scene, World& world, Workspace& work, const Part& part,
     return stop(world, work.parts, part, rebounded, s, set);
   });
   if (!settled) ++world.diagnostics.fallbacks;
-  store_solution(work.parts, part, s, set.capstan, 0.0, world);
+  store_solution(work.parts, part, s, set.capstan, instant, world);
   // What another's blow lifts hops as well, and comes down at a time of its own: an interval that
   // begins with that and lasts longer would hold it down instead. What is over in next to no time
   // does not show, and without end there would be more of it where many lie on one another.

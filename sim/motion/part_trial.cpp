@@ -96,7 +96,7 @@ bool move_part(const Scene& scene, World& world, Workspace& work, Part& part, co
     trial.settled = trial.settled && settled;
     trial.froze = trial.froze || set.froze;
     d.active_set_solves = std::max(d.active_set_solves, set.solves);
-    store_solution(work.parts, part, s, set.capstan, t.tells_forces() ? t.kick : 0.0, world);
+    store_solution(work.parts, part, s, set.capstan, t, world);
     part.slides = !set.capstan.runs.empty() || part.can_slip || !s.sleeves.empty();
     watch.lap(Stage::solve);
     place_part(world, work, part, t.length, attempt.begins && round == 0);

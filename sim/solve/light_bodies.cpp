@@ -140,6 +140,8 @@ bool steady_light_bodies(const World& world, const Parts& parts, const Part& par
   bool any = false;
   for (const int c : cables_of(parts, part)) {
     const CableState& cable = at(world.cables, c);
+    // What one of a hinge's bars would let swing, the other holds.
+    if (cable.joint == Joint::pin) continue;
     for (std::size_t s = first_segment(cable); s < cable.segments.size(); ++s) {
       const Segment& segment = cable.segments[s];
       if (!(segment.tension > least * segment.length)) continue;

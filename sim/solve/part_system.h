@@ -297,7 +297,7 @@ struct PartSystem {
   // solve_for_states.
   ProfileLdl ldl;
   std::vector<int> assembled;  // rows that the matrix is for, one an unknown; empty: no matrix
-  std::vector<double> scale;   // diagonals
+  std::vector<double> scale, unsure;  // diagonals, and for pivots (ProfileLdl::factor)
 
   // Beside what every step reads.
   CableMasses masses;                          // of its cables; bodies are places in the part. By

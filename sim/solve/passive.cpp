@@ -42,6 +42,24 @@ double least_energy(const SolveScratch& set) {
   return rounding * (energy + std::abs(set.dual.energy));
 }
 
+/// Leaves the velocities as they are where all impulses are round-off of the speeds that things
+/// have, as those of a blow by which nothing meets; whether they are. Such impulses may go with what
+/// slides as well as against it, which is no reason to hold it.
+bool leaves_out_round_off(PartSystem& s) {
+  constexpr double rounding = 1e-7;  // of speeds: far more than round-off, and next to nothing
+  double fastest = 0.0, change = 0.0;
+  for (std::size_t r = 0; r < s.rows.size(); ++r) {
+    const RowBodies& bodies = s.bodies[r];
+    fastest = std::max({fastest, std::abs(bodies.ja.dot(s.free_velocity[index(bodies.a)])),
+                        std::abs(bodies.jb.dot(s.free_velocity[index(bodies.b)]))});
+    change = std::max(change, s.rows[r].diagonal * std::abs(s.rows[r].impulse));
+  }
+  if (change > rounding * fastest) return false;
+  s.velocity = s.free_velocity;
+  for (Row& row : s.rows) row.impulse = 0.0;
+  return true;
+}
+
 /// Of the bodies' motion before the rows' impulses (J, twice).
 double energy_before(const PartSystem& s) {
   double energy = 0.0;
@@ -72,7 +90,10 @@ bool makes_energy(const PartSystem& s, const SolveScratch& set) {
     const double of_b = bodies.jb.dot(s.free_velocity[b] + s.velocity[b]);
     const double of_third =
         speed_of_third(s, r, s.free_velocity) + speed_of_third(s, r, s.velocity);
-    made += row.impulse * (of_a + of_b + of_third + 2.0 * row.curved);
+    // A middle that slides has left the place to which a way bends it back.
+    const bool slides = row.kind == RowKind::pinch_middle && row.slip != Slip::stick;
+    const double curved = slides ? 0.0 : row.curved;
+    made += row.impulse * (of_a + of_b + of_third + 2.0 * curved);
     impulse += std::abs(row.impulse);
     made_up += std::abs(row.impulse) *
                std::min(std::abs(row.bias - row.curved), s.reach / set.step_length);
@@ -97,6 +118,7 @@ bool solve_passively(const World& world, const Parts& parts, const Part& part, P
     set.repairs = true;
   }
   if (!makes_energy(s, set)) return settled;
+  if (leaves_out_round_off(s)) return settled;
   const double fastest = std::max(greatest_speed(s.velocity), greatest_speed(s.free_velocity));
   forget_flips(s);
   for (Friction& friction : s.frictions) friction.dropped = true;

@@ -19,8 +19,9 @@ inline bool is_round_off(double pivot, double scale) {
 //     y(v) = A(u,v) - sum y(k) L(v,k),   d(u) = A(u,u) - sum L(u,v) y(v).
 // Of a dependent row all L are zero from there on, and those of its own row meet its zero only: it
 // is left out, and u, v and k count the others.
-int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
-  if (narrow_) return factor_narrow(scale, ridge);
+int ProfileLdl::factor(const std::vector<double>& scale, double ridge,
+                       const std::vector<double>& unsure) {
+  if (narrow_) return factor_narrow(scale, ridge, unsure);
   const std::size_t count = first_.size();
   reciprocal_.resize(count);
   factors_.resize(entries_.size());
@@ -28,6 +29,7 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   factor_offset_.resize(count);
   independent_.resize(count);
   independent_before_.resize(count);
+  variance_.resize(unsure.size());
   int n = 0;            // rows so far that repeat none
   int used = 0;         // of factors_
   double before = 0.0;  // reciprocal of the pivot before
@@ -58,6 +60,12 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
     for (int v = first; v < n - 1; ++v) eliminate(v, at(reciprocal_, v));
     if (first < n) eliminate(n - 1, before);
     if (is_round_off(pivot, scale[u])) continue;
+    if (!unsure.empty()) {
+      double variance = unsure[u];
+      for (int v = first; v < n; ++v) variance += row[v] * row[v] * at(variance_, v);
+      if (pivot < variance) continue;
+      at(variance_, n) = variance;
+    }
     at(reciprocal_, n) = before = 1.0 / pivot;
     at(factor_first_, n) = first;
     at(factor_offset_, n) = offset;
@@ -68,19 +76,21 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge) {
   return static_cast<int>(count) - n;
 }
 
-int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge) {
+int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge,
+                              const std::vector<double>& unsure) {
   const std::size_t count = first_.size();
   reciprocal_.resize(count);
   factors_.resize(count);
   int dependent = 0;
-  double before = 0.0;
+  double before = 0.0, variance = 0.0;
   for (std::size_t u = 0; u < count; ++u) {
     const int n = static_cast<int>(u);
     const double* row = entries_.data() + offset_[u];
     const double y = first_[u] < n ? row[n - 1] : 0.0, factor = y * before;
     factors_[u] = factor;
     const double pivot = row[n] + scale[u] * (1.0 + ridge) - factor * y;
-    const bool repeats = is_round_off(pivot, scale[u]);
+    if (!unsure.empty()) variance = unsure[u] + factor * factor * variance;
+    const bool repeats = is_round_off(pivot, scale[u]) || pivot < variance;
     if (repeats) ++dependent;
     reciprocal_[u] = before = repeats ? 0.0 : 1.0 / pivot;
   }

@@ -51,15 +51,19 @@ class ProfileLdl {
   double* row(int u) { return entries_.data() + at(offset_, u); }
 
   /// Factors the matrix with scale[u] (1 + ridge) added to its diagonal, and leaves it as it is.
-  /// scale[u] > 0 is also the size against which pivot u is judged. Returns how many rows were
+  /// scale[u] > 0 is also the size against which pivot u is judged. Of matrices J J^T whose rows J
+  /// are not known to all digits, unsure[u] is the square of what row u may be off by; empty: none
+  /// is. With what elimination makes of that a pivot is judged too. Returns how many rows were
   /// dependent.
-  int factor(const std::vector<double>& scale, double ridge);
+  int factor(const std::vector<double>& scale, double ridge,
+             const std::vector<double>& unsure = {});
 
   /// Solves in place.
   void solve(std::vector<double>& x) const;
 
  private:
-  int factor_narrow(const std::vector<double>& scale, double ridge);
+  int factor_narrow(const std::vector<double>& scale, double ridge,
+                    const std::vector<double>& unsure);
   void solve_narrow(std::vector<double>& x) const;
   void solve_independent(std::vector<double>& x) const;
 
@@ -76,6 +80,7 @@ class ProfileLdl {
   std::vector<double> factors_;     // rows of L, unit diagonal not stored; of a narrow matrix
                                     // L(u, u - 1) of each u, or 0
   std::vector<double> reciprocal_;  // of the pivots (0: dependent, of a narrow matrix)
+  std::vector<double> variance_;    // of what is left of J's rows: unsure + sum L^2 variance
 };
 
 }  // namespace pinchlab

@@ -278,10 +278,10 @@ void begin_middles(PartSystem& s) {
 
 /// Notes what clamps the cable of a transitional pinch between two bodies both of which hold it by
 /// friction: the row of the force that presses; or, between axles that do not give way and without
-/// slip, whatever it takes.
-void clamp_in_pinch(const World& world, const SolveScratch& scratch, Row& row) {
+/// slip, whatever it takes. What has come in slack, by more than `reach` (m), is not pulled out.
+void clamp_in_pinch(const World& world, const SolveScratch& scratch, double reach, Row& row) {
   const CableState& cable = at(world.cables, row.index);
-  if (row.idle || row.compliance > 0.0) return;
+  if (row.idle || row.compliance > 0.0 || row.clearance > reach) return;
   const int tail = at(cable.links, previous_link(cable, row.item)).body;
   const int head = at(cable.links, row.item).body;
   const double least =
@@ -455,7 +455,7 @@ void make_contact_rows(const Scene& scene, const World& world, const Parts& part
     make_sleeve_rows(scene, world, parts, part, interval, s, scratch);
   }
   if (interval.clamps) {
-    for (const int r : s.pressed) clamp_in_pinch(world, scratch, at(s.rows, r));
+    for (const int r : s.pressed) clamp_in_pinch(world, scratch, s.reach, at(s.rows, r));
   }
   if (s.middles.empty()) return;
   if (!again) {

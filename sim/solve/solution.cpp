@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/solve/solution.h"
 
+#include <cmath>
 #include <span>
 
 #include "base/at.h"
@@ -50,10 +51,22 @@ void store_contact_row(const Row& row, double kick, World& world) {
   }
 }
 
-/// A run's state on all of its links; a run that bears nothing and does not move sticks.
-void store_run(const PartSystem& s, const Run& run, World& world) {
+/// m/s, by which a solve's impulses have changed what rows bear them for, at most and in all.
+double change_by_impulses(const PartSystem& s) {
+  double change = 0.0;
+  for (const Row& row : s.rows) change += row.diagonal * std::abs(row.impulse);
+  return change;
+}
+
+/// A run's state on all of its links; a run that bears nothing and does not move sticks. A blow
+/// that changes speeds by `struck` (m/s; infinity: no blow) tells nothing of how cable slides that
+/// it does not pull, or that would slide otherwise by more: where it meets next to nothing, that is
+/// for the forces to tell, which hold the cable as the blow does not.
+void store_run(const PartSystem& s, const Run& run, double struck, World& world) {
   const bool bears =
       at(s.rows, run.row_in).impulse != 0.0 || at(s.rows, run.row_out).impulse != 0.0;
+  const double before = at(at(world.cables, run.cable).links, run.first_link).slip_speed;
+  if (struck < infinity && (!bears || std::abs(run.speed - before) > struck)) return;
   const Slip slip = !bears && run.speed == 0.0 ? Slip::stick : run.slip;
   CableState& cable = at(world.cables, run.cable);
   for (int i = run.first_link;; i = next_link(cable, i)) {
@@ -69,7 +82,8 @@ void store_run(const PartSystem& s, const Run& run, World& world) {
 }  // namespace
 
 void store_solution(const Parts& parts, const Part& part, PartSystem& s,
-                    const CapstanScratch& capstan, double kick, World& world) {
+                    const CapstanScratch& capstan, const TimeSpan& interval, World& world) {
+  const double kick = interval.tells_forces() ? interval.kick : 0.0;
   const std::span<const int> bodies = bodies_of(parts, part);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     at(world.velocity, bodies[i]) = s.velocity[i].head<2>();
@@ -82,7 +96,9 @@ void store_solution(const Parts& parts, const Part& part, PartSystem& s,
   for (const Row& row : rows.subspan(index(s.first_contact_row))) {
     store_contact_row(row, kick, world);
   }
-  for (const Run& run : capstan.runs) store_run(s, run, world);
+  const bool is_blow = interval.length == 0.0 && !capstan.runs.empty();
+  const double struck = is_blow ? change_by_impulses(s) : infinity;
+  for (const Run& run : capstan.runs) store_run(s, run, struck, world);
   if (!s.sleeves.empty()) store_rubbing(s, world);
 }
 

@@ -10,12 +10,13 @@ struct CapstanScratch;
 struct Part;
 struct Parts;
 struct PartSystem;
+struct TimeSpan;
 
 /// Writes the velocities of the part's bodies, and for the next step and for readers the states and
-/// forces (N, impulses over the kick of `kick` seconds) of its segments, links and contacts. At an
-/// instant (`kick` is 0) the forces stay.
+/// forces (N, impulses over the kick) of its segments, links and contacts. Where impulses do not
+/// tell forces, as at an instant, these stay.
 void store_solution(const Parts& parts, const Part& part, PartSystem& system,
-                    const CapstanScratch& capstan, double kick, World& world);
+                    const CapstanScratch& capstan, const TimeSpan& interval, World& world);
 
 /// Of these the tensions only, of an interval that is not to be.
 void store_tensions(PartSystem& system, double kick, World& world);

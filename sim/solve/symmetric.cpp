@@ -169,7 +169,7 @@ int factor_symmetric(PartSystem& s, SolveScratch& set) {
   } else if (changed > 0) {
     reassemble_changed(s);
   }
-  const int repeated = s.ldl.factor(s.scale, 0.0);
+  const int repeated = s.ldl.factor(s.scale, 0.0, s.unsure);
   s.factored = repeated == 0;
   // The matrix is up to date: another solve of the same rows needs no other.
   s.rows_stand = true;

@@ -40,21 +40,60 @@ bool has_unknown(const PartSystem& s, std::size_t r, bool slides, const CapstanS
   return row.diagonal > 0.0 || (slides && holds_sliding(s, row, capstan));
 }
 
+/// What a row may be off by (1/kg), squared as its diagonal, where both of its bodies do nothing but
+/// turn: all of it is levers, known to no more than what lengths may miss. 0: of any other.
+double unsure_of(const PartSystem& s, int r) {
+  const RowBodies& bodies = at(s.bodies, r);
+  const Mobility &a = at(s.mobility, bodies.a), &b = at(s.mobility, bodies.b);
+  if (a.xx != 0.0 || a.yy != 0.0 || b.xx != 0.0 || b.yy != 0.0) return 0.0;
+  return s.reach * s.reach * (a.angular + b.angular);
+}
+
+/// Rods between bodies that turn about axles come last, those of the shortest levers at the end: as
+/// such a rod's line comes to pass through its axles it holds nothing, and what others hold as well
+/// is to be known from them.
+void put_levers_last(PartSystem& s, SolveScratch& set) {
+  std::vector<int>& rows = set.row_of_unknown;
+  s.unsure.assign(rows.size(), 0.0);
+  bool any = false;
+  for (std::size_t u = 0; u < rows.size(); ++u) {
+    if (at(s.rows, rows[u]).clamped) s.unsure[u] = unsure_of(s, rows[u]);
+    any = any || s.unsure[u] > 0.0;
+  }
+  if (!any) return s.unsure.clear();
+  const auto comes_before = [&](int p, int q) {
+    const int u = at(set.unknown_of_row, p), v = at(set.unknown_of_row, q);
+    const bool p_turns = at(s.unsure, u) > 0.0, q_turns = at(s.unsure, v) > 0.0;
+    if (p_turns != q_turns) return q_turns;
+    const double longer = p_turns ? at(s.rows, p).diagonal - at(s.rows, q).diagonal : 0.0;
+    return longer > 0.0 || (longer == 0.0 && u < v);
+  };
+  std::sort(rows.begin(), rows.end(), comes_before);
+  for (std::size_t u = 0; u < rows.size(); ++u) {
+    at(set.unknown_of_row, rows[u]) = static_cast<int>(u);
+    s.unsure[u] = at(s.rows, rows[u]).clamped ? unsure_of(s, rows[u]) : 0.0;
+  }
+}
+
 /// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
-void number_unknowns(const PartSystem& s, SolveScratch& set) {
+void number_unknowns(PartSystem& s, SolveScratch& set) {
   set.unknown_of_row.resize(s.rows.size());
   set.row_of_unknown.resize(s.rows.size());
   const bool slides = !set.capstan.runs.empty();
   set.symmetric = !slides;
   int count = 0;
+  bool clamped = false;
   for (const int r : s.order) {
     const Row& row = at(s.rows, r);
     if (row.on && row.slip != Slip::stick) set.symmetric = false;
     const bool unknown = has_unknown(s, index(r), slides, set.capstan);
     at(set.unknown_of_row, r) = unknown ? count : -1;
     if (unknown) at(set.row_of_unknown, count++) = r;
+    clamped = clamped || row.clamped;
   }
   set.row_of_unknown.resize(index(count));
+  s.unsure.clear();
+  if (clamped && set.symmetric) put_levers_last(s, set);
 }
 
 /// p = F z and the equations G, row by row; groups of sliding cables add theirs.

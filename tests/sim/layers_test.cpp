@@ -53,6 +53,31 @@ TEST(Layers, AreRoundTheDrumFromItsRimOn) {
   }
 }
 
+// The span between two reels is the tangent of both outermost turns, whichever is listed first: each
+// depends on the other.
+TEST(Layers, TwoReelsAreTangentToOneSpan) {
+  for (const bool from_left : {true, false}) {
+    Scene scene;
+    for (const double x : {0.0, 1.5}) {
+      scene.bodies.push_back(body(x == 0.0 ? "left" : "right", BodyKind::fixed_axle, x, 0.0, 0.1));
+    }
+    const int first = from_left ? 0 : 1;
+    const Attachment start{first, {0.0, 0.12}, true}, end{1 - first, {0.0, 0.12}, true};
+    const int way = from_left ? -1 : 1;
+    scene.cables.push_back(cable(
+        start, {{first, way, from_left ? 1 : 6}, {1 - first, way, from_left ? 6 : 1}}, end, 0.02));
+    const World world = make_world(scene, Method::pinch);
+    const CableState& rope = world.cables[0];
+    for (const int reel : {1, 2}) {
+      const Link& link = at(rope.links, reel);
+      EXPECT_NEAR(link.radius, 0.12 + 0.02 * link.wrap / pi, 1e-15) << from_left << reel;
+    }
+    const double steeper = rope.links[2].radius - rope.links[1].radius;
+    EXPECT_NEAR(rope.segments[2].length, std::sqrt(1.5 * 1.5 - steeper * steeper), 1e-15);
+    EXPECT_NEAR(length_of(world), rope.length, 1e-13);
+  }
+}
+
 /// A load at (x, -3) on a rope that is wound on a drum, whose rim with the rope's half width is of
 /// 0.3 m, from its right side on, twice and what that place asks for.
 World wound_twice(double x, bool from_start) {
