@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <thread>
 
 #include "demos/version.h"
 #include "demos/worker_pool.h"
@@ -401,6 +404,23 @@ TEST(WorkerPool, ResultsErrorsAndDeathsComeBack) {
   EXPECT_EQ(errors, (std::map<std::size_t, std::string>{
                         {1, "no luck"},
                         {2, "its process was ended by signal 9 (Killed); was memory short?"}}));
+}
+
+// The process ends while it writes its result, which is more than a pipe holds.
+TEST(WorkerPool, HalfAResultIsNone) {
+  const std::vector<Work> work = {[](const auto&) {
+    const itimerval soon = {{}, {0, 200'000}};
+    ::setitimer(ITIMER_REAL, &soon, nullptr);
+    return std::string(std::size_t{1} << 18U, 'x');
+  }};
+  std::string result, error;
+  run_in_processes(work, 1,
+                   {.tick = [](std::size_t) {},
+                    .done = [&](std::size_t, const std::string& text) { result = text; },
+                    .failed = [&](std::size_t, const std::string& text) { error = text; },
+                    .idle = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }});
+  EXPECT_EQ(result.size(), 0U);
+  EXPECT_EQ(error, "its process was ended by signal 14 (Alarm clock)");
 }
 
 }  // namespace
