@@ -335,6 +335,13 @@ std::vector<ObserverFit> observer_fits(ScaleModel model, std::size_t methods,
       fit.log_likelihood = Estimate::none("without this participant, " + scale.why_not);
       continue;
     }
+    const bool has_ties =
+        std::ranges::any_of(own, [](const PairChoices& pair) { return pair.ties > 0; });
+    if (has_ties && !scale.tie) {
+      fit.log_likelihood = Estimate::none(
+          "the other participants gave no ties, by which to tell how likely those of this one are");
+      continue;
+    }
     double sum = 0.0;
     for (const PairChoices& pair : own) {
       const Outcomes p = outcomes(model, scale, pair.left, pair.right);
