@@ -96,7 +96,7 @@ class Laplace {
   }
 
   // Newton's step (step_u_, step_v_) at the current (u, v); leaves the Cholesky factor of the Schur
-  // complement in schur_ and log det of the u block in log_det_u_. Returns gradient . step, twice
+  // complement in schur_ and log det of the u block in log_det_u_. Returns -gradient . step, twice
   // the expected fall.
   double assemble_and_solve() {
     const double sp = parameters_.sd_participant;
