@@ -31,14 +31,6 @@ std::string harmless(const std::string& text) {
   return (is_formula ? "'" : "") + text;
 }
 
-std::string value_of(const json& object, const char* key) {
-  if (!object.contains(key)) {
-    return "";
-  }
-  const json& value = object[key];
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 // The method under test is called pinch, the other cable, as the statistics expect of CSV files.
 std::string choice(const json& trial) {
   if (trial["kind"] == "attention") {
