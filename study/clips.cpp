@@ -14,7 +14,6 @@
 #include "base/did_you_mean.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
-#include "study/secrets.h"
 
 namespace pinchlab::study {
 namespace {
