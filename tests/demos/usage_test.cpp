@@ -299,6 +299,12 @@ TEST(Usage, ATemplateIsSaidToBeOne) {
       << run.err;
 }
 
+// As `bench all --quick` does.
+TEST(Usage, InstructionsAreCountedQuicklyToo) {
+  const RunResult run = run_program(scratch_folder(), {"bench", "instructions", "--help"});
+  EXPECT_NE(run.out.find("--quick"), std::string::npos) << run.out;
+}
+
 // Behind an option that takes as many words as there are.
 TEST(Usage, ASceneMayStandBehindItsTable) {
   const fs::path folder = scratch_folder();
