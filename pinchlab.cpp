@@ -2,7 +2,6 @@
 // The front door: reads the command line and calls one function a command.
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
 
@@ -37,8 +36,8 @@
 namespace pinchlab {
 namespace {
 
-void add_scene(CLI::App& command, std::string& scene) {
-  command.add_option("scene", scene, "Scene file; demos/README.md documents the format")
+CLI::Option* add_scene(CLI::App& command, std::string& scene) {
+  return command.add_option("scene", scene, "Scene file; demos/README.md documents the format")
       ->type_name("SCENE")
       ->required();
 }
@@ -220,7 +219,7 @@ struct StillCommand : StillOptions {
 
 /// Which frames of what, as which file.
 void add_frames(CLI::App& command, StillCommand& options) {
-  add_scene(command, options.scene);
+  CLI::Option* scene = add_scene(command, options.scene);
   command
       .add_option("--time", options.times,
                   "Time to show, s; several --time, or a list 1,2.5,4, make a sheet; 1:1.5 are all "
@@ -242,9 +241,17 @@ void add_frames(CLI::App& command, StillCommand& options) {
   CLI::Option* neutral = command.add_flag("--neutral", options.neutral,
                                           "Label the rows of a sheet A and B, not by method");
   command
-      .add_option("--table", options.table,
-                  "SCENE has placeholders: a column of pictures for each row of this table, as "
-                  "`sweep` takes it")
+      .add_option_function<std::vector<std::string>>(
+          "--table",
+          [&options, scene](const std::vector<std::string>& words) {
+            options.table = words;
+            if (scene->count() > 0 || words.size() < 2 || !words.back().ends_with(".json")) return;
+            scene->add_result(words.back());  // that stands right behind the table
+            options.scene = words.back();
+            options.table.pop_back();
+          },
+          "SCENE has placeholders: a column of pictures for each row of this table, as "
+          "`sweep` takes it")
       ->type_name("TABLE")
       ->excludes(both)
       ->excludes(neutral);

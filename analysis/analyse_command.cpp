@@ -19,7 +19,6 @@
 #include "analysis/scale_report.h"
 #include "analysis/threshold_report.h"
 #include "base/did_you_mean.h"
-#include "base/input_error.h"
 #include "base/number_option.h"
 #include "base/text_checks.h"
 
@@ -301,8 +300,8 @@ void analyse_levels(Arguments& args) {
                         has_guess        ? args.guess
                         : levels.correct ? "0.5"
                                          : "0",
-                        most_guessed, 0.5);
-  model.lapse = rate_of("--lapse", args.lapse, most_lapsed, 0.1);
+                        most_guessed, most_free_guess);
+  model.lapse = rate_of("--lapse", args.lapse, most_lapsed, most_free_lapse);
   check_room(model.guess, model.lapse);
   if (!args.is_given("--bootstrap") && !args.design) args.analyse.bootstrap = threshold_resamples;
   const ThresholdReport report = analyse_thresholds(

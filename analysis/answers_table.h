@@ -2,10 +2,12 @@
 #pragma once
 // START HERE: the one checked table that every statistic is computed from.
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -114,6 +116,19 @@ struct AnswersTable {
   std::vector<std::string> incomplete;  ///< participants with answers missing (if that is allowed)
   std::optional<DesignCheck> design;    ///< if the study has a frozen one
 };
+
+/// Calls `take` with the answers of each participant, one after the other.
+template <class Take>
+void each_participant(std::span<const Answer> answers, Take take) {
+  while (!answers.empty()) {
+    const auto next = std::ranges::find_if(answers, [&](const Answer& answer) {
+      return answer.participant != answers.front().participant;
+    });
+    const auto count = static_cast<std::size_t>(next - answers.begin());
+    take(answers.first(count));
+    answers = answers.subspan(count);
+  }
+}
 
 /// How inputs are to be read.
 struct ReadOptions {

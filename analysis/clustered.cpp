@@ -29,18 +29,6 @@ std::vector<bool> members_of(const AnswersTable& table, const Group& group) {
   return members;
 }
 
-// Calls `take(first, last)` with the range of each participant's answers.
-template <class Take>
-void each_participant(const AnswersTable& table, Take take) {
-  for (size_t begin = 0, end = 0; begin < table.answers.size(); begin = end) {
-    while (end < table.answers.size() &&
-           table.answers[end].participant == table.answers[begin].participant) {
-      ++end;
-    }
-    take(begin, end);
-  }
-}
-
 Cluster sum_of(std::span<const Cluster> clusters) {
   Cluster sum;
   for (const Cluster& cluster : clusters)
@@ -135,12 +123,12 @@ double monte_carlo_flip_p(const std::vector<std::int64_t>& sizes, std::int64_t o
 std::vector<Cluster> clusters_of(const AnswersTable& table, const Group& group) {
   const std::vector<bool> member = members_of(table, group);
   std::vector<Cluster> clusters;
-  each_participant(table, [&](size_t begin, size_t end) {
+  each_participant(table.answers, [&](std::span<const Answer> own) {
     Cluster cluster;
-    for (size_t i = begin; i < end; ++i) {
-      if (!member[table.answers[i].demonstration]) continue;
+    for (const Answer& answer : own) {
+      if (!member[answer.demonstration]) continue;
       ++cluster.answers;
-      cluster.pinch += table.answers[i].chose_pinch ? 1 : 0;
+      cluster.pinch += answer.chose_pinch ? 1 : 0;
     }
     if (cluster.answers > 0) clusters.push_back(cluster);
   });
@@ -279,13 +267,13 @@ CochranQ cochran_q(const AnswersTable& table, const Group& group) {
   std::vector<double> score(table.demonstrations.size());
   double total = 0.0;
   double spread = 0.0;  // sum over participants of K sum of squares - square of sum
-  each_participant(table, [&](size_t begin, size_t end) {
+  each_participant(table.answers, [&](std::span<const Answer> own) {
     size_t answers = 0;
     std::fill(score.begin(), score.end(), 0.0);
-    for (size_t i = begin; i < end; ++i) {
-      if (!member[table.answers[i].demonstration]) continue;
+    for (const Answer& answer : own) {
+      if (!member[answer.demonstration]) continue;
       ++answers;
-      score[table.answers[i].demonstration] += table.answers[i].chose_pinch ? 1.0 : 0.0;
+      score[answer.demonstration] += answer.chose_pinch ? 1.0 : 0.0;
     }
     if (answers < complete) return;
     ++result.participants;

@@ -7,7 +7,6 @@
 #include <compare>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "analysis/answers_table.h"

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/effects.h"
 
-#include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "analysis/clustered.h"
@@ -15,16 +13,6 @@
 namespace pinchlab::analysis {
 
 namespace {
-
-// Calls `take(first, last)` with pointers to each participant's answers.
-template <class Take>
-void each_participant(const AnswersTable& table, Take take) {
-  const Answer* end = table.answers.data() + table.answers.size();
-  for (const Answer *first = table.answers.data(), *last = first; first != end; first = last) {
-    while (last != end && last->participant == first->participant) ++last;
-    take(first, last);
-  }
-}
 
 std::string why_no_answers(const AnswersTable& table) {
   return table.answers.empty() ? "the input is a table of counts" : "";
@@ -112,13 +100,13 @@ void mantel_haenszel(const std::vector<SideStratum>& strata, SideBias& result) {
 std::vector<std::int64_t> side_scores(const AnswersTable& table,
                                       const std::vector<SideStratum>& strata) {
   std::vector<std::int64_t> scores;
-  each_participant(table, [&](const Answer* first, const Answer* last) {
+  each_participant(table.answers, [&](std::span<const Answer> own) {
     std::int64_t score = 0;
-    for (const Answer* answer = first; answer != last; ++answer) {
-      if (answer->pinch_side == Side::unknown) continue;
-      const SideStratum& stratum = strata[answer->demonstration];
-      const std::int64_t centred = (answer->chose_pinch ? stratum.total : 0) - stratum.pinch;
-      score += answer->pinch_side == Side::left ? centred : -centred;
+    for (const Answer& answer : own) {
+      if (answer.pinch_side == Side::unknown) continue;
+      const SideStratum& stratum = strata[answer.demonstration];
+      const std::int64_t centred = (answer.chose_pinch ? stratum.total : 0) - stratum.pinch;
+      score += answer.pinch_side == Side::left ? centred : -centred;
     }
     scores.push_back(score);
   });
@@ -163,13 +151,13 @@ std::vector<std::int64_t> order_scores(const AnswersTable& table, OrderEffect& r
   std::vector<std::int64_t> scores;
   std::vector<const Answer*> in_order;
   const auto ties = places_of_ties(table);
-  each_participant(table, [&](const Answer* first, const Answer* last) {
+  each_participant(table.answers, [&](std::span<const Answer> own) {
     in_order.clear();
-    for (const Answer* answer = first; answer != last; ++answer) {
-      if (answer->position > 0) in_order.push_back(answer);
+    for (const Answer& answer : own) {
+      if (answer.position > 0) in_order.push_back(&answer);
     }
     std::ranges::sort(in_order, {}, &Answer::position);
-    const auto tied = ties.find(table.participants[first->participant]);
+    const auto tied = ties.find(table.participants[own.front().participant]);
     std::int64_t ranks = 0, pinch = 0, pinch_ranks = 0;
     for (size_t i = 0; i < in_order.size(); ++i) {
       size_t rank = i + 1;

@@ -16,7 +16,6 @@
 #include "analysis/groups.h"
 #include "base/answer_file.h"
 #include "base/csv_reader.h"
-#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/text_checks.h"
 

@@ -7,7 +7,6 @@
 #include <gsl/gsl_multimin.h>
 #include <gsl/gsl_roots.h>
 
-#include <cassert>
 #include <cmath>
 #include <initializer_list>
 #include <map>
@@ -96,7 +95,7 @@ class Laplace {
   }
 
   // Newton's step (step_u_, step_v_) at the current (u, v); leaves the Cholesky factor of the Schur
-  // complement in schur_ and log det of the u block in log_det_u_. Returns gradient . step, twice
+  // complement in schur_ and log det of the u block in log_det_u_. Returns -gradient . step, twice
   // the expected fall.
   double assemble_and_solve() {
     const double sp = parameters_.sd_participant;
@@ -342,24 +341,19 @@ MixedData mixed_data(const AnswersTable& table, const Group& group) {
     place[group.demonstrations[i]] = static_cast<std::uint16_t>(i);
   }
   std::map<std::vector<Cell>, double> patterns;
-  std::vector<Cell> cells;
-  for (size_t i = 0; i < table.answers.size(); ++i) {
-    const Answer& answer = table.answers[i];
-    const std::uint16_t demonstration = place[answer.demonstration];
-    if (demonstration != outside) {
+  each_participant(table.answers, [&](std::span<const Answer> own) {
+    std::vector<Cell> cells;
+    for (const Answer& answer : own) {
+      const std::uint16_t demonstration = place[answer.demonstration];
+      if (demonstration == outside) continue;
       if (cells.empty() || cells.back().demonstration != demonstration)
         cells.push_back({demonstration, 0, 0});
       ++cells.back().answers;
       cells.back().pinch =
           static_cast<std::uint16_t>(cells.back().pinch + (answer.chose_pinch ? 1 : 0));
     }
-    const bool last =
-        i + 1 == table.answers.size() || table.answers[i + 1].participant != answer.participant;
-    if (last && !cells.empty()) {
-      ++patterns[cells];
-      cells.clear();
-    }
-  }
+    if (!cells.empty()) ++patterns[cells];
+  });
   MixedData data;
   data.demonstrations = group.demonstrations.size();
   for (auto& [pattern, count] : patterns) data.patterns.push_back({pattern, count});

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/free_rates.h"
+
 namespace pinchlab::analysis {
 
 enum class Shape : std::uint8_t { logistic, normal, weibull };
@@ -18,14 +20,14 @@ enum class Shape : std::uint8_t { logistic, normal, weibull };
 struct Rate {
   bool free = false;   ///< estimated within [0, most]
   double value = 0.0;  ///< if it is not free
-  double most = 0.1;
+  double most = most_free_lapse;
 };
 
 struct PsychometricModel {
   Shape shape = Shape::logistic;
-  Rate guess{false, 0.5, 0.5};
-  Rate lapse{true, 0.0, 0.1};  ///< 0.1: who misses more often than that is not watching
-  double threshold_at = 0.5;   ///< value of G at the threshold, in (0, 1)
+  Rate guess{false, 0.5, most_free_guess};
+  Rate lapse{true, 0.0, most_free_lapse};
+  double threshold_at = 0.5;  ///< value of G at the threshold, in (0, 1)
 };
 
 /// Answers at one level.

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/answers_table.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <set>
 
 #include "analysis/besides.h"

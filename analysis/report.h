@@ -93,13 +93,8 @@ struct Figure {
 };
 std::vector<Figure> make_figures(const Report& report);
 
-/// The report in its formats, each as one whole text. The pages show those of `figures` that there
-/// are.
+/// The report for programs; pages.h has those for people.
 std::string report_json(const Report& report, const AnswersTable& table);
-std::string report_markdown(const Report& report, const AnswersTable& table,
-                            const std::vector<Figure>& figures);
-std::string report_html(const Report& report, const AnswersTable& table,
-                        const std::vector<Figure>& figures);
 
 /// CSV tables: file name and content.
 struct CsvTable {

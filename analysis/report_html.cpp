@@ -95,11 +95,6 @@ class Printer {
 
 }  // namespace
 
-std::string report_html(const Report& report, const AnswersTable& table,
-                        const std::vector<Figure>& figures) {
-  return html_page(make_document(report, table), figures);
-}
-
 std::string html_page(const Document& document, const std::vector<Figure>& figures) {
   Printer printer(figures);
   printer.text = fmt::format(

@@ -68,11 +68,6 @@ class Printer {
 
 }  // namespace
 
-std::string report_markdown(const Report& report, const AnswersTable& table,
-                            const std::vector<Figure>& figures) {
-  return markdown_page(make_document(report, table), figures);
-}
-
 std::string markdown_page(const Document& document, const std::vector<Figure>& figures) {
   Printer printer(figures);
   printer.text = fmt::format("# {}\n", escape(document.title));

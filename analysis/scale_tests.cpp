@@ -3,6 +3,7 @@
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,14 +87,6 @@ double chance_of_so_few(std::size_t methods, long rounds, long observed) {
     sum = std::move(next);
   }
   return std::min(1.0, std::accumulate(sum.begin(), sum.end(), 0.0));
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - std::floor(at)) * (values[above] - values[below]);
 }
 
 void count_stochastic_transitivity(std::size_t m, const std::vector<PairChoices>& choices,
@@ -335,6 +328,13 @@ std::vector<ObserverFit> observer_fits(ScaleModel model, std::size_t methods,
       fit.log_likelihood = Estimate::none("without this participant, " + scale.why_not);
       continue;
     }
+    const bool has_ties =
+        std::ranges::any_of(own, [](const PairChoices& pair) { return pair.ties > 0; });
+    if (has_ties && !scale.tie) {
+      fit.log_likelihood = Estimate::none(
+          "the other participants gave no ties, by which to tell how likely those of this one are");
+      continue;
+    }
     double sum = 0.0;
     for (const PairChoices& pair : own) {
       const Outcomes p = outcomes(model, scale, pair.left, pair.right);
@@ -352,7 +352,11 @@ std::vector<ObserverFit> observer_fits(ScaleModel model, std::size_t methods,
     }
   }
   if (likelihoods.size() < fewest_compared) return fits;
-  const double low = quantile(likelihoods, 0.25), high = quantile(likelihoods, 0.75);
+  std::ranges::sort(likelihoods);
+  const auto quantile = [&](double share) {
+    return gsl_stats_quantile_from_sorted_data(likelihoods.data(), 1, likelihoods.size(), share);
+  };
+  const double low = quantile(0.25), high = quantile(0.75);
   for (ObserverFit& fit : fits) {
     fit.is_far_out = fit.log_likelihood && fit.log_likelihood.value < low - 1.5 * (high - low);
   }

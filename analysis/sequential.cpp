@@ -187,6 +187,26 @@ StoppingAnswer stopping_rule(const StoppingQuestion& question, int studies, std:
   return answer;
 }
 
+namespace {
+
+// The looks at which not even the same choice by all stops the study: the least p of n participants
+// is that of n fair coins that fall alike, both ways.
+std::string out_of_reach(const StoppingQuestion& question, const StoppingAnswer& answer) {
+  if (question.rule == StoppingRule::bayes_factor) return "";
+  const std::size_t skipped = question.participants.size() - answer.looks.size();
+  std::string looks;
+  for (std::size_t i = 0; i < answer.looks.size(); ++i) {
+    const std::int64_t n = question.participants[i + skipped];
+    const double least = std::exp2(1.0 - static_cast<double>(n));
+    if (answer.looks[i].nominal_p >= least) continue;
+    looks += fmt::format("With {} participants p is {:.3g} at least: no answers stop it there.\n",
+                         n, least);
+  }
+  return looks.empty() ? "" : "\n" + looks;
+}
+
+}  // namespace
+
 std::string stopping_text(const StoppingQuestion& question, const StoppingAnswer& answer) {
   const bool is_bayes = question.rule == StoppingRule::bayes_factor;
   std::string text = is_bayes ? fmt::format(
@@ -207,6 +227,7 @@ std::string stopping_text(const StoppingQuestion& question, const StoppingAnswer
                         number(look.z, "{:.4f}"), number(look.spent, "{:.5f}"),
                         answer.without.stopped_at[i], answer.with.stopped_at[i]);
   }
+  text += out_of_reach(question, answer);
   const auto line = [&](const char* what, const Characteristics& result) {
     return fmt::format(
         "{}: finds a preference in {:.1f} % of {} simulated studies{}, with {:.1f} participants on "

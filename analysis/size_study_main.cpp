@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "analysis/gnuplot.h"
 #include "analysis/result_main.h"

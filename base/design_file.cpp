@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "base/input_error.h"
+#include "base/free_rates.h"
 #include "base/json_object.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
@@ -114,7 +113,7 @@ void check_room(const JsonObject& object, const Rules& rules) {
     if (found == rules.analysis.end()) return 0.0;
     return found->second == "free" ? most_free : *parse_number(found->second);
   };
-  if (most("guess", 0.5) + most("lapse", 0.1) < 1.0) return;
+  if (most("guess", most_free_guess) + most("lapse", most_free_lapse) < 1.0) return;
   object.fail("analysis",
               "`guess` and `lapse`, the most that a free one may be, leave no room "
               "for a function that rises between them; give rates with a sum below 1");
@@ -270,7 +269,7 @@ Design parse_design(const json& document, const std::string& file) {
     object.fail("sha256", "is not that of the rest: the design was changed after it was frozen");
   }
   design.frozen_utc = object.utc("frozen_utc");
-  design.software_version = object.text("software_version", 256);
+  object.text("software_version", 256);
   design.seed = static_cast<std::uint64_t>(object.whole("seed", 0, (long{1} << 53) - 1));
   design.plan = object.need("plan");
   JsonObject plan = object.object("plan");
@@ -290,9 +289,7 @@ Design parse_design(const json& document, const std::string& file) {
   design.rules.analysis = usual_analysis(kind);
   read_rules(rules, design.rules);
   rules.finish();
-  if (object.has("pilot_participants")) {
-    design.pilot_participants = object.whole("pilot_participants", 0, 1000000);
-  }
+  if (object.has("pilot_participants")) object.whole("pilot_participants", 0, 1000000);
   object.finish();
   return design;
 }

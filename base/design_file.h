@@ -56,7 +56,7 @@ Sample parse_stopping(const nlohmann::json& document, const std::string& file);
 
 struct Design {
   std::string sha256;  ///< of all the rest
-  std::string frozen_utc, software_version;
+  std::string frozen_utc;
   std::uint64_t seed = 0;
   nlohmann::json plan;                       ///< as in answer files
   std::map<std::string, std::string> study;  ///< what is asked, told and shown, as in answer files
@@ -64,7 +64,6 @@ struct Design {
   std::map<std::string, std::map<std::string, std::string>> clips_sha256;
   Sample sample;
   Rules rules;
-  long pilot_participants = 0;
 };
 
 /// The hash of a design: of the document without its key `sha256`, in JSON's compact form with

@@ -77,8 +77,8 @@ void sync_folder(const fs::path& path) {
 
 }  // namespace
 
-void write_durably(const fs::path& path, std::string_view bytes) {
-  PartialFile partial(path.string(), 0600);
+void write_durably(const fs::path& path, std::string_view bytes, mode_t mode) {
+  PartialFile partial(path.string(), mode);
   File file(path, partial.name(), O_WRONLY, "cannot be made");
   file.write(bytes);
   file.sync();

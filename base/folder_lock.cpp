@@ -19,8 +19,11 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& t
                                          folder.string(), std::strerror(errno)));
   }
   if (::flock(folder_, LOCK_EX | LOCK_NB) != 0) {
+    const int why = errno;
     ::close(folder_);
-    throw std::runtime_error(taken);
+    if (why == EWOULDBLOCK) throw FolderTaken(taken);
+    throw std::runtime_error(fmt::format("{}: the folder cannot be locked: {}; name another one",
+                                         folder.string(), std::strerror(why)));
   }
 }
 

@@ -106,8 +106,10 @@ void check_can_be_written(const std::filesystem::path& path) {
   if (path != "-" && !open_descriptor(path) && !is_special(path)) const PartialFile probe(path);
 }
 
-void write_result(const std::filesystem::path& path, std::string_view text) {
-  if (path != "-" && !open_descriptor(path) && !is_special(path)) return write_durably(path, text);
+void write_result(const std::filesystem::path& path, std::string_view text, mode_t mode) {
+  if (path != "-" && !open_descriptor(path) && !is_special(path)) {
+    return write_durably(path, text, mode);
+  }
   OutputFile out(path);
   out.write(text);
   out.finish();

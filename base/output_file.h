@@ -41,8 +41,9 @@ class OutputFile {
 void check_can_be_written(const std::filesystem::path& path);
 
 /// Writes a whole result: to standard output where `path` is "-", into what exists and is no
-/// ordinary file, and elsewhere so that it survives (write_durably). Throws std::runtime_error.
-void write_result(const std::filesystem::path& path, std::string_view text);
+/// ordinary file, and elsewhere so that it survives (write_durably), with `mode` less the umask:
+/// only_the_user for answers. Throws std::runtime_error.
+void write_result(const std::filesystem::path& path, std::string_view text, mode_t mode = 0666);
 
 /// The same to standard output.
 void print_result(std::string_view text);

@@ -6,7 +6,6 @@
 
 #include <new>
 #include <stdexcept>
-#include <vector>
 
 #include "base/read_file.h"
 

@@ -34,11 +34,15 @@ UnfinishedFolder::UnfinishedFolder(fs::path folder) : folder_(std::move(folder))
   // Until it is locked, another process may take it for left over.
   for (int attempts = 100; attempts > 0; --attempts) {
     path_ = make(folder_);
+    std::error_code ignored;
     try {
       lock_.emplace(path_, "");
-      if (fs::exists(path_)) return;
-    } catch (const std::runtime_error&) {
+    } catch (const FolderTaken&) {
+      fs::remove(path_, ignored);
+      continue;
+    } catch (const std::runtime_error&) {  // there may be no locks here, or it has just gone
     }
+    if (fs::exists(path_)) return;
     lock_.reset();
   }
   throw std::runtime_error(path_.string() + ": is in use");

@@ -25,8 +25,8 @@ std::string file_of(const ordered_json& entry) {
 
 // What make_clip adds to a plan's entry.
 bool is_result(std::string_view key) {
-  constexpr std::array<std::string_view, 5> results = {"report", "raw_frames_murmur3", "sha256",
-                                                       "accuracy", "broken_promises"};
+  constexpr std::array<std::string_view, 6> results = {
+      "report", "raw_frames_murmur3", "sha256", "accuracy", "broken_promises", "hard_to_see"};
   return std::ranges::find(results, key) != results.end();
 }
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <regex>
 
-#include "base/input_error.h"
 #include "demos/command_line.h"
 #include "demos/sweep.h"
 

@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
@@ -96,8 +95,9 @@ Worker start_worker(std::span<const Work> work, std::size_t index, const CaughtS
   const pid_t parent = ::getpid();
   const pid_t process = ::fork();
   if (process < 0) {
-    throw std::runtime_error(
-        fmt::format("cannot start a worker process: {}", std::strerror(errno)));
+    const int why = errno;
+    for (const int end : ends) ::close(end);
+    throw std::runtime_error(fmt::format("cannot start a worker process: {}", std::strerror(why)));
   }
   if (process == 0) {
     signals.restore();
@@ -134,9 +134,10 @@ void report_end(const Worker& worker, const WorkerPoolEvents& events) {
   int status = 0;
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
   }
-  if (worker.reply.starts_with(done_mark)) {
+  const bool is_whole = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (is_whole && worker.reply.starts_with(done_mark)) {
     events.done(worker.work, worker.reply.substr(1));
-  } else if (worker.reply.starts_with(failed_mark)) {
+  } else if (is_whole && worker.reply.starts_with(failed_mark)) {
     events.failed(worker.work, worker.reply.substr(1));
   } else if (WIFSIGNALED(status)) {
     events.failed(worker.work,

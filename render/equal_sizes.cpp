@@ -120,9 +120,8 @@ class Copy {
       check(avio_open(&format_->pb, partial_.name().c_str(), AVIO_FLAG_WRITE), path,
             "cannot be written");
       AVDictionary* options = nullptr;
-      check(av_dict_parse_string(&options, libav::mp4_options, "=", ":", 0), path,
-            "cannot be written");
-      const int result = avformat_write_header(format_, &options);
+      int result = av_dict_parse_string(&options, libav::mp4_options, "=", ":", 0);
+      if (result >= 0) result = avformat_write_header(format_, &options);
       av_dict_free(&options);
       check(result, path, "cannot be written");
     } catch (...) {

@@ -14,7 +14,6 @@
 #include "base/did_you_mean.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
-#include "study/secrets.h"
 
 namespace pinchlab::study {
 namespace {
@@ -181,9 +180,11 @@ Clip::Clip(const fs::path& path, Encoding encoding)
   sha256_ = sha256_of_file(path);
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status = {};
-  if (file_ < 0 || ::fstat(file_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
+  const bool is_open = file_ >= 0 && ::fstat(file_, &status) == 0;
+  if (!is_open || !S_ISREG(status.st_mode)) {
+    const std::string why = is_open ? "is no ordinary file" : std::strerror(errno);
+    if (file_ >= 0) ::close(file_);
+    throw std::runtime_error(fmt::format("{}: cannot be opened: {}", path.string(), why));
   }
   file_size_ = served_size_ = static_cast<std::uint64_t>(status.st_size);
 }

@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -18,6 +17,7 @@
 #include "base/answer_file.h"
 #include "base/counted.h"
 #include "base/design_file.h"
+#include "base/durable_file.h"
 #include "base/number_option.h"
 #include "base/output_file.h"
 #include "base/progress.h"
@@ -268,10 +268,11 @@ void export_study(const ExportOptions& options, const Stimuli& stimuli) {
     throw CLI::ValidationError("--clips", "goes with --ro-crate or --jatos");
   }
   if (!options.csv.empty()) {
-    write_result(options.csv, answers_csv(folder_with_answers(options.answers)));
+    write_result(options.csv, answers_csv(folder_with_answers(options.answers)), only_the_user);
   }
   if (!options.participants_csv.empty()) {
-    write_result(options.participants_csv, participants_csv(folder_with_answers(options.answers)));
+    write_result(options.participants_csv, participants_csv(folder_with_answers(options.answers)),
+                 only_the_user);
   }
   if (!options.bids.empty()) {
     write_bids(folder_with_answers(options.answers), options.bids);

@@ -213,8 +213,7 @@ Progress Desk::resume(const std::string& token) {
 }
 
 // Whoever has seen a clip has had the link's one session.
-void Desk::use_up_link(const std::string& token) {
-  const std::uint64_t number = find(token)->session.number;
+void Desk::use_up_link(std::uint64_t number) {
   const std::scoped_lock lock(mutex_);
   if (!options_.config.one_time_links || !study_.used_links.insert(number).second) {
     return;
@@ -229,13 +228,13 @@ void Desk::use_up_link(const std::string& token) {
 }
 
 void Desk::show(const std::string& token, std::size_t index) {
-  use_up_link(token);
   change(token, [&](Session& session) {
     const auto open = open_questionnaires(session, options_.config.questionnaires);
     if (!open.empty() && open.front() != "after") {
       throw Refused(409, "the questions before the trials are not answered");
     }
     study::show(session, index, options_.utc_now());
+    use_up_link(session.number);
   });
 }
 
@@ -349,9 +348,11 @@ std::string Desk::save(const std::string& token,
     throw Refused(507, "the disk does not take it");
   }
   entry->is_gone = true;
-  const std::scoped_lock lock(mutex_);
-  remove(*entry);
-  ++finished_;
+  {
+    const std::scoped_lock lock(mutex_);
+    remove(*entry);
+    ++finished_;
+  }
   options_.tell(fmt::format("{} finished; the answers are saved", id));
   try {
     remove_durably(session_path(id));

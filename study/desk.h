@@ -182,7 +182,7 @@ class Desk {
                                        const Recruited& recruited);
   void take(const Session& session);
   void give_back(const Session& session);
-  void use_up_link(const std::string& token);
+  void use_up_link(std::uint64_t number);
   std::uint64_t number_for(const std::string& link);
   std::string link_of(std::uint64_t number) const;
   std::shared_ptr<Entry> find(const std::string& token);

@@ -80,14 +80,16 @@ void Desk::read_running() {
   }
 }
 
-// What a killed server left half written is nobody's answer; it may hold what somebody wrote.
+// What a killed server left half written is nobody's answer; it may hold what somebody wrote. So
+// may archives for a download.
 void Desk::sweep() const {
   for (const fs::path& folder : {options_.answers, running_folder(options_.answers)}) {
     std::vector<fs::path> partial;
     for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-      if (is_partial_of(file.path().filename().string(), ".json")) {
-        partial.push_back(file.path());
-      }
+      const std::string name = file.path().filename().string();
+      const bool is_archive =
+          folder != options_.answers && (name.ends_with(".zip") || is_partial_of(name, ".zip"));
+      if (is_archive || is_partial_of(name, ".json")) partial.push_back(file.path());
     }
     std::ranges::for_each(partial, remove_durably);
   }

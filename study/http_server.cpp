@@ -277,7 +277,7 @@ struct HttpServer::Implementation {
     const bool is_kept = parser.keep_alive();
     HttpReply reply = answer(plain(parser.release(), connection.address));
     const bool was_sent = co_await write(connection, std::move(reply), method, version, is_kept);
-    co_return was_sent&& is_kept;
+    co_return (was_sent && is_kept);
   }
 
   HttpReply answer(const HttpRequest& request) const {

@@ -13,12 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string value_of(const json& object, const char* key) {
-  if (!object.contains(key)) return "";
-  const json& value = object[key];
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 // What an exclusion rule is about, of one participant; empty where the file does not hold it.
 std::string measured(const json& file, const char* key) {
   const auto rule = std::ranges::find(exclusion_rules(), key, &ExclusionRule::key);
@@ -101,6 +95,12 @@ bool is_recruited(const json& file) {
 }
 
 }  // namespace
+
+std::string value_of(const json& object, const char* key) {
+  if (!object.contains(key)) return "";
+  const json& value = object[key];
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
 
 QuestionColumns question_columns(const std::vector<json>& files) {
   QuestionColumns columns;

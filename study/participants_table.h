@@ -9,6 +9,9 @@
 
 namespace pinchlab::study {
 
+/// A cell: the text, number or flag that `object` has there; empty without it.
+std::string value_of(const nlohmann::json& object, const char* key);
+
 struct ParticipantsTable {
   std::vector<std::string> names, descriptions;  ///< of the columns; the first is `participant`
   std::vector<std::vector<std::string>> rows;  ///< as many cells as columns, in order of the files

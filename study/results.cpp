@@ -32,8 +32,11 @@ void add(json& sum, const json& more) {
   }
 }
 
-// What is kept of a file: counts by demonstration, sides, warnings.
-json summary_of(const json& file) {
+// What is kept of a file: counts by demonstration, sides, warnings. Throws InputError where it is
+// no answer file.
+json summary_of(const fs::path& path) {
+  const json file = read_answer_json(path);
+  parse_answer_file(file, path.filename().string());
   json demonstrations = json::object();
   int left = 0, ties = 0, answers = 0, failed = 0, narrowest = 1 << 20;
   double frames = 0, dropped = 0, away = 0;
@@ -87,15 +90,21 @@ json summary_of(const json& file) {
 
 json Results::read(bool reveal) {
   const std::scoped_lock lock(mutex_);
+  json demonstrations = json::object(), warnings = json::array();
   std::map<std::string, json> present;
   for (const fs::path& path : answer_files(answers_)) {
     const std::string name = path.filename().string();
     const auto known = summaries_.find(name);
-    present[name] =
-        known != summaries_.end() ? std::move(known->second) : summary_of(read_answer_json(path));
+    try {
+      present[name] = known != summaries_.end() ? known->second : summary_of(path);
+    } catch (const std::exception& error) {
+      present.erase(name);
+      if (!fs::exists(path)) continue;  // withdrawn since the folder was listed
+      warnings.push_back(
+          {{"code", "no_answer_file"}, {"participant", name}, {"value", error.what()}});
+    }
   }
   summaries_ = std::move(present);
-  json demonstrations = json::object(), warnings = json::array();
   std::set<std::string> versions;
   int left = 0, right = 0;
   for (const auto& [name, summary] : summaries_) {

@@ -19,8 +19,9 @@ class Results {
   /// participant, value}]}`; with `reveal` demonstrations also hold `chosen`, by what was chosen,
   /// or `levels`. Warnings: dropped_frames (share of all, over 0.02), small_clip (shown less than
   /// 900 CSS pixels wide), failed_check (how many), one_side (share, of eight answers and more, 0.9
-  /// and over), focus_lost (times, over 5), versions (of the page's program; of no participant).
-  /// Files are read once. Safe to use from many threads.
+  /// and over), focus_lost (times, over 5), versions (of the page's program; of no participant),
+  /// no_answer_file (why not; of a file's name), which counts for nothing else. Answer files are
+  /// read once. Safe to use from many threads.
   nlohmann::json read(bool reveal);
 
  private:

@@ -46,6 +46,15 @@ const std::vector<std::pair<std::string, std::string>> common_headers = {
     {"Permissions-Policy", "camera=(), geolocation=(), microphone=()"},
     {"Cache-Control", "no-store"}};
 
+// A file that goes with it.
+struct Removed {
+  std::filesystem::path path;
+  ~Removed() {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+};
+
 HttpReply reply(const json& body, int status = 200) {
   HttpReply result;
   result.status = status;
@@ -350,9 +359,9 @@ struct Server::Implementation {
       result.body = answers_csv(answers);
       return result;
     }
-    const std::filesystem::path path = running_folder(answers) / (random_hex(8) + ".zip");
+    const Removed archive{running_folder(answers) / (random_hex(8) + ".zip")};
     {
-      ZipWriter zip(path);
+      ZipWriter zip(archive.path);
       if (what == "psych-ds.zip") {
         for (const auto& [name, bytes] : psych_ds_files(answers)) zip.add(name, bytes);
       } else {
@@ -362,8 +371,7 @@ struct Server::Implementation {
       }
       zip.finish();
     }
-    result.body = read_whole(path);
-    std::filesystem::remove(path);
+    result.body = read_whole(archive.path);
     return result;
   }
 

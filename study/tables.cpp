@@ -12,6 +12,7 @@
 #include "base/csv.h"
 #include "base/durable_file.h"
 #include "base/partial_file.h"
+#include "base/text_checks.h"
 #include "study/answers.h"
 #include "study/participants_table.h"
 
@@ -25,18 +26,9 @@ using nlohmann::ordered_json;
 // A text that a spreadsheet would take for a formula gets an apostrophe before it, which
 // spreadsheets do not show; numbers stay as they are.
 std::string harmless(const std::string& text) {
-  const bool is_number = text.find_first_not_of("+-.0123456789eE") == std::string::npos;
-  const bool is_formula =
-      !is_number && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  const bool is_formula = !parse_number(text) &&
+                          std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
   return (is_formula ? "'" : "") + text;
-}
-
-std::string value_of(const json& object, const char* key) {
-  if (!object.contains(key)) {
-    return "";
-  }
-  const json& value = object[key];
-  return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 // The method under test is called pinch, the other cable, as the statistics expect of CSV files.
@@ -143,8 +135,8 @@ const std::vector<Column> columns = {
 
 std::string row(const std::vector<std::string>& values) {
   std::string text;
-  for (const std::string& value : values) {
-    text += (text.empty() ? "" : ",") + csv_cell(harmless(value));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += (i == 0 ? "" : ",") + csv_cell(harmless(values[i]));
   }
   return text + "\n";
 }

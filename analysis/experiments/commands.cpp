@@ -159,11 +159,10 @@ void add_instructions(CLI::App& bench) {
   auto options = std::make_shared<Options>();
   CLI::App* command = bench.add_subcommand(
       "instructions", "What a step executes, counted by valgrind: steady where clocks are not");
-  command->add_option("--out", options->out, "Folder for table and page [results]")
-      ->type_name("DIR");
-  command->footer("Example:\n  pinchlab bench instructions --out /tmp/instructions");
+  add_options(*command, *options);
+  command->footer("Example:\n  pinchlab bench instructions --quick --out /tmp/instructions");
   command->callback([options] {
-    options->command = "pinchlab bench instructions --out " + options->out.string();
+    options->command = "pinchlab bench instructions" + typed(*options, false);
     run_instructions(*options);
   });
 }
@@ -175,7 +174,7 @@ void count_if_possible(const Options& options) {
     return;
   }
   Options own = options;
-  own.command = "pinchlab bench instructions --out " + options.out.string();
+  own.command = "pinchlab bench instructions" + typed(options, false);
   run_instructions(own);
 }
 

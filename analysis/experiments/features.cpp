@@ -38,12 +38,6 @@ Configuration configured(Method method, bool sleep) {
   return configuration;
 }
 
-void step_or_throw(const Scene& scene, World& world, Workspace& work) {
-  if (step(scene, world, work) != StepStatus::ok) {
-    throw std::runtime_error(scene.name + ": " + world.failure);
-  }
-}
-
 double median(const std::vector<double>& samples) {
   return spread(samples).median;
 }

@@ -62,6 +62,10 @@ Effort effort_of(const Options& options) {
   return options.quick ? Effort{0.15, 40} : Effort{};
 }
 
+void step_or_throw(const Scene& scene, World& world, Workspace& work) {
+  must_be_finite(step(scene, world, work), scene, world);
+}
+
 CallCost measure_call(const std::function<void()>& run, const Effort& effort) {
   const std::int64_t batch = batch_size(run);
   std::vector<double> samples;

@@ -23,6 +23,9 @@ struct Effort {
 /// What --quick asks for, or the whole.
 Effort effort_of(const Options& options);
 
+/// Throws std::runtime_error where the step is not finite.
+void step_or_throw(const Scene& scene, World& world, Workspace& work);
+
 /// Processor time of one call of `run`, s. A sample is the mean of so many calls in a row that the
 /// clock's own time is less than 1 % of it.
 struct CallCost {

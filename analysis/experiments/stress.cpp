@@ -41,12 +41,6 @@ StressResult measure(const StressCase& one, int load, const Effort& effort) {
   return result;
 }
 
-void step_or_throw(const Scene& scene, World& world, Workspace& work) {
-  if (step(scene, world, work) != StepStatus::ok) {
-    throw std::runtime_error(scene.name + ": " + world.failure);
-  }
-}
-
 /// The scene begins again before a weight of the chain comes to its pulley, after 31 s: from then
 /// on it bounces and swings, which is another scene.
 BareResult measure_bare(const char* name, const Scene& scene, Method method, const Effort& effort) {

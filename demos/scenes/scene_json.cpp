@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/did_you_mean.h"
 #include "base/input_error.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
@@ -89,11 +90,34 @@ SceneFile parse_scene(std::string_view text, const std::filesystem::path& path,
   return file;
 }
 
+namespace {
+
+// What can be done where a scene file is not there: the one in its folder whose name is near.
+std::string cure_of_missing(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(folder.empty() ? "." : folder, none)) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  const std::string near = nearest_word(path.stem().string(), names);
+  return near.empty() ? "; name a scene file, as those of demos/"
+                      : fmt::format(" (did you mean `{}`?)", (folder / near).string() + ".json");
+}
+
+}  // namespace
+
 SceneFile read_scene_file(const std::filesystem::path& path, const Timing& timing) {
   if (path.empty()) throw SceneFileError("the scene file's name", {{"", "is empty"}});
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    throw SceneFileError(path.string(), {{"", error ? error.message() : "is not a file"}});
+    if (std::filesystem::exists(path, error)) {
+      throw SceneFileError(path.string(), {{"", "is not a file"}});
+    }
+    const std::string why = error ? error.message() : "No such file or directory";
+    throw SceneFileError(path.string(), {{"", why + cure_of_missing(path)}});
   }
   std::string text;
   try {

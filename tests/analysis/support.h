@@ -13,8 +13,18 @@
 #include <vector>
 
 #include "analysis/answers_table.h"
+#include "analysis/pages.h"
 #include "analysis/report.h"
 #include "tests/base/temporary_folder.h"
+
+namespace pinchlab::analysis {
+
+/// A report's page as Markdown, without figures.
+inline std::string report_markdown(const Report& report, const AnswersTable& table) {
+  return markdown_page(make_document(report, table), {});
+}
+
+}  // namespace pinchlab::analysis
 
 namespace pinchlab::analysis::test {
 

@@ -252,7 +252,7 @@ TEST(Besides, StandInEveryReport) {
   EXPECT_EQ(report.circumstances.frames, 2 * 4 * 900);
   EXPECT_EQ(report.circumstances.screens.at({1920, 1080}), 2);
   EXPECT_EQ(report.circumstances.narrowest_clips_px, 1800);
-  const std::string markdown = report_markdown(report, two, {});
+  const std::string markdown = report_markdown(report, two);
   for (const char* words :
        {"Confidence", "Where it looks wrong", "2 of 1920 × 1080", "dropped frames of 7200 (0.11 %)",
         "Both clips together were 1800 wide"}) {
@@ -277,7 +277,7 @@ TEST(Besides, NothingIsSaidWhereNothingWasAsked) {
   const Report report = analyse_table(table, {.bootstrap = 99});
   EXPECT_TRUE(report.besides.answers.empty());
   EXPECT_EQ(report_json(report, table).find("\"confidence\""), std::string::npos);
-  EXPECT_EQ(report_markdown(report, table, {}).find("looks wrong"), std::string::npos);
+  EXPECT_EQ(report_markdown(report, table).find("looks wrong"), std::string::npos);
 }
 
 }  // namespace

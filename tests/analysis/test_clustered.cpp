@@ -196,7 +196,7 @@ TEST(CochransQ, SaysWhoItIsOf) {
                        "them, df 1, p = 0.0047)"),
             std::string::npos)
       << words;
-  EXPECT_NE(report_markdown(report, table, {}).find("| 8 | 8.000 | 1 | **0.0047** |"),
+  EXPECT_NE(report_markdown(report, table).find("| 8 | 8.000 | 1 | **0.0047** |"),
             std::string::npos);
 }
 

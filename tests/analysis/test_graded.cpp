@@ -208,7 +208,7 @@ TEST(Graded, WhatWentInHasTheTiesToo) {
       "participant,demonstration,choice,side,preference\np1,A,pinch,left,-1\np1,B,tie,left,0\n"
       "p2,A,cable,left,1\np2,B,tie,left,0\np3,A,tie,left,0\np3,B,tie,left,0\n");
   const Report report = analyse_table(table, {.bootstrap = 99});
-  EXPECT_NE(report_markdown(report, table, {})
+  EXPECT_NE(report_markdown(report, table)
                 .find("6 answers of 3 participants, 4 of them ties, to 2 demonstrations, read"),
             std::string::npos);
   const json input = json::parse(report_json(report, table))["input"];
@@ -240,7 +240,7 @@ TEST(Graded, NothingChangesWithout) {
   const Report report = analyse_table(table, {.bootstrap = 99});
   EXPECT_TRUE(report.graded.empty());
   EXPECT_EQ(report_json(report, table).find("graded"), std::string::npos);
-  EXPECT_EQ(report_markdown(report, table, {}).find("raded"), std::string::npos);
+  EXPECT_EQ(report_markdown(report, table).find("raded"), std::string::npos);
 }
 
 TEST(Graded, OnlyTiesAreNoAnswers) {

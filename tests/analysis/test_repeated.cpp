@@ -100,8 +100,8 @@ TEST(RepeatedAnswers, NothingThatTakesThemAsIndependentIsGiven) {
   EXPECT_TRUE(document["heterogeneity"]["p"].is_null());
   EXPECT_TRUE(document["cochran_q"]["p"].is_number());
   EXPECT_NE(plain_words(report, table).find("sign-flip test over participants"), std::string::npos);
-  EXPECT_EQ(report_markdown(report, table, {}).find("Clopper–Pearson % |"),
-            report_markdown(report, table, {}).rfind("Clopper–Pearson % |"));  // of groups alone
+  EXPECT_EQ(report_markdown(report, table).find("Clopper–Pearson % |"),
+            report_markdown(report, table).rfind("Clopper–Pearson % |"));  // of groups alone
 }
 
 TEST(RepeatedAnswers, OneParticipantIsRefusedWithTheReason) {
@@ -159,7 +159,7 @@ void expect_one_untested(const std::string& untested, const std::string& tested)
   const auto expect_in = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;
   };
-  const std::string words = plain_words(report, table), page = report_markdown(report, table, {});
+  const std::string words = plain_words(report, table), page = report_markdown(report, table);
   expect_in(words,
             "(sign-flip test over participants, p < 0.05), pinch was preferred in 1 of 2 "
             "demonstrations: " +

@@ -148,7 +148,7 @@ TEST(ReportJson, DegenerateStudiesHaveReasonsAndNoNaN) {
     const json document = json_of(table);
     check_nulls(document, "");
     EXPECT_EQ(document.dump().find("nan"), std::string::npos);
-    EXPECT_EQ(report_markdown(report, table, {}).find("nan "), std::string::npos);
+    EXPECT_EQ(report_markdown(report, table).find("nan "), std::string::npos);
     EXPECT_FALSE(plain_words(report, table).empty());
   }
 }
@@ -183,8 +183,7 @@ TEST(Properties, SplittingAndShufflingChangesNothing) {
     EXPECT_EQ(split.participants, whole.participants);
     split.sources = whole.sources;  // the number of files is all that may differ
     EXPECT_EQ(report_json(analyse_table(split, {}), split), report_json(report, whole));
-    EXPECT_EQ(report_markdown(analyse_table(split, {}), split, {}),
-              report_markdown(report, whole, {}));
+    EXPECT_EQ(report_markdown(analyse_table(split, {}), split), report_markdown(report, whole));
   }
 }
 
@@ -250,7 +249,7 @@ TEST(Effects, SayTheirDirectionAndWhatTheyLeaveOut) {
     ReadOptions options;
     options.allow_missing = true;
     const AnswersTable table = test::table_of(csv + rest, options);
-    return report_markdown(analyse_table(table, {}), table, {});
+    return report_markdown(analyse_table(table, {}), table);
   };
   const auto has = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -293,10 +292,10 @@ TEST(Pages, TextFromOutsideCannotBecomeMarkup) {
   options.pinch_value = "pinch";
   const AnswersTable table = test::table_of(test::tidy_csv(test::clustered_rows()), options);
   const Report report = analyse_table(table, {});
-  const std::string html = report_html(report, table, {});
+  const std::string html = html_page(make_document(report, table), {});
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
-  const std::string markdown = report_markdown(report, table, {});
+  const std::string markdown = report_markdown(report, table);
   EXPECT_EQ(markdown.find("<script"), std::string::npos);
   EXPECT_NE(markdown.find("\\| \\*no\\*"), std::string::npos);
 }
@@ -319,7 +318,7 @@ TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   const Report report = analyse_table(table, {});
   std::vector<Figure> figures = make_figures(report);
   for (Figure& figure : figures) figure.svg = "<svg/>";
-  const std::string html = report_html(report, table, figures);
+  const std::string html = html_page(make_document(report, table), figures);
   EXPECT_EQ(html.find("http"), std::string::npos);
   EXPECT_NE(html.find("data:image/svg+xml;base64,PHN2Zy8+"), std::string::npos);
 }

@@ -342,6 +342,23 @@ TEST(ScaleTests, FindsWhoChoosesTheOtherWayRound) {
   EXPECT_LE(far_out, 2);
 }
 
+// A scale of others who never saw a tie says nothing of how likely one is.
+TEST(Observers, TiesOfOneParticipantAreHeldAgainstNobody) {
+  std::vector<PairChoices> choices = simulated(6, 20, 4, {1.2, 0.4, -0.4, -1.2}, 0.0);
+  for (PairChoices& pair : choices) {
+    if (pair.participant == 7) pair = {7, pair.demonstration, pair.left, pair.right, 0, 0, 1};
+  }
+  for (const ScaleModel model : {ScaleModel::bradley_terry, ScaleModel::thurstone}) {
+    for (const ObserverFit& fit : observer_fits(model, 4, 20, choices)) {
+      EXPECT_EQ(fit.log_likelihood.why_not, fit.participant != 7
+                                                ? ""
+                                                : "the other participants gave no ties, by which "
+                                                  "to tell how likely those of this one are");
+      EXPECT_TRUE(fit.participant != 7 || !fit.is_far_out);
+    }
+  }
+}
+
 TEST(ScaleModel, FindsTheSide) {
   const ScaleFit fit =
       fit_scale(ScaleModel::bradley_terry, 3, simulated(8, 400, 2, {0.5, 0, -0.5}, 0.0, 0.4), true);

@@ -106,6 +106,19 @@ TEST(Sequential, RulesKeepTheLevelAndSaveParticipants) {
   EXPECT_GT(found, studies / 12);
 }
 
+// Five coins fall alike with a p of 1/16.
+TEST(Sequential, BoundsThatNoAnswersReachAreTold) {
+  StoppingQuestion q = question(StoppingRule::obrien_fleming);
+  q.participants = {5, 10, 40};
+  const std::string text = stopping_text(q, stopping_rule(q, 100, 1));
+  EXPECT_NE(text.find("\nWith 5 participants p is 0.0625 at least: no answers stop it there.\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("With 40"), std::string::npos) << text;
+  q.participants = {24, 48};
+  EXPECT_EQ(stopping_text(q, stopping_rule(q, 100, 1)).find("at least"), std::string::npos);
+}
+
 TEST(Sequential, BayesFactorsStopBothWays) {
   StoppingQuestion q = question(StoppingRule::bayes_factor);
   q.truth.trials = 1;

@@ -364,6 +364,22 @@ TEST(DurableFile, OnlyTheUserReads) {
   EXPECT_EQ(files_in(folder.path()), 0U);
 }
 
+// Results are as public as the umask has other files; who writes answers says otherwise.
+TEST(WriteResult, HasTheModeOfOtherFiles) {
+  const TemporaryFolder folder;
+  const mode_t before = ::umask(027);
+  write_result(folder.path() / "result", "x");
+  write_result(folder.path() / "answers", "x", only_the_user);
+  ::umask(before);
+  const auto mode = [&](const char* name) {
+    struct stat status = {};
+    EXPECT_EQ(::stat((folder.path() / name).c_str(), &status), 0);
+    return status.st_mode & 0777U;
+  };
+  EXPECT_EQ(mode("result"), 0640U);
+  EXPECT_EQ(mode("answers"), 0600U);
+}
+
 TEST(FolderLock, OneAtATime) {
   const TemporaryFolder folder;
   {

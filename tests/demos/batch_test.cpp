@@ -291,6 +291,20 @@ TEST(Batch, WhatAnOptionChangedIsMadeAnew) {
   }
 }
 
+// What is noted of a clip is no reason to make it once more.
+TEST(Batch, ClipsThatAreHardToSeeAreKept) {
+  const fs::path folder = folder_with_scene();
+  json scene = small_scene();
+  scene["duration_s"] = 0.1;
+  scene["cables"][0]["half_width_m"] = 1e-3;
+  std::ofstream(folder / "01-small.json") << scene;
+  const std::vector<std::string> arguments = render_with({"01-small.json", "--method", "cable"});
+  const RunResult first = run_program(folder, arguments), second = run_program(folder, arguments);
+  EXPECT_NE(first.err.find("px wide"), std::string::npos) << first.err;
+  EXPECT_NE(second.err.find("px wide"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("clips: 0 made, 1 up to date"), std::string::npos) << second.err;
+}
+
 // A clip of a pair that is made by itself has another size: neither entry says that they are equal.
 TEST(Batch, SizesThatAreNoLongerEqualAreNotSaidToBe) {
   const fs::path folder = folder_with_demos();

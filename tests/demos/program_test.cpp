@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <thread>
 
 #include "demos/version.h"
 #include "demos/worker_pool.h"
@@ -145,7 +148,11 @@ TEST(Program, FailureIsOneAndLeavesNoFile) {
       {{"render"},
        "demos: there is no such folder here; go to the project's folder, or name scene files\n"},
       {{"still", "none.json", "--time", "1", "--out", "x.png"},
-       "none.json: No such file or directory\n"},
+       "none.json: No such file or directory; name a scene file, as those of demos/\n"},
+      {{"still", "01-smal.json", "--time", "1", "--out", "x.png"},
+       "01-smal.json: No such file or directory (did you mean `01-small.json`?)\n"},
+      {{"simulate", "./01-small", "--out", "x.csv"},
+       "./01-small: No such file or directory (did you mean `./01-small.json`?)\n"},
       {{"simulate", "bad.json", "--out", "x.csv"},
        "bad.json: line 1, column 1: not JSON: unexpected end of input; expected string literal\n"},
       {{"simulate", "01-small.json", "--out", "none/x.csv"},
@@ -401,6 +408,23 @@ TEST(WorkerPool, ResultsErrorsAndDeathsComeBack) {
   EXPECT_EQ(errors, (std::map<std::size_t, std::string>{
                         {1, "no luck"},
                         {2, "its process was ended by signal 9 (Killed); was memory short?"}}));
+}
+
+// The process ends while it writes its result, which is more than a pipe holds.
+TEST(WorkerPool, HalfAResultIsNone) {
+  const std::vector<Work> work = {[](const auto&) {
+    const itimerval soon = {{}, {0, 200'000}};
+    ::setitimer(ITIMER_REAL, &soon, nullptr);
+    return std::string(std::size_t{1} << 18U, 'x');
+  }};
+  std::string result, error;
+  run_in_processes(work, 1,
+                   {.tick = [](std::size_t) {},
+                    .done = [&](std::size_t, const std::string& text) { result = text; },
+                    .failed = [&](std::size_t, const std::string& text) { error = text; },
+                    .idle = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }});
+  EXPECT_EQ(result.size(), 0U);
+  EXPECT_EQ(error, "its process was ended by signal 14 (Alarm clock)");
 }
 
 }  // namespace

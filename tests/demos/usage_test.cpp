@@ -299,6 +299,29 @@ TEST(Usage, ATemplateIsSaidToBeOne) {
       << run.err;
 }
 
+// As `bench all --quick` does.
+TEST(Usage, InstructionsAreCountedQuicklyToo) {
+  const RunResult run = run_program(scratch_folder(), {"bench", "instructions", "--help"});
+  EXPECT_NE(run.out.find("--quick"), std::string::npos) << run.out;
+}
+
+// Behind an option that takes as many words as there are.
+TEST(Usage, ASceneMayStandBehindItsTable) {
+  const fs::path folder = scratch_folder();
+  fs::copy(PINCHLAB_SOURCE_DIR "/demos/sweep/drop.json", folder / "drop.json");
+  std::ofstream(folder / "t.csv") << "squeeze,mass,height\n1,1,0.9\n";
+  for (const std::vector<std::string>& table :
+       {std::vector<std::string>{"t.csv"}, {"squeeze=0,1", "mass=1", "height=0.9"}}) {
+    std::vector<std::string> arguments = {"still", "--table"};
+    arguments.insert(arguments.end(), table.begin(), table.end());
+    for (const char* more : {"drop.json", "--time", "0", "--size", "64x64", "--out", "x.png"}) {
+      arguments.emplace_back(more);
+    }
+    const RunResult run = run_program(folder, arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+}
+
 TEST(Usage, TheDayOfPublicationIsNotGuessed) {
   const fs::path folder = scratch_folder();
   fs::copy(PINCHLAB_SOURCE_DIR "/demos/sweep/drop.json", folder / "drop.json");

@@ -72,5 +72,11 @@ TEST(Clips, ThatAreTheSameAreNamed) {
       << same[0];
 }
 
+TEST(Clips, AreOrdinaryFiles) {
+  EXPECT_EQ(pinchlab::test::message_of<std::runtime_error>(
+                [] { const Clip clip("/dev/null", Encoding::mp4); }),
+            "/dev/null: cannot be opened: is no ordinary file");
+}
+
 }  // namespace
 }  // namespace pinchlab::study

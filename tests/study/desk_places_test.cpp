@@ -133,6 +133,25 @@ TEST(Desk, LimitsAndLinks) {
   desk.start(links[0], "");
 }
 
+// Who is refused a clip has seen none.
+TEST(Desk, WhatIsRefusedUsesUpNoLink) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  options.config.participant_limit = 1;
+  options.config.one_time_links = true;
+  Desk desk(std::move(options));
+  const std::string link = desk.links()[0], first = desk.start(link, "");
+  EXPECT_EQ(refused([&] { desk.show(first, 1); }), 409);
+  const std::string second = desk.start(link, "");
+  EXPECT_EQ(refused([&] { desk.progress(first); }), 401);
+  fs::rename(folder / "answers", folder / "away");
+  EXPECT_EQ(refused([&] { desk.show(second, 0); }), 507) << "the link cannot be marked";
+  fs::rename(folder / "away", folder / "answers");
+  const std::string third = desk.start(link, "");
+  desk.show(third, 0);
+  EXPECT_EQ(refused([&] { desk.start(link, ""); }), 403);
+}
+
 // Nothing was shown by it yet: who comes in between is to try again.
 TEST(Desk, ALinkThatIsJustBeingOpenedIsNotUsed) {
   DeskOptions options = desk_options(scratch_folder());

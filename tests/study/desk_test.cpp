@@ -195,6 +195,19 @@ TEST(Desk, WhatAKilledServerLeftHalfWrittenIsNotKept) {
   EXPECT_EQ(partial_files(folder), std::vector<std::string>{"notes.partial"}) << "on leaving";
 }
 
+TEST(Desk, ArchivesOfAKilledDownloadAreNotKept) {
+  const fs::path folder = scratch_folder();
+  { const Desk desk(desk_options(folder)); }
+  const fs::path running = folder / "answers" / ".running";
+  for (const char* name : {"0123456789abcdef.zip", "0123456789abcdef.zip.partial"}) {
+    write_text(running / name, "what all have answered");
+  }
+  write_text(folder / "answers" / "backup.zip", "the researcher's own");
+  const Desk desk(desk_options(folder));
+  EXPECT_EQ(std::distance(fs::directory_iterator(running), {}), 1) << "the study's file";
+  EXPECT_TRUE(fs::exists(folder / "answers" / "backup.zip"));
+}
+
 // Whoever is told "left" has left, and whoever has saved is told so.
 TEST(Desk, SavingAndLeavingAtOnceTellsTheTruth) {
   const fs::path folder = scratch_folder();
@@ -398,12 +411,16 @@ TEST(Export, FormulasAreHarmless) {
   file["trials"][0]["clip"] = "=HYPERLINK(\"http://evil.example\")";
   file["trials"][1]["clip"] = "@SUM(A1)";
   file["trials"][2]["clip"] = "-1+cmd|' /C calc'!A0";
+  file["trials"][0]["reason"] = "+1+1";
+  file["trials"][1]["reason"] = "-1-E1";
   file["trials"][2]["loop_gap_median_s"] = -0.001;
   write_text(path, file.dump());
   const std::string csv = answers_csv(folder / "answers");
   EXPECT_NE(csv.find(",\"'=HYPERLINK(\"\"http://evil.example\"\")\","), std::string::npos) << csv;
   EXPECT_NE(csv.find(",'@SUM(A1),"), std::string::npos);
   EXPECT_NE(csv.find(",'-1+cmd|"), std::string::npos);
+  EXPECT_NE(csv.find(",'+1+1\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find(",'-1-E1\n"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",-0.001,"), std::string::npos) << "a number is none";
 }
 

@@ -2,6 +2,7 @@
 // The researcher's own questions: what can be asked, what can be answered, where it goes.
 #include "study/questionnaire.h"
 
+#include "analysis/pages.h"
 #include "analysis/report.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
@@ -238,7 +239,8 @@ TEST(Screen, IsMeasuredFirstAndReported) {
   EXPECT_EQ(report.circumstances.screens_measured, 2);
   ASSERT_EQ(report.circumstances.uneven_screens.size(), 1U);
   EXPECT_TRUE(report.circumstances.uneven_screens[0].ends_with(" (75 Hz)"));
-  EXPECT_NE(report_markdown(report, table, {}).find("1 of 2 measured screens"), std::string::npos);
+  EXPECT_NE(markdown_page(make_document(report, table), {}).find("1 of 2 measured screens"),
+            std::string::npos);
   EXPECT_EQ(json::parse(report_json(report, table))["playback"]["screens_measured"], 2);
 }
 

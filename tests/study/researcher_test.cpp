@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the researcher's page asks the server for.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <thread>
 
@@ -160,24 +162,42 @@ TEST(Researcher, APilotIsMarkedAndKeptApart) {
   EXPECT_THROW(Desk(options(false)), std::runtime_error) << "its answers alone";
 }
 
+// Of a participant p, without trials yet.
+json levels_answered() {
+  return {
+      {"format", "pinchlab-answers"},
+      {"version", 1},
+      {"participant", "p"},
+      {"plan",
+       {{"demonstrations", {"d"}}, {"graded_hit", "graded"}, {"answers_per_demonstration", 10}}},
+      {"started_utc", "2026-11-20T12:00:00.000Z"},
+      {"saved_utc", "2026-11-20T12:10:00.000Z"},
+      {"software_version", "1"},
+      {"trials", json::array()}};
+}
+
 TEST(Results, CountWhatCallsForALook) {
   const fs::path folder = scratch_folder();
-  json file = {{"participant", "p"}, {"software_version", "1"}, {"trials", json::array()}};
+  json file = levels_answered();
   for (int i = 0; i < 10; ++i) {
-    file["trials"].push_back({{"kind", "main"},
+    file["trials"].push_back({{"position", i + 1},
+                              {"kind", "main"},
                               {"demonstration", "d"},
                               {"left", "graded"},
                               {"right", "reference"},
                               {"level", 0.5},
                               {"choice", "right"},
+                              {"reaction_time_s", 1},
                               {"frame_count", 100},
                               {"dropped_frames", i == 0 ? 30 : 0},
                               {"clip_width_px", 1200},
                               {"focus_lost_count", 1}});
   }
-  file["trials"].push_back({{"kind", "attention"},
+  file["trials"].push_back({{"position", 11},
+                            {"kind", "attention"},
                             {"demonstration", "c"},
                             {"choice", "left"},
+                            {"reaction_time_s", 1},
                             {"expected", "right"},
                             {"left", "check"},
                             {"right", "check"}});
@@ -199,6 +219,67 @@ TEST(Results, CountWhatCallsForALook) {
   EXPECT_FALSE(results.read(false)["demonstrations"][0].contains("levels"));
   fs::remove(folder / "q.json");
   EXPECT_EQ(results.read(false)["finished"], 1);
+}
+
+// A file that is no answer file costs nothing but a warning, while it is there.
+TEST(Results, WhatIsNoAnswerFileIsAWarning) {
+  const fs::path folder = scratch_folder();
+  RunningServer running(desk_options(folder));
+  take_part(running.desk, "left");
+  const auto results = [&] {
+    const auto reply =
+        HttpClient(running.server.address())
+            .post("/api/results", {{"reveal", true}}, running.server.researcher_token());
+    EXPECT_EQ(reply->status, 200) << reply->body;
+    return json::parse(reply->body);
+  };
+  const json before = results();
+  for (const char* text : {"{", "{}", "[]", R"({"trials": [{}]})", R"({"trials": 1})"}) {
+    write_text(folder / "answers/notes.json", text);
+    const json with = results();
+    EXPECT_EQ(with["finished"], 1);
+    EXPECT_EQ(with["demonstrations"], before["demonstrations"]);
+    const json& first = with["warnings"].front();
+    EXPECT_EQ(first["code"], "no_answer_file");
+    EXPECT_EQ(first["participant"], "notes.json");
+    EXPECT_NE(first["value"], "");
+  }
+  fs::remove(folder / "answers/notes.json");
+  EXPECT_EQ(results(), before);
+}
+
+// Answers can be withdrawn while they are counted.
+TEST(Results, FilesMayGoMeanwhile) {
+  const fs::path folder = scratch_folder();
+  {
+    Desk desk(desk_options(folder));
+    take_part(desk, "left");
+  }
+  const fs::path answers = folder / "answers", file = answer_files(answers).front();
+  const std::string text = read_whole(file);
+  std::atomic<bool> is_done = false;
+  std::thread other([&] {
+    for (int i = 0; !is_done; ++i) {
+      const fs::path path = answers / fmt::format("{}.json", i);
+      write_text(folder / "next", text);
+      fs::rename(folder / "next", path);
+      fs::remove(path);
+    }
+  });
+  Results results(answers);
+  std::string error;
+  for (int i = 0; i < 1000 && error.empty(); ++i) {
+    try {
+      const json read = results.read(true);
+      if (read["warnings"].dump().find("no_answer_file") != std::string::npos) error = read.dump();
+    } catch (const std::exception& thrown) {
+      error = thrown.what();
+    }
+  }
+  is_done = true;
+  other.join();
+  EXPECT_EQ(error, "");
+  EXPECT_EQ(results.read(true)["finished"], 1);
 }
 
 }  // namespace

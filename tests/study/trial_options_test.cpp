@@ -3,6 +3,7 @@
 #include "study/session.h"
 
 #include "analysis/comparisons_table.h"
+#include "analysis/pages.h"
 #include "analysis/report.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
@@ -226,7 +227,8 @@ TEST(TrialOptions, SimulatedGradesAreAnalysed) {
   EXPECT_LT(report.graded[0].test.p.value, 1e-6);
   EXPECT_GT(report.graded[2].test.p.value, 1e-4) << "no preference there";
   EXPECT_TRUE(table.incomplete.empty()) << "who gave ties has answered";
-  EXPECT_NE(report_markdown(report, table, {}).find("of 180 answers were ties"), std::string::npos);
+  EXPECT_NE(markdown_page(make_document(report, table), {}).find("of 180 answers were ties"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -366,7 +366,8 @@ TEST(SceneErrors, FilesThatCannotBeRead) {
     }
     return "no error";
   };
-  EXPECT_EQ(read_error("no-such.json"), "no-such.json: No such file or directory");
+  EXPECT_EQ(read_error("no-such.json"),
+            "no-such.json: No such file or directory; name a scene file, as those of demos/");
   EXPECT_EQ(read_error("/tmp"), "/tmp: is not a file");
   const test::TemporaryFolder folder;
   const std::string large = folder.write("large.json", std::string(max_scene_bytes + 1, ' '));
