@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sim/joints.h"
 
+#include <algorithm>
+
 #include "base/at.h"
 #include "sim/compound.h"
 #include "sim/outline.h"
@@ -55,10 +57,14 @@ void add_bar(Scene& scene, const std::string& name, const Attachment& start,
 
 void add_hinge(Scene& scene, const std::string& name, int body, int other, const Vec2& point) {
   refuse_idle(name, body, other);
-  const auto distance = [&](int b) { return (point - at(scene.bodies, b).position).norm(); };
+  const auto distance = [&](int b) {
+    return b < 0 ? 0.0 : (point - at(scene.bodies, b).position).norm();
+  };
   const bool swapped = other >= 0 && distance(other) < distance(body);
   const int pinned = swapped ? other : body, holder = swapped ? body : other;
-  const double arm = at(scene.bodies, holder >= 0 ? holder : body).radius * (swapped ? -1.0 : 1.0);
+  const double radius = at(scene.bodies, holder >= 0 ? holder : body).radius;
+  const double length = std::max({radius, distance(body), distance(other)});
+  const double arm = swapped ? -length : length;
   for (const Vec2& axis : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
     Cable bar = segment_of(scene, name + (axis.x() > 0.0 ? ":x" : ":y"), Joint::pin,
                            attached_at(scene, pinned, point),

@@ -20,10 +20,11 @@ void add_bar(Scene& scene, const std::string& name, const Attachment& start, con
 
 /// Holds two bodies together at a point of the world (m), about which they turn; `other` may be -1,
 /// the world. They no longer touch each other. Two bars do it, `name`:x and `name`:y, that pull the
-/// body along the axes of the start: from the point on one body to two points of the other (or of
-/// the world) that lie its radius (or the body's) off it. Both keep their length just where the
-/// point is the same on both bodies. They turn with the body whose centre is further from the point
-/// (`other`, of two as far): a wheel may spin on its axle however fast.
+/// body along the axes of the start: from the point on one body to two points of the other, or of
+/// the world. Both keep their length just where the point is the same on both bodies, or by 1.4 of
+/// that off it; so they are as long as a body's radius and as far as the bodies' centres lie from
+/// the point, at least. They turn with the body whose centre is further from it (`other`, of two as
+/// far): a wheel may spin on its axle however fast.
 void add_hinge(Scene& scene, const std::string& name, int body, int other, const Vec2& point);
 
 /// A force k (l - l0) + c dl/dt along the line between the two points, l their distance:

@@ -2,13 +2,14 @@
 #include "sim/solve/profile_ldl.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pinchlab {
 
 namespace {
 
-inline bool is_round_off(double pivot, double scale) {
-  return pivot < ProfileLdl::dependence * scale && pivot > -ProfileLdl::dependence * scale;
+inline bool is_round_off(double pivot, double scale, double noise) {
+  return std::abs(pivot) < std::max(ProfileLdl::dependence * scale, noise);
 }
 
 }  // namespace
@@ -29,7 +30,7 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge,
   factor_offset_.resize(count);
   independent_.resize(count);
   independent_before_.resize(count);
-  variance_.resize(unsure.size());
+  noise_.resize(count);
   int n = 0;            // rows so far that repeat none
   int used = 0;         // of factors_
   double before = 0.0;  // reciprocal of the pivot before
@@ -59,13 +60,10 @@ int ProfileLdl::factor(const std::vector<double>& scale, double ridge,
     };
     for (int v = first; v < n - 1; ++v) eliminate(v, at(reciprocal_, v));
     if (first < n) eliminate(n - 1, before);
-    if (is_round_off(pivot, scale[u])) continue;
-    if (!unsure.empty()) {
-      double variance = unsure[u];
-      for (int v = first; v < n; ++v) variance += row[v] * row[v] * at(variance_, v);
-      if (pivot < variance) continue;
-      at(variance_, n) = variance;
-    }
+    double noise = round_off * scale[u] + (unsure.empty() ? 0.0 : unsure[u]);
+    for (int v = first; v < n; ++v) noise += row[v] * row[v] * at(noise_, v);
+    if (is_round_off(pivot, scale[u], noise)) continue;
+    at(noise_, n) = noise;
     at(reciprocal_, n) = before = 1.0 / pivot;
     at(factor_first_, n) = first;
     at(factor_offset_, n) = offset;
@@ -82,19 +80,26 @@ int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge,
   reciprocal_.resize(count);
   factors_.resize(count);
   int dependent = 0;
-  double before = 0.0, variance = 0.0;
+  double before = 0.0, noise = 0.0;
   for (std::size_t u = 0; u < count; ++u) {
     const int n = static_cast<int>(u);
     const double* row = entries_.data() + offset_[u];
     const double y = first_[u] < n ? row[n - 1] : 0.0, factor = y * before;
     factors_[u] = factor;
     const double pivot = row[n] + scale[u] * (1.0 + ridge) - factor * y;
-    if (!unsure.empty()) variance = unsure[u] + factor * factor * variance;
-    const bool repeats = is_round_off(pivot, scale[u]) || pivot < variance;
+    noise = round_off * scale[u] + factor * factor * noise + (unsure.empty() ? 0.0 : unsure[u]);
+    const bool repeats = is_round_off(pivot, scale[u], noise);
     if (repeats) ++dependent;
     reciprocal_[u] = before = repeats ? 0.0 : 1.0 / pivot;
   }
   return dependent;
+}
+
+double ProfileLdl::pivot(int u, double scale) const {
+  if (narrow_) return at(reciprocal_, u) == 0.0 ? 0.0 : 1.0 / (at(reciprocal_, u) * scale);
+  const int n = at(independent_before_, u);
+  const bool repeats = index(n) >= independent_.size() || at(independent_, n) != u;
+  return repeats ? 0.0 : 1.0 / (at(reciprocal_, n) * scale);
 }
 
 void ProfileLdl::solve(std::vector<double>& x) const {

@@ -13,14 +13,19 @@ namespace pinchlab {
 /// kept from its first entry to the diagonal. The work is the sum of the squared widths: linear for
 /// a cable, whose matrix is tridiagonal; then it goes by a shorter way to the same bits.
 ///
-/// A pivot below `dependence` times the diagonal's scale means that the row repeats earlier ones;
-/// its unknown is left at zero (a basic solution) and counted. Only rows that repeat none count to
-/// the widths: n of which r do so take n r^2.
+/// A pivot below `dependence` times the diagonal's scale, or below what elimination makes of the
+/// round-off of earlier ones,
+///     noise(u) = round_off scale(u) + unsure(u) + sum L(u,v)^2 noise(v),
+/// means that the row repeats earlier ones; its unknown is left at zero (a basic solution) and
+/// counted. Only rows that repeat none count to the widths: n of which r do so take n r^2.
 class ProfileLdl {
  public:
   /// Of a row that repeats others, elimination leaves round-off: 1e-16 of the scale for each of the
   /// rows that couple with it. What is left with less than a thousand times that shows no digit.
   static constexpr double dependence = 1e-13;
+
+  /// Of the scale: some units in a pivot's last place.
+  static constexpr double round_off = 1e-15;
 
   /// Starts an empty matrix.
   void clear() {
@@ -53,10 +58,12 @@ class ProfileLdl {
   /// Factors the matrix with scale[u] (1 + ridge) added to its diagonal, and leaves it as it is.
   /// scale[u] > 0 is also the size against which pivot u is judged. Of matrices J J^T whose rows J
   /// are not known to all digits, unsure[u] is the square of what row u may be off by; empty: none
-  /// is. With what elimination makes of that a pivot is judged too. Returns how many rows were
-  /// dependent.
+  /// is. Returns how many rows were dependent.
   int factor(const std::vector<double>& scale, double ridge,
              const std::vector<double>& unsure = {});
+
+  /// Pivot u of the factors, over its scale; 0: of a dependent row.
+  double pivot(int u, double scale) const;
 
   /// Solves in place.
   void solve(std::vector<double>& x) const;
@@ -80,7 +87,7 @@ class ProfileLdl {
   std::vector<double> factors_;     // rows of L, unit diagonal not stored; of a narrow matrix
                                     // L(u, u - 1) of each u, or 0
   std::vector<double> reciprocal_;  // of the pivots (0: dependent, of a narrow matrix)
-  std::vector<double> variance_;    // of what is left of J's rows: unsure + sum L^2 variance
+  std::vector<double> noise_;       // of the pivots
 };
 
 }  // namespace pinchlab

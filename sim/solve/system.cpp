@@ -49,6 +49,15 @@ double unsure_of(const PartSystem& s, int r) {
   return s.reach * s.reach * (a.angular + b.angular);
 }
 
+/// Numbers the unknowns in the order in which their rows are listed.
+void number_in_order(PartSystem& s, SolveScratch& set) {
+  for (std::size_t u = 0; u < set.row_of_unknown.size(); ++u) {
+    const int r = set.row_of_unknown[u];
+    at(set.unknown_of_row, r) = static_cast<int>(u);
+    if (!s.unsure.empty()) s.unsure[u] = at(s.rows, r).clamped ? unsure_of(s, r) : 0.0;
+  }
+}
+
 /// Rods between bodies that turn about axles come last, those of the shortest levers at the end: as
 /// such a rod's line comes to pass through its axles it holds nothing, and what others hold as well
 /// is to be known from them.
@@ -69,10 +78,7 @@ void put_levers_last(PartSystem& s, SolveScratch& set) {
     return longer > 0.0 || (longer == 0.0 && u < v);
   };
   std::sort(rows.begin(), rows.end(), comes_before);
-  for (std::size_t u = 0; u < rows.size(); ++u) {
-    at(set.unknown_of_row, rows[u]) = static_cast<int>(u);
-    s.unsure[u] = at(s.rows, rows[u]).clamped ? unsure_of(s, rows[u]) : 0.0;
-  }
+  number_in_order(s, set);
 }
 
 /// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.
@@ -288,6 +294,35 @@ double largest_of(const std::vector<double>& residuals) {
   return largest;
 }
 
+/// Where rows repeat others, which of them are left out is the order's choice: to be of those that
+/// hardly tell anything new, and so are known the least by what is left of them. Puts all of these
+/// last, and factors anew; returns how many repeat others then.
+int factor_repeated_last(PartSystem& s, SolveScratch& set, int repeated) {
+  constexpr double hardly = 1e-3;  // of a row's own
+  constexpr int most_times = 3;    // what comes last may leave others more than they had
+  std::vector<int>& rows = set.row_of_unknown;
+  for (int k = 0; k < most_times && repeated > 0; ++k) {
+    set.right_side.resize(rows.size());
+    bool in_order = true;
+    double least = infinity;
+    for (std::size_t u = 0; u < rows.size(); ++u) {
+      const double pivot = s.ldl.pivot(static_cast<int>(u), s.scale[u]);
+      set.right_side[u] = std::min(pivot, hardly);
+      in_order = in_order && set.right_side[u] <= least;
+      least = set.right_side[u];
+    }
+    if (in_order) break;
+    std::sort(rows.begin(), rows.end(), [&set](int p, int q) {
+      const int u = at(set.unknown_of_row, p), v = at(set.unknown_of_row, q);
+      const double more = at(set.right_side, u) - at(set.right_side, v);
+      return more > 0.0 || (more == 0.0 && u < v);
+    });
+    number_in_order(s, set);
+    repeated = factor(s, set, 0.0);
+  }
+  return repeated;
+}
+
 /// The rows' speeds, and what each equation misses at them; returns the largest.
 double find_residuals(PartSystem& s, SolveScratch& set) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
@@ -462,7 +497,8 @@ void solve_for_states(PartSystem& s, SolveScratch& set) {
     if (!s.sleeves.empty()) express_rubbing(s, set);
     gather_body_terms(s, set);
   }
-  const int repeated = factor(s, set, 0.0);
+  int repeated = factor(s, set, 0.0);
+  if (set.symmetric && repeated > 0) repeated = factor_repeated_last(s, set, repeated);
   if (set.symmetric && repeated == 0) {
     set.solution.assign(set.row_of_unknown.size(), 0.0);
     set.residual.resize(set.row_of_unknown.size());
