@@ -107,9 +107,9 @@ double add_missed(const World& world, const Parts& parts, const Part& part, cons
     if (!bears && missed < 0.0 && group < 0) curvature -= std::max(row_speed(s, r), 0.0);
     // A row that repeats others does not have the speed that its bias asks for. What it misses then
     // tells nothing of the way: that has bent by what the others let it have.
-    if (const double speed = row_speed(s, r);
-        bears && group < 0 && row.compliance == 0.0 && std::abs(speed) > round_off) {
-      curvature -= speed;
+    if (!set.direct && bears && group < 0 && row.compliance == 0.0) {
+      const double speed = row_speed(s, r);
+      if (std::abs(speed) > round_off) curvature -= speed;
     }
     row.bias += curvature;
     row.curved += curvature;

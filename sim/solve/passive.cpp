@@ -43,8 +43,8 @@ double least_energy(const SolveScratch& set) {
 }
 
 /// Leaves the velocities as they are where all impulses are round-off of the speeds that things
-/// have, as those of a blow by which nothing meets; whether they are. Such impulses may go with what
-/// slides as well as against it, which is no reason to hold it.
+/// have, as those of a blow by which nothing meets; whether they are. They may go with what slides
+/// as well as against it, which is no reason to hold it.
 bool leaves_out_round_off(PartSystem& s) {
   constexpr double rounding = 1e-7;  // of speeds: far more than round-off, and next to nothing
   double fastest = 0.0, change = 0.0;

@@ -80,6 +80,7 @@ int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge,
   reciprocal_.resize(count);
   factors_.resize(count);
   int dependent = 0;
+  const bool is_unsure = !unsure.empty();
   double before = 0.0, noise = 0.0;
   for (std::size_t u = 0; u < count; ++u) {
     const int n = static_cast<int>(u);
@@ -87,7 +88,8 @@ int ProfileLdl::factor_narrow(const std::vector<double>& scale, double ridge,
     const double y = first_[u] < n ? row[n - 1] : 0.0, factor = y * before;
     factors_[u] = factor;
     const double pivot = row[n] + scale[u] * (1.0 + ridge) - factor * y;
-    noise = round_off * scale[u] + factor * factor * noise + (unsure.empty() ? 0.0 : unsure[u]);
+    noise = round_off * scale[u] + factor * factor * noise;
+    if (is_unsure) noise += unsure[u];
     const bool repeats = is_round_off(pivot, scale[u], noise);
     if (repeats) ++dependent;
     reciprocal_[u] = before = repeats ? 0.0 : 1.0 / pivot;

@@ -40,8 +40,8 @@ bool has_unknown(const PartSystem& s, std::size_t r, bool slides, const CapstanS
   return row.diagonal > 0.0 || (slides && holds_sliding(s, row, capstan));
 }
 
-/// What a row may be off by (1/kg), squared as its diagonal, where both of its bodies do nothing but
-/// turn: all of it is levers, known to no more than what lengths may miss. 0: of any other.
+/// What a row may be off by (1/kg), squared as its diagonal, where both of its bodies turn and no
+/// more: all of it is levers, known to no more than what lengths may miss. 0: of any other.
 double unsure_of(const PartSystem& s, int r) {
   const RowBodies& bodies = at(s.bodies, r);
   const Mobility &a = at(s.mobility, bodies.a), &b = at(s.mobility, bodies.b);

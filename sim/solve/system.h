@@ -14,8 +14,8 @@ struct SolveScratch;
 /// Equations are rows, or sums G of them: G (J (v* + M^-1 J^T p) + bias + compliance p) = 0. The
 /// matrix G (J M^-1 J^T + compliance) F is narrow in the order of PartSystem::order and is factored
 /// directly. Where nothing slides F and G are the identity and the matrix is symmetric. Where
-/// constraints repeat one another, the solution of least norm is taken, each impulse weighted by the
-/// root of its row's diagonal: between the same two bodies, as for equally stiff cables.
+/// constraints repeat one another, the solution of least norm is taken, each impulse weighted by
+/// the root of its row's diagonal: between the same two bodies, as for equally stiff cables.
 void solve_for_states(PartSystem& system, SolveScratch& scratch);
 
 /// The same where only biases have changed since it found a solution that is SolveScratch::direct,

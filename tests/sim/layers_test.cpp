@@ -53,8 +53,8 @@ TEST(Layers, AreRoundTheDrumFromItsRimOn) {
   }
 }
 
-// The span between two reels is the tangent of both outermost turns, whichever is listed first: each
-// depends on the other.
+// The span between two reels is the tangent of both outermost turns, whichever is listed first:
+// each depends on the other.
 TEST(Layers, TwoReelsAreTangentToOneSpan) {
   for (const bool from_left : {true, false}) {
     Scene scene;
