@@ -65,15 +65,15 @@ double change_by_impulses(const PartSystem& s) {
 void store_run(const PartSystem& s, const Run& run, double struck, World& world) {
   const bool bears =
       at(s.rows, run.row_in).impulse != 0.0 || at(s.rows, run.row_out).impulse != 0.0;
-  const double before = at(at(world.cables, run.cable).links, run.first_link).slip_speed;
-  if (struck < infinity && (!bears || std::abs(run.speed - before) > struck)) return;
   const Slip slip = !bears && run.speed == 0.0 ? Slip::stick : run.slip;
   CableState& cable = at(world.cables, run.cable);
+  const double before = at(cable.links, run.first_link).slip_speed;
+  const bool tells = struck == infinity || (bears && std::abs(run.speed - before) <= struck);
   for (int i = run.first_link;; i = next_link(cable, i)) {
     Link& link = at(cable.links, i);
     if (!link.pinch_middle || run.first_link == run.last_link) {
       link.slip = slip;
-      link.slip_speed = run.speed;
+      if (tells) link.slip_speed = run.speed;
     }
     if (i == run.last_link) break;
   }
