@@ -105,8 +105,8 @@ double add_missed(const World& world, const Parts& parts, const Part& part, cons
     double curvature = missed / t.length;
     // Of a row that bears no force the way itself has gained J v + bias, which has bent back.
     if (!bears && missed < 0.0 && group < 0) curvature -= std::max(row_speed(s, r), 0.0);
-    // A row that repeats others is met by these, and does not have the speed that its bias asks for:
-    // the way has bent by what they let it have.
+    // A row that repeats others is met by these, and has not the speed that its bias asks for: the
+    // way has bent by what they let it have.
     if (!set.direct && bears && group < 0 && row.compliance == 0.0 &&
         std::abs(missed) <= s.tolerance()) {
       const double speed = row_speed(s, r);

@@ -80,8 +80,8 @@ TEST(Population, NoSpanIsTooLongWhereNothingGives) {
   }
 }
 
-// Spans that contradict one another ask for speeds that they do not get, and miss by that. Taken for
-// such as repeat others, which miss nothing, they were 0.2 to 49 mm too long.
+// Spans that contradict one another ask for speeds that they do not get, and miss by that. Taken
+// for such as repeat others, which miss nothing, they were 0.2 to 49 mm too long.
 TEST(Population, NoSpanIsTooLongWhereSpansContradictEachOther) {
   for (const int seed : {124, 757, 1697}) {
     const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
@@ -266,8 +266,8 @@ double beyond_capstan(const World& world, const CableState& cable, const CableSt
 
 // Slack loops that slide everywhere, since something drags them: where one run has to stick it is
 // one that can. And a thin cable between bodies that press a thick one feels nothing of that. These
-// had tensions in one span of a loop without any in the next, and nothing said so. (Of the first 700
-// scenes 129, 360 and 476 still do, for a step; sim/README.md, "Limits".)
+// had tensions in one span of a loop without any in the next, and nothing said so. (Of the first
+// 700 scenes 129, 360 and 476 still do, for a step; sim/README.md, "Limits".)
 TEST(Population, LoopsKeepTheCapstanLaw) {
   int seen = 0;
   for (const int seed : {45, 49, 94, 158, 283, 318, 356, 470, 484, 573}) {
