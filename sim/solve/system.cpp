@@ -41,12 +41,15 @@ bool has_unknown(const PartSystem& s, std::size_t r, bool slides, const CapstanS
 }
 
 /// What a row may be off by (1/kg), squared as its diagonal, where both of its bodies turn and no
-/// more: all of it is levers, known to no more than what lengths may miss. 0: of any other.
+/// more: all of it is levers, known to no more than what lengths may miss. 0: of any other, and
+/// where that is next to nothing of its levers.
 double unsure_of(const PartSystem& s, int r) {
+  constexpr double next_to_nothing = 1e-12;
   const RowBodies& bodies = at(s.bodies, r);
   const Mobility &a = at(s.mobility, bodies.a), &b = at(s.mobility, bodies.b);
   if (a.xx != 0.0 || a.yy != 0.0 || b.xx != 0.0 || b.yy != 0.0) return 0.0;
-  return s.reach * s.reach * (a.angular + b.angular);
+  const double unsure = s.reach * s.reach * (a.angular + b.angular);
+  return unsure > next_to_nothing * at(s.rows, r).diagonal ? unsure : 0.0;
 }
 
 /// Numbers the unknowns in the order in which their rows are listed.
@@ -63,13 +66,14 @@ void number_in_order(PartSystem& s, SolveScratch& set) {
 /// is to be known from them.
 void put_levers_last(PartSystem& s, SolveScratch& set) {
   std::vector<int>& rows = set.row_of_unknown;
+  constexpr int most = 32;  // rows, each of which may fill all of its own of the matrix
   s.unsure.assign(rows.size(), 0.0);
-  bool any = false;
+  int count = 0;
   for (std::size_t u = 0; u < rows.size(); ++u) {
     if (at(s.rows, rows[u]).clamped) s.unsure[u] = unsure_of(s, rows[u]);
-    any = any || s.unsure[u] > 0.0;
+    count += s.unsure[u] > 0.0 ? 1 : 0;
   }
-  if (!any) return s.unsure.clear();
+  if (count == 0 || count > most) return s.unsure.clear();
   const auto comes_before = [&](int p, int q) {
     const int u = at(set.unknown_of_row, p), v = at(set.unknown_of_row, q);
     const bool p_turns = at(s.unsure, u) > 0.0, q_turns = at(s.unsure, v) > 0.0;
@@ -300,18 +304,21 @@ double largest_of(const std::vector<double>& residuals) {
 int factor_repeated_last(PartSystem& s, SolveScratch& set, int repeated) {
   constexpr double hardly = 1e-3;  // of a row's own
   constexpr int most_times = 3;    // what comes last may leave others more than they had
+  constexpr int most_told = 32;    // rows, each of which may fill all of its own of the matrix
   std::vector<int>& rows = set.row_of_unknown;
   for (int k = 0; k < most_times && repeated > 0; ++k) {
     set.right_side.resize(rows.size());
     bool in_order = true;
+    int told = 0;
     double least = infinity;
     for (std::size_t u = 0; u < rows.size(); ++u) {
       const double pivot = s.ldl.pivot(static_cast<int>(u), s.scale[u]);
       set.right_side[u] = std::min(pivot, hardly);
       in_order = in_order && set.right_side[u] <= least;
+      told += pivot < hardly ? 1 : 0;
       least = set.right_side[u];
     }
-    if (in_order) break;
+    if (in_order || told > most_told) break;
     std::sort(rows.begin(), rows.end(), [&set](int p, int q) {
       const int u = at(set.unknown_of_row, p), v = at(set.unknown_of_row, q);
       const double more = at(set.right_side, u) - at(set.right_side, v);
