@@ -396,12 +396,40 @@ void leave_out_repeated(const World& world, std::ptrdiff_t first, std::vector<Co
   });
   if (there == end) return;
   const double round_off = one_place(world, last.a, last.b) / world.step_length;
-  const double rather = counts_rather(world, *there, last, place, round_off);
+  double rather = counts_rather(world, *there, last, place, round_off);
+  if (of_bodies && std::abs(rather) <= round_off) {
+    // Neither moves along its side. One that is beyond its end has no way of its own.
+    const auto left_over = [&world](const Contact& c) {
+      return on_straight(world, c, world.position, world.angle);
+    };
+    rather = left_over(last) > left_over(*there) ? infinity : 0.0;
+  }
   if (rather > round_off && last.gap <= there->gap + same) {
     to.erase(there);
   } else if (of_bodies || rather < -round_off) {
     to.pop_back();
   }
+}
+
+/// Whether a contact's point, within round-off of where the side that it is on ends, has come off
+/// it: where it moves on along it. One that stays there, as a corner of a box does on another as
+/// wide, is on it: beyond, a distance of round-off has a normal of round-off.
+bool comes_off(const World& world, const Contact& contact) {
+  const double near = one_place(world, contact.a, contact.b);
+  const double left_over = on_straight(world, contact, world.position, world.angle);
+  if (left_over > near) return false;
+  if (left_over < -near) return true;
+  const auto [owner, other] = parties_of(contact);
+  const int next = (contact.side + 1) % points_of(at(world.bodies, other));
+  const Vec2 begin = place_of_point(world, other, contact.side);
+  const Vec2 along = (place_of_point(world, other, next) - begin).normalized();
+  const Vec2 point = place_of_touch(world, contact, places_now(world));
+  const bool at_begin =
+      2.0 * along.dot(point - begin) < (place_of_point(world, other, next) - begin).dot(along);
+  // Of b less that of a, and the point is a's or b's (a wall's end stands).
+  const bool of_a = contact.touch == Touch::point_of_a;
+  const double speed = (of_a ? -1.0 : 1.0) * relative_velocity(world, contact, point).dot(along);
+  return (at_begin ? -speed : speed) > near / world.step_length;
 }
 
 }  // namespace
@@ -422,11 +450,7 @@ void append_touches(const World& world, int a, int b, int wall, double most,
     contact.normal = meeting.normal;
     contact.side = static_cast<std::int8_t>(meeting.side);
     if (goes_past(world, one_place(world, a, b), contact)) return;
-    // Within round-off of its end it has come off it.
-    if (contact.side >= 0 &&
-        on_straight(world, contact, world.position, world.angle) <= one_place(world, a, b)) {
-      contact.side = -1;
-    }
+    if (contact.side >= 0 && comes_off(world, contact)) contact.side = -1;
     to.push_back(contact);
   };
   // Of a point of b or of a wall, after those of a.
