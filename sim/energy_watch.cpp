@@ -44,6 +44,7 @@ void EnergyWatch::describe_items(const Scene& scene, const World& world) {
     const Body& body = scene.bodies[b];
     Group& group = groups_[b];
     group.driven = is_driven(body);
+    group.drained = body.node || body.linear_drag > 0.0 || body.angular_drag > 0.0;
     if (body.kind == BodyKind::fixed) continue;
     group.mass = body.mass;
     group.extent = body.position.cwiseAbs().maxCoeff() + body.radius;
@@ -53,6 +54,7 @@ void EnergyWatch::describe_items(const Scene& scene, const World& world) {
     Group& group = groups_[world.bodies.size() + c];
     group.mass = world.cables[c].density * world.cables[c].length;
     group.extent = extent_of(world.cables[c]);
+    group.drained = world.cables[c].density > 0.0 || scene.cables[c].damping > 0.0;
   }
 }
 
@@ -68,7 +70,9 @@ void EnergyWatch::unite(int item, int other) {
   group.potential += joins.potential;
   group.mass += joins.mass;
   group.extent = std::max(group.extent, joins.extent);
+  group.kept += joins.kept;
   group.driven = group.driven || joins.driven;
+  group.drained = group.drained || joins.drained;
 }
 
 /// Bodies that may touch in the next step have a contact, and are in one part.
@@ -112,11 +116,13 @@ void EnergyWatch::unite_at_cable(const World& world, int number) {
 
 void EnergyWatch::unite_all(const World& world) {
   unite_parts(world);
+  links_changed_ = false;
   for (int c = 0; index(c) < world.cables.size(); ++c) {
     const int changes = at(world.cables, c).changes;
     if (changes == at(changes_, c)) continue;
     unite_at_cable(world, c);
     at(changes_, c) = changes;
+    links_changed_ = true;
   }
 }
 
@@ -142,6 +148,40 @@ void EnergyWatch::add_potential(const Scene& scene, const World& world) {
   for (const NodeChain& chain : scene.chains) {
     const int group = root_of(cable_item(world, chain.cable));
     at(sums_, group).potential += potential_energy_held(world, chain, scene.gravity);
+  }
+}
+
+namespace {
+
+/// Whether rough bodies may take energy from a cable: where it slides, or as it stretches on them.
+bool is_rubbed(const World& world, const CableState& cable) {
+  return std::ranges::any_of(cable.links, [&](const Link& link) {
+    if (link.body < 0 || !(at(world.bodies, link.body).cable_friction > 0.0)) return false;
+    return link.slip != Slip::stick || (cable.elastic && link.radius > 0.0);
+  });
+}
+
+}  // namespace
+
+/// What meets something or comes off it does so in an event, which does not tell of what group; and
+/// so does, in the first step, what the scene gives a velocity that does not fit its cables.
+void EnergyWatch::find_what_takes(const World& world) {
+  const Diagnostics& now = world.diagnostics;
+  const bool anywhere = world.step == 1 || now.events != diagnostics_.events ||
+                        now.node_changes != diagnostics_.node_changes || links_changed_;
+  diagnostics_ = now;
+  if (anywhere) {
+    for (Sums& sums : sums_) sums.taken = true;
+    return;
+  }
+  for (const Contact& contact : world.contacts) {
+    if (contact.slip == Slip::stick && contact.slipping_cable < 0) continue;
+    at(sums_, root_of(contact.a)).taken = true;
+    if (contact.b >= 0) at(sums_, root_of(contact.b)).taken = true;
+  }
+  for (int c = 0; index(c) < world.cables.size(); ++c) {
+    if (is_rubbed(world, at(world.cables, c)))
+      at(sums_, root_of(cable_item(world, c))).taken = true;
   }
 }
 
@@ -174,40 +214,63 @@ void EnergyWatch::start(const Scene& scene, const World& world) {
     group.start = group.kinetic + group.potential;
     group.at_play = std::max(group.at_play, group.kinetic);
   }
+  diagnostics_ = world.diagnostics;
 }
 
 // Energy at the step's start: velocities were from before it and are half an interval after it, and
 // between the two they change evenly. Where the step was divided that half is not known: then there
-// is at least what the lesser of the velocities before and after tells, but for what these and
-// positions can have exchanged meanwhile, no more than potential energy changes by in the step.
-EnergyWatch::Gain EnergyWatch::note(const Scene& scene, const World& world) {
+// is at least what the lesser of the velocities before and after tells, and at most what the greater
+// does, but for what these and positions can have exchanged meanwhile, no more than potential energy
+// changes by in the step.
+EnergyWatch::Range EnergyWatch::energy_at_start(const Group& group, const Sums& sums) {
+  if (sums.whole) return {sums.kinetic + group.potential, sums.kinetic + group.potential};
+  const auto [lesser, greater] = std::minmax(group.kinetic, sums.kinetic_after);
+  const double exchanged = std::abs(sums.potential - group.potential);
+  return {lesser - exchanged + group.potential, greater + exchanged + group.potential};
+}
+
+/// Of a group, by so much (J).
+void EnergyWatch::note_change(int group, double energy, Change& worst) const {
+  const double share = energy / at(groups_, group).at_play;
+  if (!(share <= worst.share)) worst = {share, group};  // NaN is noted
+}
+
+EnergyWatch::Changes EnergyWatch::note(const Scene& scene, const World& world) {
   unite_all(world);
   std::fill(sums_.begin(), sums_.end(), Sums{});
   add_kinetic(world, &Sums::kinetic);
   note_instant(world, before_);
   add_kinetic(world, &Sums::kinetic_after);
   add_potential(scene, world);
+  find_what_takes(world);
   for (int b = 0; index(b) < world.bodies.size(); ++b) {
     if (is_static(at(world.bodies, b))) continue;
     Sums& sums = at(sums_, root_of(b));
     sums.whole = sums.whole && at(world.pace, b).lag == 0.5 * world.step_length;
   }
-  Gain worst;
+  Changes worst;
   for (int i = 0; index(i) < groups_.size(); ++i) {
     if (root_of(i) != i) continue;
     Group& group = at(groups_, i);
     const Sums& sums = at(sums_, i);
     group.at_play = std::max(group.at_play, sums.kinetic);
     if (!group.driven && group.at_play > 0.0) {
-      const double sure =
-          std::min(group.kinetic, sums.kinetic_after) - std::abs(sums.potential - group.potential);
-      const double gained = (sums.whole ? sums.kinetic : sure) + group.potential - group.start -
-                            energy_of_round_off(group.mass, group.extent, world.step_length);
-      const double share = gained / group.at_play;
-      if (!(share <= worst.share)) worst = {share, representative(world, i)};
+      const auto [least, most] = energy_at_start(group, sums);
+      const double round_off = energy_of_round_off(group.mass, group.extent, world.step_length);
+      note_change(i, least - group.start - round_off, worst.gained);
+      if (group.drained || sums.taken) {
+        group.kept = -infinity;
+      } else if (group.kept > -infinity) {
+        note_change(i, group.kept - most - round_off, worst.lost);
+      } else if (sums.whole) {
+        group.kept = most;
+      }
     }
     group.kinetic = sums.kinetic_after;
     group.potential = sums.potential;
+  }
+  for (Change* change : {&worst.gained, &worst.lost}) {
+    if (change->item >= 0) change->item = representative(world, change->item);
   }
   return worst;
 }

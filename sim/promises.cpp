@@ -45,6 +45,7 @@ Promises::Promises(const Scene& scene, const World& world) {
   most_strain_ = direct ? limits_.strain : limits_.sweeps_strain;
   watches_gaps_ = direct && world.configuration.method == Method::pinch;
   watches_energy_ = direct;
+  watches_loss_ = direct && locates_events(world.configuration);
   if (watches_energy_) energy_.start(scene, world);
 }
 
@@ -167,8 +168,11 @@ void Promises::note(const Scene& scene, const World& world) {
   note_sag(scene, world);
   if (watches_gaps_) note_contacts(scene, world);
   if (watches_energy_) {
-    const EnergyWatch::Gain gain = energy_.note(scene, world);
-    note_value(Promise::energy, gain.share, limits_.energy, world.step, gain.item, -1);
+    const auto [gained, lost] = energy_.note(scene, world);
+    note_value(Promise::energy, gained.share, limits_.energy, world.step, gained.item, -1);
+    if (watches_loss_) {
+      note_value(Promise::loss, lost.share, limits_.loss, world.step, lost.item, -1);
+    }
   }
   if (world.diagnostics.fallbacks > fallbacks_) {
     note_value(Promise::settled, 1.0, 0.0, world.step, -1, -1);
@@ -213,6 +217,12 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
             "{} and what has acted on it gained {} of the energy at play there, and nothing drives "
             "them (limit {})",
             name_of_item(scene, w.item), percent(w.value), percent(limits_.energy));
+        break;
+      case Promise::loss:
+        what = fmt::format(
+            "{} and what has acted on it lost {} of the energy at play there, and nothing took it "
+            "(limit {})",
+            name_of_item(scene, w.item), percent(w.value), percent(limits_.loss));
         break;
       case Promise::straight:
         what = fmt::format(

@@ -24,13 +24,14 @@ struct PromiseLimits {
   double squeeze = 1e-3;  ///< of the pinched cable's width, or of the smaller radius without cable
   double length = 1e-6;   ///< wraps and spans against the cable's length, over it
   double energy = 1e-2;   ///< gained since the start, of the energy at play: energy_watch.h
+  double loss = 0.1;      ///< lost, likewise, since something last may have taken energy
   double sag = 0.125;     ///< that a span of a cable with mass would have, over its length
 };
 
 /// Of a line of Promises::broken on spans that are straight: what helps there, where steps do not.
 inline constexpr std::string_view nodes_cure = "with nodes it does";
 
-enum class Promise { strain, squeeze, length, energy, straight, settled, count };
+enum class Promise { strain, squeeze, length, energy, loss, straight, settled, count };
 
 /// Watches one world from its start. What is promised depends on the configuration: `squeeze` needs
 /// Method::pinch, and sweeps (Solver::iterative) promise nothing but the cables' lengths and that
@@ -54,7 +55,7 @@ class Promises {
     std::int64_t first_step = 0;    // after which the limit was first exceeded
     std::int64_t steps_broken = 0;  // 0: the promise has held
     int item = -1, other = -1;      // cable; or bodies, `other` -1 - wall for an obstacle; of
-                                    // energy, EnergyWatch::Gain::item
+                                    // energy, EnergyWatch::Change::item
   };
 
   void note_value(Promise promise, double value, double limit, std::int64_t step, int item,
@@ -65,7 +66,7 @@ class Promises {
 
   PromiseLimits limits_;
   double most_strain_ = 0.0;  // of limits_
-  bool watches_gaps_ = false, watches_energy_ = false;
+  bool watches_gaps_ = false, watches_energy_ = false, watches_loss_ = false;
   std::array<Worst, static_cast<std::size_t>(Promise::count)> worst_;
   std::array<Worst, static_cast<std::size_t>(Promise::count)> now_;  // of the step being noted
   std::int64_t fallbacks_ = 0;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "sim/compound.h"
+#include "sim/joints.h"
 #include "sim/nodes.h"
 #include "sim/outline.h"
 #include "tests/sim/random_scene.h"
@@ -271,6 +273,53 @@ TEST(Promises, NoticeEnergyFromNowhere) {
   Scene driven = loads();
   driven.bodies[2].torque = 1e-9;
   EXPECT_EQ(broken_after_a_kick(driven), std::vector<std::string>());
+}
+
+TEST(Promises, NoticeEnergyThatGoesNowhere) {
+  const auto broken_when_braked = [](const Scene& scene) {
+    Watched watched(scene, {}, 200);
+    for (Vec2& velocity : watched.world.velocity) velocity *= 0.1;
+    watched.world.angular_velocity[2] *= 0.1;
+    watched.world.stamp = 0;  // changed by hand
+    watched.go();
+    watched.go();
+    return watched.broken();
+  };
+  expect_one(broken_when_braked(loads()), "body 'left' and what has acted on it lost ");
+  // It may be where something takes energy.
+  Scene dragged = loads();
+  dragged.bodies[0].linear_drag = 1e-9;
+  EXPECT_EQ(broken_when_braked(dragged), std::vector<std::string>());
+  Scene slipping = loads();
+  slipping.bodies[2].cable_friction = 0.01;
+  EXPECT_EQ(broken_when_braked(slipping), std::vector<std::string>());
+  slipping.bodies[2].cable_friction = 0.0;  // smooth
+  expect_one(broken_when_braked(slipping), "body 'left' and what has acted on it lost ");
+}
+
+// A rod that whips a crank which is nearly without inertia through its dead centre, in next to no
+// time: at one step a frame more than half of the energy is lost on the way.
+TEST(Promises, NoticeALightCranksLossAtItsDeadCentre) {
+  Scene scene;
+  scene.gravity = Vec2::Zero();
+  const double angle = 0.5, pin = 0.3, rod = 1.0, turning = 5.0;
+  const Vec2 at_pin = pin * Vec2(std::cos(angle), std::sin(angle));
+  const double x = at_pin.x() + std::sqrt(rod * rod - at_pin.y() * at_pin.y());
+  scene.bodies.push_back(body("crank", BodyKind::fixed_axle, 0.0, 0.0, 0.02, 1.0));
+  scene.bodies.push_back(body("slider", BodyKind::rail, x, 0.0, 0.01, 2.0));
+  scene.bodies[0].angular_velocity = turning;
+  scene.bodies[1].rail_axis = Vec2(1.0, 0.0);
+  scene.bodies[1].velocity.x() = -turning * x * at_pin.y() / (x - at_pin.x());
+  add_bar(scene, "rod", {0, at_pin}, {1, Vec2::Zero()});
+  for (const int steps : {1, 16}) {
+    scene.steps_per_frame = steps;
+    Watched watched(scene, {}, 60 * steps);
+    if (steps == 1) {
+      expect_one(watched.broken(), "body 'crank' and what has acted on it lost ");
+    } else {
+      EXPECT_EQ(watched.broken(), std::vector<std::string>());
+    }
+  }
 }
 
 // What has never acted on others does not hide what these gain, whether much is at play in it or
