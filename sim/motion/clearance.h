@@ -7,6 +7,8 @@
 
 namespace pinchlab {
 
+struct Start;
+
 /// The gap above a contact's target at the present positions (m); below 0: too near.
 double clearance_of(const World& world, const Contact& contact);
 
@@ -19,6 +21,15 @@ inline double clearance_of(const World& world, const Row& row) {
   const Segment& segment = at(at(world.cables, row.index).segments, row.item);
   return segment.rest_length - segment.length;
 }
+
+/// The same of one that was clear by `before` (m) when the interval began, at the first place on the
+/// way from there at which it has been less than -`late`; `now`, its clearance at the present
+/// positions, where there is none. A polygon that crosses another outline, or a wall, within one
+/// interval ends it clear of that again, on the far side. Bodies move evenly along their ways, and
+/// between two of the places that are tried by no more than half of what is thinnest. Moves bodies
+/// there and back.
+double clearance_on_way(World& world, const Start& start, const Contact& contact, double before,
+                        double now, double late);
 
 /// Round-off of a body's place, which is nothing to put right (m).
 double reach_at(const World& world, int body);

@@ -132,7 +132,7 @@ Happening event_of(EventKind kind, int part, const PartSystem& s) {
 }
 
 /// The catch of a row that idles, or of one that stretches and lets go.
-void find_catch(const World& world, Workspace& work, int number, const PartSystem& s, int r,
+void find_catch(World& world, Workspace& work, int number, const PartSystem& s, int r,
                 bool releases) {
   const CapstanScratch& capstan = work.solve.capstan;
   const Row& row = at(s.rows, r);
@@ -140,8 +140,12 @@ void find_catch(const World& world, Workspace& work, int number, const PartSyste
   const bool in_group =
       row.kind == RowKind::segment && !capstan.runs.empty() && at(capstan.group_of_row, r) >= 0;
   if (in_group) return;
-  const double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
+  double clearance = releases ? -clearance_of(world, row) : clearance_of(world, row);
   const double late = !releases && row.clearance > s.reach ? -s.reach : 0.5 * s.reach;
+  if (row.kind == RowKind::normal && clearance >= -late) {
+    clearance = clearance_on_way(world, work.start, at(world.contacts, row.index), row.clearance,
+                                 clearance, s.reach);
+  }
   // As most: no search for these.
   if (work.known_events.empty() && clearance >= -late) return;
   Happening key = event_of(EventKind::catches, number, s);
@@ -200,7 +204,7 @@ void find_gone_links(const World& world, Workspace& work, const Happening& of_ca
 
 }  // namespace
 
-void find_catches(const World& world, Workspace& work, int number) {
+void find_catches(World& world, Workspace& work, int number) {
   const PartSystem& s = at(work.systems, at(work.parts.list, number).system);
   for (const int r : s.loose) {
     const Row& row = at(s.rows, r);

@@ -26,7 +26,7 @@ void measure(Workspace& work, const Happening& key, double clearance, double lat
 /// Catches of a part: rows that idle and would have to bear force at the present positions,
 /// contacts that close and cables that are pulled tight. New ones are listed, known ones measured
 /// anew.
-void find_catches(const World& world, Workspace& work, int part);
+void find_catches(World& world, Workspace& work, int part);
 
 /// Links of a part that have come off, likewise.
 void find_gone_links(const World& world, Workspace& work, int part);
