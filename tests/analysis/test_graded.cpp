@@ -218,6 +218,20 @@ TEST(Graded, WhatWentInHasTheTiesToo) {
   EXPECT_EQ(input["participants"], 3);
 }
 
+TEST(Graded, OneTieIsOne) {
+  const AnswersTable table = test::table_of(
+      "participant,demonstration,choice,side,preference\np1,A,cable,left,1\np1,B,tie,left,0\n"
+      "p2,A,cable,left,1\np2,B,cable,right,-1\n");
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  const std::string page = report_markdown(report, table);
+  for (const char* sentence :
+       {"1 of 4 answers was a tie, and is in no count here.",
+        "1 of 4 answers was a tie: it is left", "4 answers of 2 participants, 1 of them a tie, to",
+        "left clip was chosen 1 time and"}) {
+    EXPECT_NE(page.find(sentence), std::string::npos) << sentence << "\n" << page;
+  }
+}
+
 TEST(Graded, APlaceIsTakenByATieToo) {
   const auto refusal = [](const char* rows) -> std::string {
     try {
