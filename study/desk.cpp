@@ -426,17 +426,21 @@ Progress Desk::preview(std::uint64_t number) {
 }
 
 std::string Desk::withdraw(const std::string& code) {
-  std::string id;
+  std::optional<Withdrawn> withdrawn;
   try {
-    id = study::withdraw(options_.answers, code);
+    withdrawn = study::withdraw(options_.answers, code);
   } catch (const std::invalid_argument&) {
     throw Refused(422, "is no withdrawal code");
   }
-  if (id.empty()) {
+  if (!withdrawn) {
     throw Refused(404, "no answers have this code");
   }
+  const std::string& id = withdrawn->participant;
   const std::scoped_lock lock(mutex_);
   --finished_;
+  // As after a restart, which finds nothing of them.
+  if (withdrawn->number) taken_.erase(*withdrawn->number);
+  recruited_.erase(withdrawn->recruited);
   options_.tell(fmt::format("the answers of {} are removed, as their participant asked", id));
   return id;
 }

@@ -131,8 +131,8 @@ class Desk {
   /// next preview.
   Progress preview(std::uint64_t number);
 
-  /// Removes the answers of who has this withdrawal code, and returns the participant's id.
-  /// Refused: 422 for what is no code, 404 where no answers have it.
+  /// Removes the answers of who has this withdrawal code, and returns the participant's id. The
+  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have it.
   std::string withdraw(const std::string& code);
 
   [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
