@@ -60,10 +60,7 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
     options_.tell = [](const std::string&) {};
   }
   make_answers_folder(options_.answers);
-  lock_.emplace(running_folder(options_.answers),
-                fmt::format("{}: another server is using this folder; stop it or use another "
-                            "--answers",
-                            options_.answers.string()));
+  lock_.emplace(running_folder(options_.answers), in_use(options_.answers));
   sweep();
   shown_ = what_is_shown(options_.config, options_.clips);
   study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);

@@ -7,6 +7,7 @@
 
 #include <sys/stat.h>
 
+#include <memory>
 #include <regex>
 #include <sstream>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "analysis/answers_table.h"
 #include "base/input_error.h"
 #include "study/answers.h"
+#include "study/study_file.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -336,6 +338,16 @@ TEST(Withdraw, RemovesOneParticipant) {
   EXPECT_FALSE(withdraw(folder / "answers", codes[1])) << "gone already";
   EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
   EXPECT_THROW(withdraw(folder / "answers", "nonsense"), std::invalid_argument);
+}
+
+// Before clips are rendered for it.
+TEST(Desk, AFolderInUseIsToldBeforeAnythingIsDone) {
+  const fs::path folder = scratch_folder();
+  check_answers_folder(folder / "answers");
+  auto desk = std::make_unique<Desk>(desk_options(folder));
+  EXPECT_THROW(check_answers_folder(folder / "answers"), FolderTaken);
+  desk.reset();
+  check_answers_folder(folder / "answers");
 }
 
 // At once, not only after a restart, so that the plan stays counterbalanced.
