@@ -209,16 +209,23 @@ Progress Desk::resume(const std::string& token) {
   return progress(token);
 }
 
-// Whoever has seen a clip has had the link's one session.
+// Whoever has seen a clip has had the link's one session. Nobody but who uses up a link too waits
+// for the disk here.
 void Desk::use_up_link(std::uint64_t number) {
-  const std::scoped_lock lock(mutex_);
-  if (!options_.config.one_time_links || !study_.used_links.insert(number).second) {
-    return;
+  if (!options_.config.one_time_links) return;
+  const std::scoped_lock writing(links_mutex_);
+  StudyFile next;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (study_.used_links.contains(number)) return;
+    next = study_;
   }
+  next.used_links.insert(number);
   try {
-    write_study_file(options_.answers, options_.config, shown_, study_);
+    write_study_file(options_.answers, options_.config, shown_, next);
+    const std::scoped_lock lock(mutex_);
+    study_.used_links.insert(number);
   } catch (const std::exception& error) {
-    study_.used_links.erase(number);
     options_.tell(fmt::format("a link cannot be marked as used: {}", error.what()));
     throw Refused(507, "the disk does not take it");
   }
