@@ -132,7 +132,8 @@ class Desk {
   Progress preview(std::uint64_t number);
 
   /// Removes the answers of who has this withdrawal code, and returns the participant's id. The
-  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have it.
+  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have
+  /// it.
   std::string withdraw(const std::string& code);
 
   [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
