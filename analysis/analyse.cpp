@@ -129,6 +129,7 @@ Difference difference_read(const GroupResult& group) {
   const CochranQ& cochran = group.cochran_q;
   if (cochran.p) return {"Cochran's Q", cochran.q, cochran.df, cochran.p, cochran.participants};
   const Heterogeneity& pearson = group.heterogeneity;
+  if (group.pooled.participants == 1) return {"X²", pearson.chi_square, pearson.df, cochran.p, 0};
   return {"X²", pearson.chi_square, pearson.df, pearson.p, 0};
 }
 

@@ -23,6 +23,7 @@ struct Answer {
   std::uint16_t demonstration = 0;  ///< index into AnswersTable::demonstrations
   std::uint16_t position = 0;       ///< place in the participant's session, from 1; 0: not recorded
   bool chose_pinch = false;         ///< the pinch clip was chosen, not the cable (baseline) clip
+  std::int8_t grade = 0;            ///< as GradedAnswer::grade; 0: was not graded
   Side pinch_side = Side::unknown;  ///< where the pinch clip was shown
 };
 
@@ -61,8 +62,11 @@ struct Exclusion {
 /// A preference that was given in grades (comparison scale of ITU-R BT.500).
 struct GradedAnswer {
   std::string participant, demonstration;
-  int grade = 0;     ///< -3 to 3, positive for the method under test; 0: a tie
-  int position = 0;  ///< as Answer::position
+  int grade = 0;  ///< -3 to 3, positive for the method under test; 0: a tie
+  // As those of Answer.
+  int position = 0;
+  Side pinch_side = Side::unknown;
+  double reaction_time_s = -1.0;
 };
 
 /// A click on where it looks wrong.

@@ -46,6 +46,10 @@ std::string percent(double share) {
   return fmt::format("{:.1f} %", 100.0 * share);
 }
 
+std::string ties_among(std::int64_t ties) {
+  return fmt::format("{} of them {}", ties, ties == 1 ? "a tie" : "ties");
+}
+
 std::string confidence_level(double alpha) {
   return fmt::format("{:g} %", 100.0 * (1.0 - alpha));
 }

@@ -2,6 +2,7 @@
 #pragma once
 // A report as a list of blocks, so that the HTML page and the Markdown appendix say the same.
 
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
@@ -63,6 +64,9 @@ std::string p_equation(const Estimate& p);
 TextCell p_cell(const Estimate& p, double alpha);
 /// "83.3 %".
 std::string percent(double share);
+
+/// "1 of them a tie", "2 of them ties".
+std::string ties_among(std::int64_t ties);
 /// "95 %" of an alpha of 0.05.
 std::string confidence_level(double alpha);
 

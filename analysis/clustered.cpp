@@ -288,6 +288,8 @@ CochranQ cochran_q(const AnswersTable& table, const Group& group) {
   });
   if (result.participants == 0)
     return all("no participant chose in every demonstration as often as it was shown");
+  // Of one alone Q is df, whatever the answers are.
+  if (result.participants == 1) return all("only one participant chose in every demonstration");
   if (spread == 0.0)
     return all("no participant answered differently from one demonstration to another");
   const auto width = static_cast<double>(k);

@@ -137,12 +137,8 @@ class RowReader {
     answer.group = group(fields);
     if (header_.side >= 0) answer.pinch_side = side(at(fields, header_.side));
     if (header_.position >= 0) answer.position = position(at(fields, header_.position));
-    if (const auto grade = preference(fields, answer.pinch_side)) {
-      builder_.add_graded({std::string(answer.participant), std::string(answer.demonstration),
-                           *grade, answer.position});
-      if (*grade == 0) return;
-    }
-    answer.chose_pinch = chose_pinch(at(fields, header_.choice));
+    answer.grade = preference(fields, answer.pinch_side);
+    if (answer.grade != 0) answer.chose_pinch = chose_pinch(at(fields, header_.choice));
     if (header_.reaction_time_s >= 0) {
       answer.reaction_time_s = reaction_time(at(fields, header_.reaction_time_s));
     }

@@ -36,10 +36,11 @@ std::vector<Block> effect_blocks(const Report& report) {
   const SideBias& side = report.side_bias;
   if (side.chosen.total() > 0) {
     part.add(Paragraph{fmt::format(
-        "The left clip was chosen {} times and the right one {} times. The clip of {} was chosen "
+        "The left clip was chosen {} and the right one {}. The clip of {} was chosen "
         "in {} of {} answers when it was on the left and in {} of {} when it was on the right.",
-        side.chosen.pinch, side.chosen.cable, pinch, side.shown_left.pinch, side.shown_left.total(),
-        side.shown_right.pinch, side.shown_right.total())});
+        counted(side.chosen.pinch, "time"), counted(side.chosen.cable, "time"), pinch,
+        side.shown_left.pinch, side.shown_left.total(), side.shown_right.pinch,
+        side.shown_right.total())});
   }
   if (side.p) {
     part.add(Paragraph{fmt::format(

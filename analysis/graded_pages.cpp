@@ -37,12 +37,14 @@ std::vector<Block> graded_blocks(const Report& report) {
   }
   return {Heading{"Graded preferences"},
           Paragraph{fmt::format(
-              "Preferences were given in seven grades. {} of {} answers were ties: they are left "
-              "out of all counts, shares and tests of choices in this report, and are 0 here. "
+              "Preferences were given in seven grades. {} of {} answers {} left out of all counts, "
+              "shares and tests of choices in this report, and {} 0 here. "
               "Each participant's mean grade counts once: Wilcoxon's signed-rank test (two-sided, "
               "{}; means of 0 are dropped, equal ones share their ranks) and the sign test "
               "(exact) ask whether they lie on one side of 0.",
-              all.ties, all.answers, all.test.is_exact ? "exact" : "by the normal approximation")},
+              all.ties, all.answers, all.ties == 1 ? "was a tie: it is" : "were ties: they are",
+              all.ties == 1 ? "is" : "are",
+              all.test.is_exact ? "exact" : "by the normal approximation")},
           std::move(block)};
 }
 

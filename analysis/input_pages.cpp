@@ -22,8 +22,8 @@ std::vector<Block> went_in(const Report& report, const AnswersTable& table) {
                         demonstrations)
           : fmt::format("{} of {}{} to {}, read from {}.", answers,
                         counted(input.participants, "participant"),
-                        input.ties > 0 ? fmt::format(", {} of them ties,", input.ties) : "",
-                        demonstrations, counted(table.sources.size(), "file"));
+                        input.ties > 0 ? ", " + ties_among(input.ties) + "," : "", demonstrations,
+                        counted(table.sources.size(), "file"));
   if (!table.incomplete.empty()) {
     const size_t shown = std::min<size_t>(table.incomplete.size(), 20);
     const std::vector<std::string> names(

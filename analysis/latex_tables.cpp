@@ -8,7 +8,8 @@
 namespace pinchlab::analysis {
 namespace {
 
-// As LaTeX shows it; what LaTeX takes for its own, and the signs beyond Latin 1 that reports use.
+// As LaTeX shows it; what LaTeX takes for its own, and the signs beyond Latin 1 that reports use. A
+// bracket or star at the start of a row would belong to the line's end before.
 std::string escaped(const std::string& text) {
   static const std::map<char, const char*> own = {{'\\', "\\textbackslash{}"},
                                                   {'{', "\\{"},
@@ -24,6 +25,9 @@ std::string escaped(const std::string& text) {
                                                   {'>', "$>$"},
                                                   {'|', "\\textbar{}"},
                                                   {'"', "''"},
+                                                  {'`', "\\textasciigrave{}"},
+                                                  {'[', "{[}"},
+                                                  {'*', "{*}"},
                                                   {'\n', " "}};
   static const std::map<std::string, std::string> signs = {
       {"–", "--"},        {"—", "---"},       {"−", "$-$"},      {"×", "$\\times$"},

@@ -36,6 +36,13 @@ std::string p_in_words(const Estimate& estimate) {
   return p < 0.0001 ? "p < 0.0001" : p > 0.99995 ? "p = 1" : fmt::format("p = {:.4f}", p);
 }
 
+// A sentence may begin with the name of a method.
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 // Whether a preference is claimed: in a design that may stop early, by the bound of its look.
 bool is_found(const Row& all, double alpha, const std::optional<DesignCheck>& design) {
   if (design && design->bayes_factor)
@@ -77,9 +84,9 @@ std::string verdict(const Report& report, const AnswersTable& table) {
       one ? fmt::format(" in demonstration {}", report.demonstrations[0].row.name)
           : fmt::format(" over the {} demonstrations", report.demonstrations.size());
   const bool are_people = one && table.answers_per_demonstration == 1;
-  return fmt::format("{}: {} {} {}{} ({}; {}, {}{}).", found, out_of(all.row.counts),
+  return fmt::format("{}: {} {} {}{} ({}; {}{}{}).", found, out_of(all.row.counts),
                      are_people ? "preferred" : "answers chose", pinch, where,
-                     percent(all.row.share), p_in_words(read.p), read.test,
+                     percent(all.row.share), p_in_words(read.p), read.p ? ", " + read.test : "",
                      bound_in_words(all.row, design));
 }
 
@@ -110,7 +117,8 @@ std::string demonstrations_in_words(const Report& report) {
                             : fmt::format("{} demonstrations: {}.", report.demonstrations.size(),
                                           list_of(for_pinch));
   if (!for_cable.empty()) {
-    text += fmt::format(" {} was preferred in {}.", report.options.cable_label, list_of(for_cable));
+    text += fmt::format(" {} was preferred in {}.", capitalised(report.options.cable_label),
+                        list_of(for_cable));
   }
   if (!unclear.empty()) text += fmt::format(" No clear preference shows in {}.", list_of(unclear));
   if (!untested.empty()) {
@@ -164,17 +172,16 @@ std::string plain_words(const Report& report, const AnswersTable& table) {
     for (const GradedPreference& row : report.graded) {
       if (row.ties == row.answers) only_ties.push_back(row.name);
     }
-    text += fmt::format(" {} of {} answers were ties, and are in no count here{}.",
-                        report.graded.back().ties, report.graded.back().answers,
+    text += fmt::format(" {} of {} answers {} in no count here{}.", report.graded.back().ties,
+                        report.graded.back().answers,
+                        report.graded.back().ties == 1 ? "was a tie, and is" : "were ties, and are",
                         only_ties.empty() ? "" : ": all of those to " + list_of(only_ties));
   }
   if (!table.exclusions.empty()) {
     text += fmt::format(" {} participant{} left out (listed below with the reasons).",
                         table.exclusions.size(), table.exclusions.size() == 1 ? " was" : "s were");
   }
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text + design_words(table.design);
+  return capitalised(std::move(text)) + design_words(table.design);
 }
 
 }  // namespace pinchlab::analysis

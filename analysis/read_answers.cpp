@@ -53,11 +53,9 @@ class AnswerFiles {
     answer.position = trial.position;
     answer.reaction_time_s = trial.reaction_time_s;
     if (trial.preference) {
-      const int sign = answer.pinch_side == Side::left ? -1 : 1;
-      builder_.add_graded(
-          {file.participant, trial.demonstration, sign * *trial.preference, trial.position});
+      answer.grade = (answer.pinch_side == Side::left ? -1 : 1) * *trial.preference;
     }
-    if (trial.choice != Side::unknown) builder_.add_answer(answer, index + 1);
+    builder_.add_answer(answer, index + 1);
   }
 
   TableBuilder& builder_;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <ostream>
+#include <tuple>
 
 #include "analysis/report.h"
 #include "base/csv.h"
@@ -145,34 +148,69 @@ std::vector<std::string> group_column(const AnswersTable& table) {
   return names;
 }
 
+// Side, position, time and kind of an answer, with a comma before each.
+template <class OneAnswer>
+std::string around(const OneAnswer& answer) {
+  std::string text = fmt::format(",{},", word(answer.pinch_side));
+  if (answer.position > 0) fmt::format_to(std::back_inserter(text), "{}", answer.position);
+  text += ',';
+  if (answer.reaction_time_s >= 0.0)
+    fmt::format_to(std::back_inserter(text), "{}", answer.reaction_time_s);
+  return text + ",main";
+}
+
+// Counted from the left side to the right, as column `preference` is.
+std::string grade_field(const Answer& answer) {
+  if (answer.grade == 0) return ",";
+  return fmt::format(",{}", answer.pinch_side == Side::left ? -answer.grade : answer.grade);
+}
+
+// In an order that does not depend on that of the inputs.
+std::vector<const GradedAnswer*> sorted_ties(const AnswersTable& table) {
+  std::vector<const GradedAnswer*> ties;
+  for (const GradedAnswer& answer : table.graded) {
+    if (answer.grade == 0) ties.push_back(&answer);
+  }
+  std::ranges::sort(ties, {}, [](const GradedAnswer* tie) {
+    return std::tie(tie->participant, tie->demonstration, tie->position, tie->pinch_side,
+                    tie->reaction_time_s);
+  });
+  return ties;
+}
+
 }  // namespace
 
 void write_tidy_csv(const AnswersTable& table, std::ostream& out) {
   if (table.answers.empty()) return;
+  const bool is_graded = !table.graded.empty();
   std::vector<std::string> groups = group_column(table);
   for (std::string& group : groups) group = csv_cell(group) + ",";
   out << "participant,demonstration," << (groups.empty() ? "" : "group,")
-      << "choice,side,position,reaction_time_s,kind" << (table.is_pilot ? ",pilot" : "") << "\n";
+      << "choice,side,position,reaction_time_s,kind" << (is_graded ? ",preference" : "")
+      << (table.is_pilot ? ",pilot" : "") << "\n";
   const char* const end = table.is_pilot ? ",true\n" : "\n";
   std::vector<std::string> names;
   for (const std::string& name : table.demonstrations) names.push_back(csv_cell(name));
-  std::string line;
   for (const Answer& answer : table.answers) {
-    line =
-        fmt::format("{},{},{}{},{},", csv_cell(table.participants[answer.participant]),
-                    names[answer.demonstration], groups.empty() ? "" : groups[answer.demonstration],
-                    answer.chose_pinch ? "pinch" : "cable", word(answer.pinch_side));
-    if (answer.position > 0) fmt::format_to(std::back_inserter(line), "{}", answer.position);
-    line += ',';
-    if (answer.reaction_time_s >= 0.0)
-      fmt::format_to(std::back_inserter(line), "{}", answer.reaction_time_s);
-    out << line << ",main" << end;
+    out << csv_cell(table.participants[answer.participant]) << "," << names[answer.demonstration]
+        << "," << (groups.empty() ? "" : groups[answer.demonstration])
+        << (answer.chose_pinch ? "pinch" : "cable") << around(answer)
+        << (is_graded ? grade_field(answer) : "") << end;
+  }
+  for (const GradedAnswer* tie : sorted_ties(table)) {
+    const auto found = std::ranges::find(table.demonstrations, tie->demonstration);
+    const auto index = static_cast<std::size_t>(found - table.demonstrations.begin());
+    out << csv_cell(tie->participant) << "," << csv_cell(tie->demonstration) << ","
+        << (index < groups.size() ? groups[index]
+            : groups.empty()      ? ""
+                                  : ",")
+        << "tie" << around(*tie) << ",0" << end;
   }
   for (const auto& [participant, session] : table.sessions) {
     for (int i = 0; i < session.attention_passed + session.attention_failed; ++i) {
       out << csv_cell(table.participants[participant]) << ",attention-check,"
           << (groups.empty() ? "" : ",") << (i < session.attention_passed ? "pass" : "fail")
-          << ",,,,attention" << end;
+          << ",,,,attention" << (is_graded ? "," : "") << end;
     }
   }
 }

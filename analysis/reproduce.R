@@ -12,8 +12,8 @@ answers <- read.csv(commandArgs(TRUE)[1], stringsAsFactors = FALSE)
 if ("kind" %in% names(answers)) answers <- answers[answers$kind == "main", ]
 
 two_methods <- function(d) {
+  d <- d[d$choice != "tie", ]
   rows <- lapply(split(d, d$demonstration), function(one) {
-    one <- one[one$choice != "tie", ]
     k <- sum(one$choice == "pinch")
     n <- nrow(one)
     wilson <- suppressWarnings(prop.test(k, n, correct = FALSE)$conf.int)

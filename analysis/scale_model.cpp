@@ -198,10 +198,17 @@ bool ties_outweigh(std::size_t methods, const std::vector<PairChoices>& choices)
 
 // Empty, or why there is no finite scale. A tie is half a win of each.
 std::string why_no_scale(std::size_t methods, const std::vector<PairChoices>& choices) {
-  std::vector<std::vector<bool>> won(methods, std::vector<bool>(methods));
+  std::vector<std::vector<bool>> won(methods, std::vector<bool>(methods)), met = won;
   for (const PairChoices& pair : choices) {
+    if (pair.left_wins + pair.right_wins + pair.ties == 0) continue;
+    met[pair.left][pair.right] = met[pair.right][pair.left] = true;
     if (pair.left_wins + pair.ties > 0) won[pair.left][pair.right] = true;
     if (pair.right_wins + pair.ties > 0) won[pair.right][pair.left] = true;
+  }
+  const std::vector<bool> compared = reached(met, 0, true);
+  if (std::ranges::find(compared, false) != compared.end()) {
+    return "some methods were never compared with the others, not even by way of a third, so that "
+           "nothing says where they stand to one another";
   }
   for (const bool up : {true, false}) {
     const std::vector<bool> seen = reached(won, 0, up);

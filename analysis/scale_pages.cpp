@@ -187,12 +187,14 @@ class Writer {
     const Transitivity& t = report_.transitivity;
     if (t.rounds > 0) {
       add(Paragraph{fmt::format(
-          "Circular triads (A over B over C over A): {} in {} rounds of all pairs by one "
+          "Circular triads (A over B over C over A): {} in {} of all pairs by one "
           "participant, {:.2f} a round where chance gives {:.2f} of at most {:g} ({} that "
-          "chance gives so few); {} rounds have none. Kendall's coefficient of consistence is "
+          "chance gives so few); {} none. Kendall's coefficient of consistence is "
           "{:.3f} on average.",
-          t.triads, t.rounds, static_cast<double>(t.triads) / static_cast<double>(t.rounds),
-          t.by_chance, t.most, p_equation(t.p), t.without, t.consistence.value)});
+          t.triads, counted(t.rounds, "round"),
+          static_cast<double>(t.triads) / static_cast<double>(t.rounds), t.by_chance, t.most,
+          p_equation(t.p), counted(t.without, "round") + (t.without == 1 ? " has" : " have"),
+          t.consistence.value)});
     }
     if (t.triples > 0) {
       add(Paragraph{fmt::format(
@@ -233,8 +235,7 @@ class Writer {
         "{}{}{} to pairs of {} methods{}.", counted(table_.answers, "answer"),
         table_.participants.empty() ? ""
                                     : " of " + counted(table_.participants.size(), "participant"),
-        table_.ties > 0 ? fmt::format(", {} of them ties,", table_.ties) : "",
-        table_.methods.size(),
+        table_.ties > 0 ? ", " + ties_among(table_.ties) + "," : "", table_.methods.size(),
         table_.demonstrations.size() > 1
             ? fmt::format(" in {} demonstrations", table_.demonstrations.size())
             : "")});

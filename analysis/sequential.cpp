@@ -13,6 +13,7 @@
 
 #include "analysis/gsl_support.h"
 #include "analysis/tests_2afc.h"
+#include "base/counted.h"
 #include "base/input_error.h"
 
 namespace pinchlab::analysis {
@@ -189,19 +190,34 @@ StoppingAnswer stopping_rule(const StoppingQuestion& question, int studies, std:
 
 namespace {
 
-// The looks at which not even the same choice by all stops the study: the least p of n participants
-// is that of n fair coins that fall alike, both ways.
+// What no answers of so many participants can do. The least p is that of as many fair coins that
+// fall alike, both ways; the Bayes factor is largest there, and least where half chose either.
+std::string out_of_reach(const StoppingQuestion& question, const Look& look, std::int64_t n) {
+  const std::string with = "With " + counted(n, "participant");
+  if (question.rule != StoppingRule::bayes_factor) {
+    const double least = std::exp2(1.0 - static_cast<double>(n));
+    if (look.nominal_p >= least) return "";
+    return fmt::format("{} p is {:.3g} at least: no answers stop it there.\n", with, least);
+  }
+  const double limit = std::log(question.bayes_factor);
+  const double most = log_bayes_factor({n, 0}), least = log_bayes_factor({n / 2, n - n / 2});
+  if (most < limit && least > -limit) {
+    return fmt::format("{} the Bayes factor is {:.3g} to {:.3g}: no answers stop it there.\n", with,
+                       std::exp(least), std::exp(most));
+  }
+  if (least > -limit) {
+    return fmt::format(
+        "{} the Bayes factor is {:.3g} at least: no answers say there that none is preferred.\n",
+        with, std::exp(least));
+  }
+  return "";
+}
+
 std::string out_of_reach(const StoppingQuestion& question, const StoppingAnswer& answer) {
-  if (question.rule == StoppingRule::bayes_factor) return "";
   const std::size_t skipped = question.participants.size() - answer.looks.size();
   std::string looks;
-  for (std::size_t i = 0; i < answer.looks.size(); ++i) {
-    const std::int64_t n = question.participants[i + skipped];
-    const double least = std::exp2(1.0 - static_cast<double>(n));
-    if (answer.looks[i].nominal_p >= least) continue;
-    looks += fmt::format("With {} participants p is {:.3g} at least: no answers stop it there.\n",
-                         n, least);
-  }
+  for (std::size_t i = 0; i < answer.looks.size(); ++i)
+    looks += out_of_reach(question, answer.looks[i], question.participants[i + skipped]);
   return looks.empty() ? "" : "\n" + looks;
 }
 

@@ -41,7 +41,7 @@ std::vector<Integer> inverse(const std::vector<size_t>& order) {
 
 auto canonical_key(const Answer& a) {
   return std::tie(a.participant, a.demonstration, a.position, a.chose_pinch, a.pinch_side,
-                  a.reaction_time_s);
+                  a.reaction_time_s, a.grade);
 }
 
 }  // namespace
@@ -128,6 +128,8 @@ void TableBuilder::check_kind(bool counts, size_t line) {
 
 void TableBuilder::add_answer(const RawAnswer& raw, size_t line) {
   check_kind(false, line);
+  if (raw.grade) add_grade(raw);
+  if (raw.grade == 0) return;
   Answer answer;
   answer.participant = participant_index(raw.participant);
   answer.demonstration = demonstration_index(raw.demonstration, raw.group, line);
@@ -135,13 +137,16 @@ void TableBuilder::add_answer(const RawAnswer& raw, size_t line) {
   next_line_ = answer.line + 1;
   answer.position = static_cast<std::uint16_t>(raw.position);
   answer.chose_pinch = raw.chose_pinch;
+  answer.grade = static_cast<std::int8_t>(raw.grade.value_or(0));
   answer.pinch_side = raw.pinch_side;
   answer.reaction_time_s = raw.reaction_time_s;
   table_.answers.push_back(answer);
 }
 
-void TableBuilder::add_graded(const GradedAnswer& answer) {
-  table_.graded.push_back(answer);
+void TableBuilder::add_grade(const RawAnswer& raw) {
+  table_.graded.push_back({std::string(raw.participant), std::string(raw.demonstration), *raw.grade,
+                           raw.position, raw.pinch_side, raw.reaction_time_s});
+  const GradedAnswer& answer = table_.graded.back();
   if (answer.grade == 0) ++ties_[answer.participant][answer.demonstration];
 }
 

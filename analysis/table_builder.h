@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 
@@ -17,6 +18,7 @@ struct RawAnswer {
   std::string_view demonstration;
   std::string_view group;  ///< empty: not given
   bool chose_pinch = false;
+  std::optional<int> grade;  ///< as GradedAnswer::grade; none: was not graded
   Side pinch_side = Side::unknown;
   int position = 0;               ///< from 1; 0: not recorded
   double reaction_time_s = -1.0;  ///< -1: not recorded
@@ -33,9 +35,8 @@ class TableBuilder {
   /// Is this participant to be left out? (Remembers that the exclusion was of use.)
   bool excluded(std::string_view participant);
 
+  /// An answer; a tie, whose grade is 0, is kept among the grades alone.
   void add_answer(const RawAnswer& answer, size_t line);
-  /// A grade; one that is a tie is no answer besides.
-  void add_graded(const GradedAnswer& answer);
   void add_besides(std::vector<BesidesAnswer> answers) {
     std::ranges::move(answers, std::back_inserter(table_.besides));
   }
@@ -66,6 +67,7 @@ class TableBuilder {
   };
   using Index = std::unordered_map<std::string, std::uint32_t, NameHash, std::equal_to<>>;
 
+  void add_grade(const RawAnswer& answer);
   std::uint32_t participant_index(std::string_view name);
   std::uint16_t demonstration_index(std::string_view name, std::string_view group, size_t line);
   void check_kind(bool counts, size_t line);

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
+using namespace nlohmann::literals;
 
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
@@ -130,7 +131,7 @@ void save_answers(const fs::path& path, const ordered_json& file) {
   }
 }
 
-std::string withdraw(const fs::path& folder, const std::string& code) {
+std::optional<Withdrawn> withdraw(const fs::path& folder, const std::string& code) {
   const std::string hash = withdrawal_hash(code);
   if (hash.empty()) {
     throw std::invalid_argument(fmt::format(
@@ -140,10 +141,15 @@ std::string withdraw(const fs::path& folder, const std::string& code) {
     const nlohmann::json file = read_answer_json(path);
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
-      return path.stem().string();
+      Withdrawn withdrawn{path.stem().string(), {}, ""};
+      const nlohmann::json number = file.value("participant_number", nlohmann::json());
+      if (number.is_number_unsigned()) withdrawn.number = number.get<std::uint64_t>();
+      const nlohmann::json id = file.value("/recruited/participant"_json_pointer, nlohmann::json());
+      if (id.is_string()) withdrawn.recruited = id.get<std::string>();
+      return withdrawn;
     }
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace pinchlab::study

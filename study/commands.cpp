@@ -463,14 +463,14 @@ void add_withdraw(CLI::App& study) {
       ->required();
   command->footer("Example:\n  pinchlab study withdraw --answers answers 7K3M-9Q2X-0BVA");
   command->callback([options] {
-    const std::string participant = withdraw(existing_folder(options->answers), options->code);
-    if (participant.empty()) {
+    const auto withdrawn = withdraw(existing_folder(options->answers), options->code);
+    if (!withdrawn) {
       throw std::runtime_error(
           fmt::format("{}: no answers have this code; they were removed already, or it belongs to "
                       "another study",
                       options->answers.string()));
     }
-    fmt::print("The answers of {} are removed\n", participant);
+    fmt::print("The answers of {} are removed\n", withdrawn->participant);
   });
 }
 

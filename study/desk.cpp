@@ -60,10 +60,7 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
     options_.tell = [](const std::string&) {};
   }
   make_answers_folder(options_.answers);
-  lock_.emplace(running_folder(options_.answers),
-                fmt::format("{}: another server is using this folder; stop it or use another "
-                            "--answers",
-                            options_.answers.string()));
+  lock_.emplace(running_folder(options_.answers), in_use(options_.answers));
   sweep();
   shown_ = what_is_shown(options_.config, options_.clips);
   study_ = open_study_file(options_.answers, options_.config, shown_, options_.seed);
@@ -212,16 +209,23 @@ Progress Desk::resume(const std::string& token) {
   return progress(token);
 }
 
-// Whoever has seen a clip has had the link's one session.
+// Whoever has seen a clip has had the link's one session. Nobody but who uses up a link too waits
+// for the disk here.
 void Desk::use_up_link(std::uint64_t number) {
-  const std::scoped_lock lock(mutex_);
-  if (!options_.config.one_time_links || !study_.used_links.insert(number).second) {
-    return;
+  if (!options_.config.one_time_links) return;
+  const std::scoped_lock writing(links_mutex_);
+  StudyFile next;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (study_.used_links.contains(number)) return;
+    next = study_;
   }
+  next.used_links.insert(number);
   try {
-    write_study_file(options_.answers, options_.config, shown_, study_);
+    write_study_file(options_.answers, options_.config, shown_, next);
+    const std::scoped_lock lock(mutex_);
+    study_.used_links.insert(number);
   } catch (const std::exception& error) {
-    study_.used_links.erase(number);
     options_.tell(fmt::format("a link cannot be marked as used: {}", error.what()));
     throw Refused(507, "the disk does not take it");
   }
@@ -426,17 +430,21 @@ Progress Desk::preview(std::uint64_t number) {
 }
 
 std::string Desk::withdraw(const std::string& code) {
-  std::string id;
+  std::optional<Withdrawn> withdrawn;
   try {
-    id = study::withdraw(options_.answers, code);
+    withdrawn = study::withdraw(options_.answers, code);
   } catch (const std::invalid_argument&) {
     throw Refused(422, "is no withdrawal code");
   }
-  if (id.empty()) {
+  if (!withdrawn) {
     throw Refused(404, "no answers have this code");
   }
+  const std::string& id = withdrawn->participant;
   const std::scoped_lock lock(mutex_);
   --finished_;
+  // As after a restart, which finds nothing of them.
+  if (withdrawn->number) taken_.erase(*withdrawn->number);
+  recruited_.erase(withdrawn->recruited);
   options_.tell(fmt::format("the answers of {} are removed, as their participant asked", id));
   return id;
 }

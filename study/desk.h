@@ -131,8 +131,9 @@ class Desk {
   /// next preview.
   Progress preview(std::uint64_t number);
 
-  /// Removes the answers of who has this withdrawal code, and returns the participant's id.
-  /// Refused: 422 for what is no code, 404 where no answers have it.
+  /// Removes the answers of who has this withdrawal code, and returns the participant's id. The
+  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have
+  /// it.
   std::string withdraw(const std::string& code);
 
   [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
@@ -193,9 +194,10 @@ class Desk {
 
   DeskOptions options_;
   std::optional<FolderLock> lock_;
-  std::mutex mutex_;                     // of all below; never held while waiting for an entry's
-  nlohmann::json shown_;                 // what_is_shown(); never changes
-  StudyFile study_;                      // its seed never changes
+  std::mutex links_mutex_;  // of used links on the disk; held before mutex_, after an entry's
+  std::mutex mutex_;        // of all below; held while waiting for nothing else
+  nlohmann::json shown_;    // what_is_shown(); never changes
+  StudyFile study_;         // its seed never changes
   std::map<std::string, Place> places_;  // by participant, who is running
   std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;

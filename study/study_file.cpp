@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/durable_file.h"
+#include "base/folder_lock.h"
 #include "base/json_object.h"
 #include "base/strict_json.h"
 #include "study/secrets.h"
@@ -92,6 +93,13 @@ void check_answers_folder(const fs::path& answers) {
   if (!fs::is_directory(there, none)) {
     check_made(answers, std::make_error_code(std::errc::not_a_directory));
   }
+  const fs::path running = running_folder(answers);
+  if (fs::is_directory(running, none)) const FolderLock is_free(running, in_use(answers));
+}
+
+std::string in_use(const fs::path& answers) {
+  return fmt::format("{}: another server is using this folder; stop it or use another --answers",
+                     answers.string());
 }
 
 void make_answers_folder(const fs::path& answers) {

@@ -24,7 +24,11 @@ std::filesystem::path running_folder(const std::filesystem::path& answers);
 /// Makes that folder, and `answers`, where they are missing. Throws std::runtime_error.
 void make_answers_folder(const std::filesystem::path& answers);
 
-/// Throws std::runtime_error where it cannot be made since something else is there; makes nothing.
+/// What is said where another server has the folder.
+std::string in_use(const std::filesystem::path& answers);
+
+/// Throws std::runtime_error where it cannot be made since something else is there, or where
+/// another server uses it; makes nothing.
 void check_answers_folder(const std::filesystem::path& answers);
 
 /// A seed from the kernel's random numbers, 0 to 2^48 - 1.

@@ -135,12 +135,21 @@ export function askResume(stage, texts) {
   });
 }
 
+const longestSilence = 30000;  // ms, without a byte of a clip: the connection is gone, though nobody has said so
+
 // Fetches a clip, and again until it is whole. `onProgress` gets the share that is there, `onTrouble` whether the server
 // is lost.
 async function download(url, onProgress, onTrouble) {
   for (let attempt = 1; ; ++attempt) {
+    const silence = new AbortController();
+    let timer = 0;
+    const heard = () => {
+      clearTimeout(timer);
+      timer = setTimeout(() => silence.abort(), longestSilence);
+    };
     try {
-      const response = await fetch(url, { cache: 'no-store' });
+      heard();
+      const response = await fetch(url, { cache: 'no-store', signal: silence.signal });
       if (response.status === 404) throw new SessionGone();
       if (!response.ok) throw new Error(`status ${response.status}`);
       const total = Number(response.headers.get('Content-Length'));
@@ -149,6 +158,7 @@ async function download(url, onProgress, onTrouble) {
       for (const reader = response.body.getReader(); ;) {
         const { done, value } = await reader.read();
         if (done) break;
+        heard();
         onTrouble(false);
         parts.push(value);
         loaded += value.length;
@@ -160,6 +170,8 @@ async function download(url, onProgress, onTrouble) {
       if (error instanceof SessionGone) throw error;
       onTrouble(true);
       await new Promise((again) => setTimeout(again, Math.min(500 * attempt, 5000)));
+    } finally {
+      clearTimeout(timer);
     }
   }
 }

@@ -67,7 +67,13 @@ export class PairTrial {
     const unfit = keepFitting(view);
     view.video.src = url;
     play(view, trial.texts, watch);
-    await watch.firstLoop;
+    try {
+      await watch.firstLoop;
+    } catch (error) {
+      watch.stop();
+      unfit();
+      throw error;
+    }
     const { seconds, ...decision } = await choose(view, trial.texts, trial.options.preference === 'graded');
     const data = { ...decision, reaction_time_s: seconds, ...watch.stop(), ...sizes(view.video) };
     Object.assign(data, await askBesides(view, trial.texts, trial.options));
@@ -129,15 +135,26 @@ function keepFitting({ video, choices, top }) {
   };
 }
 
-// Autoplay without sound is allowed nearly everywhere; where it is not, a button starts the clip.
+const mostFailures = 3;  // of a clip to play, before it is given up
+
+// Autoplay without sound is allowed nearly everywhere; where it is not, a button starts the clip. One that cannot be played
+// is loaded again; if that does not help, a reload of the page fetches it anew.
 function play({ video, choices }, texts, watch) {
   const begin = () => video.play().catch((error) => {
     if (watch.isStopped) return;
     watch.note(`play: ${error.name}`);
-    if (choices.querySelector('#play')) return;
+    if (error.name !== 'NotAllowedError' || choices.querySelector('#play')) return;
     const wait = choices.firstChild;
     const button = make('button', { type: 'button', id: 'play', onclick() { button.replaceWith(wait); begin(); } }, texts.play);
     wait.replaceWith(button);
+  });
+  let failures = 0;
+  video.addEventListener('error', () => {
+    if (watch.isStopped) return;
+    watch.note(`error: ${video.error?.code} ${video.error?.message ?? ''}`);
+    if (++failures > mostFailures) return watch.giveUp(new Error('the clip cannot be played'));
+    video.load();
+    begin();
   });
   const isWanted = () => !watch.isStopped && !video.ended && video.currentSrc && !document.hidden;
   // Media keys and the like must not stop it; a hidden page does, since nobody sees it play.
@@ -170,8 +187,7 @@ class Watch {
     this.last = null;  // frame that was seen: { time: s of the clip, at: ms of the clock }
     this.loopGaps = [];  // s
     this.isAway = false;
-    this.firstLoop = new Promise((resolve) => { this.loopEnded = resolve; });
-    video.addEventListener('error', () => this.note(`error: ${video.error?.code} ${video.error?.message ?? ''}`));
+    this.firstLoop = new Promise((resolve, reject) => { Object.assign(this, { loopEnded: resolve, giveUp: reject }); });
     video.addEventListener('stalled', () => this.note('stalled'));
     this.onAway = () => {
       const isAway = document.hidden || !document.hasFocus();

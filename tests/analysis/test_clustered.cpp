@@ -175,6 +175,19 @@ TEST(CochranQ, NullWhereNobodyDiffers) {
   EXPECT_FALSE(cochran_q(table, table.groups.back()).q);
 }
 
+// Of one participant Q is df for any answers that differ, so that its p says nothing.
+TEST(CochranQ, NullOfOneParticipant) {
+  const AnswersTable table =
+      test::table_of("participant,demonstration,choice\np,a,pinch\np,b,cable\np,c,pinch\n");
+  const CochranQ q = cochran_q(table, table.groups.back());
+  EXPECT_FALSE(q.q);
+  EXPECT_EQ(q.p.why_not, "only one participant chose in every demonstration");
+  const Report report = analyse_table(table, {.alpha = 0.5, .bootstrap = 99});
+  const std::string words = plain_words(report, table);
+  EXPECT_EQ(words.find("differ from one another"), std::string::npos) << words;
+  EXPECT_NE(words.find("how participants differ). Taken"), std::string::npos) << words;
+}
+
 // Cochran's Q is of those who chose in every demonstration; the report says how many these are.
 TEST(CochransQ, SaysWhoItIsOf) {
   ReadOptions options;

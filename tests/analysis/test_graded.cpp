@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "analysis/comparisons_table.h"
 #include "analysis/graded_preference.h"
@@ -217,6 +218,20 @@ TEST(Graded, WhatWentInHasTheTiesToo) {
   EXPECT_EQ(input["participants"], 3);
 }
 
+TEST(Graded, OneTieIsOne) {
+  const AnswersTable table = test::table_of(
+      "participant,demonstration,choice,side,preference\np1,A,cable,left,1\np1,B,tie,left,0\n"
+      "p2,A,cable,left,1\np2,B,cable,right,-1\n");
+  const Report report = analyse_table(table, {.bootstrap = 99});
+  const std::string page = report_markdown(report, table);
+  for (const char* sentence :
+       {"1 of 4 answers was a tie, and is in no count here.",
+        "1 of 4 answers was a tie: it is left", "4 answers of 2 participants, 1 of them a tie, to",
+        "left clip was chosen 1 time and"}) {
+    EXPECT_NE(page.find(sentence), std::string::npos) << sentence << "\n" << page;
+  }
+}
+
 TEST(Graded, APlaceIsTakenByATieToo) {
   const auto refusal = [](const char* rows) -> std::string {
     try {
@@ -231,6 +246,32 @@ TEST(Graded, APlaceIsTakenByATieToo) {
   EXPECT_NE(refusal("p1,A,pinch,left,-1,2\np1,B,tie,left,0,2\n")
                 .find("`p1` has two answers at position 2, a tie among them"),
             std::string::npos);
+}
+
+TEST(Graded, TidyCsvReadsBackToTheSameReport) {
+  const TemporaryFolder folder;
+  const std::vector<int> first = {0, -3, 2, 0, 1}, second = {2, 0, -1, 0, 3};
+  for (size_t i = 0; i < first.size(); ++i) {
+    json document = graded_document(fmt::format("p-{}", i), first[i], second[i]);
+    document["trials"][0]["reaction_time_s"] = 0.125 + static_cast<double>(i);
+    folder.write(fmt::format("in/{}.json", i), document.dump());
+  }
+  const AnswersTable table = read_answers({folder.path() / "in"}, {});
+  std::ostringstream out;
+  write_tidy_csv(table, out);
+  const AnswersTable again = read_answers({folder.write("answers.csv", out.str())}, {});
+  EXPECT_EQ(again.answers.size(), table.answers.size());
+  EXPECT_TRUE(again.incomplete.empty());
+  const json before = json::parse(report_json(analyse_table(table, {.bootstrap = 99}), table));
+  const json after = json::parse(report_json(analyse_table(again, {.bootstrap = 99}), again));
+  for (const char* key : {"demonstrations", "groups", "graded_preferences", "side_bias",
+                          "order_effect", "reaction_times"}) {
+    EXPECT_EQ(after[key], before[key]) << key << "\n" << out.str();
+  }
+  EXPECT_EQ(after["input"]["ties"], before["input"]["ties"]);
+  std::ostringstream twice;
+  write_tidy_csv(again, twice);
+  EXPECT_EQ(twice.str(), out.str());
 }
 
 TEST(Graded, NothingChangesWithout) {

@@ -313,6 +313,15 @@ TEST(Pages, LatexShowsWhatTheTablesSay) {
             "  \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
 }
 
+TEST(Pages, LatexTakesNoNameForALengthOrStar) {
+  Document document;
+  document.blocks = {TableBlock{"c", {""}, {{{"[5pt] a"}}, {{"*b"}}, {{"`c`"}}}}};
+  const std::string latex = latex_tables(document);
+  EXPECT_NE(latex.find("\\midrule\n  {[}5pt] a \\\\\n  {*}b \\\\\n  \\textasciigrave{}c"),
+            std::string::npos)
+      << latex;
+}
+
 TEST(Pages, HtmlNeedsNothingFromElsewhere) {
   const AnswersTable table = test::clustered_table();
   const Report report = analyse_table(table, {});

@@ -119,6 +119,25 @@ TEST(Sequential, BoundsThatNoAnswersReachAreTold) {
   EXPECT_EQ(stopping_text(q, stopping_rule(q, 100, 1)).find("at least"), std::string::npos);
 }
 
+// 2^10 B(11, 1) = 2^10 / 11 and 2^10 B(6, 6) = 2^10 / 2772 of ten answers; 1/10 needs 160 and more.
+TEST(Sequential, BayesFactorsThatNoAnswersReachAreTold) {
+  StoppingQuestion q = question(StoppingRule::bayes_factor);
+  q.truth.trials = 1;
+  q.truth.icc = 0;
+  q.bayes_factor = 10;
+  q.participants = {1, 5, 10, 320};
+  const std::string text = stopping_text(q, stopping_rule(q, 100, 1));
+  const auto has = [&](const char* sentence) { return text.find(sentence) != std::string::npos; };
+  EXPECT_TRUE(has("\nWith 1 participant the Bayes factor is 1 to 1: no answers stop it there.\n"));
+  EXPECT_TRUE(has("With 5 participants the Bayes factor is 0.533 to 5.33: no answers stop it"))
+      << text;
+  EXPECT_TRUE(
+      has("\nWith 10 participants the Bayes factor is 0.369 at least: no answers say there "
+          "that none is preferred.\n"))
+      << text;
+  EXPECT_FALSE(has("With 320"));
+}
+
 TEST(Sequential, BayesFactorsStopBothWays) {
   StoppingQuestion q = question(StoppingRule::bayes_factor);
   q.truth.trials = 1;

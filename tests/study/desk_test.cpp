@@ -7,6 +7,7 @@
 
 #include <sys/stat.h>
 
+#include <memory>
 #include <regex>
 #include <sstream>
 #include <thread>
@@ -14,6 +15,7 @@
 #include "analysis/answers_table.h"
 #include "base/input_error.h"
 #include "study/answers.h"
+#include "study/study_file.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -332,10 +334,43 @@ TEST(Withdraw, RemovesOneParticipant) {
   std::string typed = codes[1];
   std::ranges::replace(typed, '-', ' ');
   std::ranges::transform(typed, typed.begin(), [](unsigned char c) { return std::tolower(c); });
-  EXPECT_NE(withdraw(folder / "answers", typed), "");
-  EXPECT_EQ(withdraw(folder / "answers", codes[1]), "") << "gone already";
+  EXPECT_TRUE(withdraw(folder / "answers", typed));
+  EXPECT_FALSE(withdraw(folder / "answers", codes[1])) << "gone already";
   EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
   EXPECT_THROW(withdraw(folder / "answers", "nonsense"), std::invalid_argument);
+}
+
+// Before clips are rendered for it.
+TEST(Desk, AFolderInUseIsToldBeforeAnythingIsDone) {
+  const fs::path folder = scratch_folder();
+  check_answers_folder(folder / "answers");
+  auto desk = std::make_unique<Desk>(desk_options(folder));
+  EXPECT_THROW(check_answers_folder(folder / "answers"), FolderTaken);
+  desk.reset();
+  check_answers_folder(folder / "answers");
+}
+
+// At once, not only after a restart, so that the plan stays counterbalanced.
+TEST(Withdraw, GivesThePlaceToTheNextWhoComes) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  options.config.participant_limit = 2;
+  Desk desk(std::move(options));
+  std::vector<std::string> codes;
+  for (int i = 0; i < 2; ++i) {
+    const std::string token = desk.start("", "");
+    answer_all(desk, token);
+    codes.push_back(desk.save(token, {}));
+  }
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  desk.withdraw(codes[0]);
+  EXPECT_EQ(desk.overview().finished, 1U);
+  const std::string token = desk.start("", "");
+  EXPECT_EQ(desk.overview().running.at(0).number, 0U);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  answer_all(desk, token);
+  desk.save(token, {});
+  EXPECT_EQ(answer_files(folder / "answers").size(), 2U);
 }
 
 TEST(Export, PsychDs) {

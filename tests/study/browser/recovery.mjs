@@ -6,7 +6,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { answer, answersIn, answerTrials, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, scratch, serve } from './support.mjs';
+import { answer, answersIn, answerTrials, assertAccessible, browse, consent, demonstrations, killServers, open, openSessions, picture, save, scratch, serve } from './support.mjs';
 
 async function answerAll(page, count) {
   await answerTrials(page, count);
@@ -107,6 +107,43 @@ test('loading shows how much has come, and a lost server', () => withBrowser(asy
   isLost = false;
   await page.waitForSelector('video');
   assert.equal(await page.textContent('#notice'), '');
+  await server.kill();
+}));
+
+test('a clip of which nothing comes any more is fetched again', () => withBrowser(async (context) => {
+  const server = await serve(scratch());
+  // Half a minute of silence, in a third of a second.
+  await context.addInitScript(() => {
+    const wait = window.setTimeout;
+    window.setTimeout = (call, delay, ...rest) => wait(call, delay === 30000 ? 300 : delay, ...rest);
+  });
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  let asked = 0;
+  await page.route('**/media/**', (route) => (++asked > 1 ? route.continue() : undefined));
+  await page.check('#consent');
+  await page.click('#start');
+  await page.waitForSelector('video');
+  assert.ok(asked > 1);
+  await server.kill();
+}));
+
+test('a clip that cannot be played is tried again, then told, and a reload goes on', () => withBrowser(async (context) => {
+  const server = await serve(scratch());
+  const page = await open(context, server.address);
+  await page.waitForSelector('#start');
+  let isBroken = true;
+  await page.route('**/media/**', (route) => (isBroken ? route.fulfill({ contentType: 'video/mp4', body: 'no clip' }) : route.continue()));
+  await page.check('#consent');
+  await page.click('#start');
+  await page.waitForFunction(() => /reload the page/.test(document.querySelector('#stage').textContent));
+  await assertAccessible(page, 'a clip that cannot be played');
+  isBroken = false;
+  await page.reload();
+  await page.click('#continue');
+  await answerTrials(page);
+  await save(page);
+  assert.equal(answersIn(server).length, 1);
   await server.kill();
 }));
 
