@@ -398,7 +398,10 @@ void leave_out_repeated(const World& world, std::ptrdiff_t first, std::vector<Co
   const double round_off = one_place(world, last.a, last.b) / world.step_length;
   double rather = counts_rather(world, *there, last, place, round_off);
   if (of_bodies && std::abs(rather) <= round_off) {
-    // Neither moves along its side. One that is beyond its end has no way of its own.
+    // Neither moves along its side. Corners that rest on each other bear a force along either way,
+    // and along what is between; of such that lie flat one that is beyond its end has no way.
+    constexpr double flat = 1e-6;  // rad
+    if (std::abs(cross(there->normal, last.normal)) > flat) return;
     const auto left_over = [&world](const Contact& c) {
       return on_straight(world, c, world.position, world.angle);
     };

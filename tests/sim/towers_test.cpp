@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Towers of boxes of one width: where one lies on another, corners meet corners.
+// Boxes that meet with corner on corner: towers of boxes of one width, and such as lean on each
+// other.
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "base/at.h"
 #include "sim/outline.h"
@@ -69,6 +72,47 @@ TEST(Towers, BoxesOfOneWidthTiltAsOne) {
         for (const double angle : world.angle) EXPECT_NEAR(angle, world.angle[0], 1e-9);
         const double error = std::abs(world.angle[0] - exact);
         EXPECT_LT(error, 1e-4 / (steps * steps));
+      }
+    }
+  }
+}
+
+/// Two boards of 1 kg, 1 m by 2 cm, that lean on each other, corner on corner, at that angle (rad)
+/// to a floor; `gap` (m) apart at first.
+Scene leaning(double angle, double gap) {
+  Scene scene;
+  scene.walls.push_back({{-3, 0}, {3, 0}, 0.7});
+  const std::vector<Vec2> corners = {{-0.5, -0.01}, {0.5, -0.01}, {0.5, 0.01}, {-0.5, 0.01}};
+  const double right = turned(corners[1], angle).x(), low = turned(corners[0], angle).y();
+  for (const double side : {-1.0, 1.0}) {
+    Body board = body(side < 0.0 ? "left" : "right", BodyKind::free, side * (right + 0.5 * gap),
+                      -low, 0.0, 1.0);
+    make_polygon(board, corners, 0.0);
+    board.angle = side < 0.0 ? angle : std::numbers::pi - angle;
+    board.contact_friction = 0.7;
+    scene.bodies.push_back(board);
+  }
+  return scene;
+}
+
+// Corners that rest on each other bear a force along either's way and along what is between: where
+// the floor holds, which takes cot(angle) / 2 of friction, two boards stand. By one of the ways
+// alone they would slide below the angle of friction, 55 degrees, and creep above it.
+TEST(Towers, BoardsThatLeanOnEachOtherStand) {
+  for (const double degrees : {50.0, 60.0, 65.0, 75.0, 85.0}) {
+    for (const double gap : {0.0, 1e-9, 1e-6, 1e-3}) {
+      // Having met, they might slide as well, down to that angle.
+      if (gap > 0.0 && degrees < 55.0) continue;
+      const Scene scene = leaning(degrees * std::numbers::pi / 180.0, gap);
+      for (const int steps : {1, 4, 16}) {
+        SCOPED_TRACE(::testing::Message() << degrees << " degrees, " << gap << " m apart, " << steps
+                                          << " steps a frame");
+        const World world = after(scene, steps, 2.0);
+        for (std::size_t b = 0; b < 2; ++b) {
+          EXPECT_NEAR((world.position[b] - scene.bodies[b].position).norm(), 0.0, gap + 1e-12);
+          EXPECT_LT(world.velocity[b].norm(), 1e-9);
+        }
+        EXPECT_NEAR(world.position[0].x() + world.position[1].x(), 0.0, 1e-9);
       }
     }
   }
