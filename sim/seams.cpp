@@ -117,4 +117,18 @@ bool leads_round(const Obstacle& wall, const Vec2& centre, const Vec2& point) {
   return !(wall.nooks[along < 0.0 ? 0U : 1U][left_of_way_out ? 0U : 1U].length > 0.0);
 }
 
+Outside outside_of_line(const Obstacle& wall, const Vec2& centre, const Vec2& point) {
+  Vec2 normal = left((wall.b - wall.a).normalized());
+  if (normal.dot(centre - wall.a) < 0.0) normal = -normal;
+  const double distance = normal.dot(point - wall.a);
+  if (distance < 0.0 && leads_round(wall, centre, point)) return {-distance, -normal};
+  return {distance, normal};
+}
+
+Outside outside_of_end(const Obstacle& wall, const Vec2& point) {
+  const Vec2 from = point - nearest_on_line(wall.a, wall.b, point);
+  const double distance = from.norm();
+  return {distance, distance > 0.0 ? Vec2(from / distance) : Vec2(1.0, 0.0), true};
+}
+
 }  // namespace pinchlab

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/box_tree.h"
+#include "sim/outline.h"
 #include "sim/world.h"
 
 namespace pinchlab {
@@ -24,5 +25,12 @@ bool is_beside(const Obstacle& wall, const Vec2& centre, const Vec2& point);
 /// Whether the way from `centre` to a point on the other side of the wall's line leads past an end
 /// of the wall that is free on the side of `centre`.
 bool leads_round(const Obstacle& wall, const Vec2& centre, const Vec2& point);
+
+/// Of a point from a wall's line, on the side of the body that the point belongs to; or on its own,
+/// where the body is round an end of the wall.
+Outside outside_of_line(const Obstacle& wall, const Vec2& centre, const Vec2& point);
+
+/// Of one that the wall is not beside, from the nearer end.
+Outside outside_of_end(const Obstacle& wall, const Vec2& point);
 
 }  // namespace pinchlab

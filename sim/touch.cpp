@@ -137,16 +137,6 @@ Outside outside_of_body(const World& world, int body, const Vec2& point, const T
   return out;
 }
 
-/// Of a point from a wall's line, on the side of the body that the point belongs to; or on its own,
-/// where the body is round an end of the wall.
-Outside outside_of_wall(const Obstacle& wall, const Vec2& centre, const Vec2& point) {
-  Vec2 normal = left((wall.b - wall.a).normalized());
-  if (normal.dot(centre - wall.a) < 0.0) normal = -normal;
-  const double distance = normal.dot(point - wall.a);
-  if (distance < 0.0 && leads_round(wall, centre, point)) return {-distance, -normal};
-  return {distance, normal};
-}
-
 /// Of two discs, or a disc and a wall.
 struct Apart {
   Vec2 way;               // m, from the centre of a to that of b, or to the wall
@@ -301,7 +291,11 @@ Meeting meeting_of(const World& world, const Contact& contact) {
   } else {
     radius = rim_radius(at(world.bodies, owner));
     if (other < 0) {
-      out = outside_of_wall(at(world.obstacles, contact.wall), at(world.position, owner), point);
+      const Obstacle& wall = at(world.obstacles, contact.wall);
+      const Vec2& centre = at(world.position, owner);
+      out = contact.touching || is_beside(wall, centre, point)
+                ? outside_of_line(wall, centre, point)
+                : outside_of_end(wall, point);
     } else {
       out = outside_of_body(world, other, point, tip_of(world, owner, contact.point), side);
       other_radius = rim_radius(at(world.bodies, other));
@@ -466,9 +460,15 @@ void append_touches(const World& world, int a, int b, int wall, double most,
   if (b < 0) {
     const Obstacle& obstacle = at(world.obstacles, wall);
     const bool is_point = obstacle.cable >= 0;
+    // What is fast may come beside it, and through it, within a step.
+    const bool is_fast = most > inner_radius(body);
     for (int k = 0; !is_point && k < points_of(body); ++k) {
       const Vec2 point = place_of_point(world, a, k);
-      if (is_beside(obstacle, at(world.position, a), point)) append(Touch::point_of_a, k);
+      const bool may_come =
+          is_fast && outside_of_end(obstacle, point).distance > 1e-6 * body.radius;
+      if (may_come || is_beside(obstacle, at(world.position, a), point)) {
+        append(Touch::point_of_a, k);
+      }
     }
     append_other(Touch::end_of_wall, 0);
     if (!is_point) append_other(Touch::end_of_wall, 1);

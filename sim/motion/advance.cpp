@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <iterator>
 
 #include "base/at.h"
 #include "sim/cable/creep.h"
@@ -57,32 +59,33 @@ void apply_no_forces(const Scene& scene, const World& world, const Part& part, d
 
 /// Whether a contact is, that can give.
 bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
-  if (!part.can_move) return false;
-  for (const int number : contacts_of(parts, part)) {
-    const Contact& c = at(world.contacts, number);
-    // By more than what solves of other events leave, each within a reach.
-    if (c.gap >= c.target - 10.0 * reach_at(world, c.a)) continue;
-    if (can_give(world, c)) return true;
-  }
-  return false;
+  return part.can_move && std::ranges::any_of(contacts_of(parts, part), [&](int number) {
+           const Contact& c = at(world.contacts, number);
+           // By more than what solves of other events leave, each within a reach.
+           return c.gap < c.target - 10.0 * reach_at(world, c.a) && can_give(world, c);
+         });
 }
 
-/// Contacts have been found for what bodies may do in a step at the speeds that they had, twice as
-/// much as that. Strikes a part; whether that has made a body of it faster still.
+/// Contacts have been found for twice what bodies do in a step at their speeds, and outlines as they
+/// turn as well. Strikes a part; whether that has made a body of it faster still.
 bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const Part& part,
                        double time, bool rebounds) {
   const std::span<const int> bodies = bodies_of(work.parts, part);
-  const auto speed = [&world](int body) {
-    return at(world.velocity, body).norm() +
-           at(world.bodies, body).radius * std::abs(at(world.angular_velocity, body));
+  const auto speeds = [&world](int b) {
+    const double speed = at(world.velocity, b).norm();
+    return std::array{speed,
+                      speed + at(world.bodies, b).radius * std::abs(at(world.angular_velocity, b))};
   };
   work.speeds.clear();
-  for (const int body : bodies) work.speeds.push_back(speed(body));
+  for (const int body : bodies) std::ranges::copy(speeds(body), std::back_inserter(work.speeds));
   apply_no_forces(scene, world, part, time, work);
   strike(scene, world, work, part, rebounds);
   const double slow = scene.gravity.norm() * world.step_length;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (speed(bodies[i]) > 2.0 * work.speeds[i] + slow) return true;
+  const double* before = work.speeds.data();
+  for (const int body : bodies) {
+    for (const double speed : speeds(body)) {
+      if (speed > 2.0 * *before++ + slow) return true;
+    }
   }
   return false;
 }
@@ -90,9 +93,8 @@ bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const 
 /// Whether links of a part's cables have come or gone since World::changes was `before`.
 bool has_changed(const World& world, const Parts& parts, const Part& part, int before) {
   if (world.changes == before) return false;
-  const std::span<const int> cables = cables_of(parts, part);
-  return std::any_of(cables.begin(), cables.end(),
-                     [&](int c) { return at(world.cables, c).changed_at > before; });
+  return std::ranges::any_of(cables_of(parts, part),
+                             [&](int c) { return at(world.cables, c).changed_at > before; });
 }
 
 /// Puts right in positions what an interval of these parts has left, and then the velocities to fit
@@ -404,8 +406,7 @@ bool move_all(const Scene& scene, World& world, Workspace& work, const Round& ro
 }
 
 bool is_left(const Neighbourhoods& near) {
-  return std::any_of(near.list.begin(), near.list.end(),
-                     [](const Neighbourhood& course) { return course.left > 0.0; });
+  return std::ranges::any_of(near.list, [](const Neighbourhood& c) { return c.left > 0.0; });
 }
 
 /// Settles the ends of the intervals of this round; as settle_end.

@@ -24,10 +24,10 @@ inline double clearance_of(const World& world, const Row& row) {
 
 /// The same of one that was clear by `before` (m) when the interval began, at the first place on the
 /// way from there at which it has been less than -`late`; `now`, its clearance at the present
-/// positions, where there is none. A polygon that crosses another outline, or a wall, within one
-/// interval ends it clear of that again, on the far side. Bodies move evenly along their ways, and
-/// between two of the places that are tried by no more than half of what is thinnest. Moves bodies
-/// there and back.
+/// positions, where there is none. What crosses another within one interval, or passes through its
+/// edge, ends it clear of that again. Bodies move evenly along their ways, and between two of the
+/// places that are tried by no more than half of what is thinnest; of discs the nearest place is
+/// known. Moves bodies there and back.
 double clearance_on_way(World& world, const Start& start, const Contact& contact, double before,
                         double now, double late);
 
