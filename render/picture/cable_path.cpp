@@ -51,6 +51,11 @@ class PathBuilder {
     up_ = g > 0.0 ? Vec2(-scene.gravity / g) : Vec2(0.0, 1.0);
   }
 
+  /// rad, by which the cable turns on a link.
+  double sweep(std::size_t i) const {
+    return std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
+  }
+
   std::vector<std::size_t> build() {
     const std::size_t count = cable_.links.size();
     if (count < 2) return {};
@@ -87,7 +92,8 @@ class PathBuilder {
   SpanEnd span_end(std::size_t i, double alpha) const {
     const Link& link = cable_.links[i];
     const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
-    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha};
+    const double growth = link.layers.way != 0 ? link.layers.growth : 0.0;
+    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha, growth};
   }
 
   /// Whether segment i is a pinch between two wraps, at one place of the cable.
@@ -219,11 +225,13 @@ class PathBuilder {
     span.curve = hung.curve;
     Bounds &before = bounds_[span.tail], &after = bounds_[span.head];
     const double seam = i == 0 ? cable_.turning : 0.0;
+    const Link &tail = cable_.links[span.tail], &head = cable_.links[span.head];
     before.head_material +=
-        cable_.links[span.tail].signed_radius() * (hung.tail_angle + seam - before.head_angle);
+        taken_up(span_end(span.tail, before.head_angle),
+                 tail.orientation * (hung.tail_angle + seam - before.head_angle));
     before.head_angle = hung.tail_angle + seam;
-    after.tail_material +=
-        cable_.links[span.head].signed_radius() * (hung.head_angle - after.tail_angle);
+    after.tail_material -= taken_up(span_end(span.head, after.tail_angle),
+                                    -head.orientation * (hung.head_angle - after.tail_angle));
     after.tail_angle = hung.head_angle;
   }
 
@@ -314,11 +322,6 @@ class PathBuilder {
                 (e - slope * left(e)).normalized(),
                 layers.way > 0 ? b.tail_material + wound : b.head_material - wound);
     }
-  }
-
-  /// rad, by which the cable turns on a link.
-  double sweep(std::size_t i) const {
-    return std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
   }
 
   /// Share of the arc on link i that later turns on the same body hide: the last full turn shows. A
@@ -436,16 +439,19 @@ double mark_spacing(const CableState& cable) {
 
 std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
                                            const CableState& cable, double smallest_sag,
-                                           std::vector<StripPoint>& points) {
-  return PathBuilder(scene, world, cable, smallest_sag, points).build();
+                                           std::vector<StripPoint>& points,
+                                           std::vector<double>* sweeps) {
+  PathBuilder path(scene, world, cable, smallest_sag, points);
+  std::vector<std::size_t> begins = path.build();
+  for (std::size_t i = 0; sweeps && i < cable.links.size(); ++i) sweeps->push_back(path.sweep(i));
+  return begins;
 }
 
-void append_seam(const World& world, const Link& link, double half_width,
+void append_seam(const World& world, const Link& link, double half_width, double sweep,
                  std::vector<StripPoint>& points) {
   const Layers& layers = link.layers;
   if (layers.way == 0 || link.orientation == 0) return;
-  const double covered =  // rad, of all but the last turn
-      thickness_of_layers(link) / layers.growth - 2.0 * std::numbers::pi;
+  const double covered = sweep - full_turn;  // rad, all but the last turn
   if (covered <= 0.0) return;
   const double start = from_x_axis(at(world.angle, link.body) + link.orientation * layers.begins);
   const int pieces = static_cast<int>(std::ceil(covered / most_turn));
