@@ -31,9 +31,4 @@ std::vector<std::size_t> append_cable_path(const Scene& scene, const World& worl
                                            std::vector<StripPoint>& points,
                                            std::vector<double>* sweeps = nullptr);
 
-/// Appends the line along which the turns on a drum that fills touch one another, from the inside
-/// out, where the cable turns on it by `sweep` (rad); nothing where there is none.
-void append_seam(const World& world, const Link& link, double half_width, double sweep,
-                 std::vector<StripPoint>& points);
-
 }  // namespace pinchlab

@@ -8,6 +8,7 @@
 #include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "render/picture/chain_path.h"
+#include "render/picture/layer_seam.h"
 #include "render/picture/polygon_outline.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
@@ -164,8 +165,7 @@ class Composer {
     }
     const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
     std::vector<double> sweeps;                          // rad, on each link
-    std::vector<std::size_t> begins =
-        append_cable_path(scene_, world_, cable, smallest_sag, picture_.points, &sweeps);
+    auto begins = append_cable_path(scene_, world_, cable, smallest_sag, picture_.points, &sweeps);
     begins.push_back(picture_.points.size());
     for (std::size_t i = 0; i < sweeps.size(); ++i) add_seam(cable.links[i], sweeps[i], strip);
     for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
@@ -426,11 +426,11 @@ class Composer {
   void add_fastenings(std::size_t c) {
     const CableState& cable = world_.cables[c];
     if (cable.closed || cable.links.size() < 2) return;
-    const Colour pin = cable_paint(c).edge;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
       if (is_on_node(scene_, *link)) continue;
       if (link->body >= 0) {
-        picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, pin));
+        picture_.add(
+            disc(link_centre(world_, *link), 1.05 * cable.half_width, cable_paint(c).edge));
       } else {
         const double r = anchor_radius(scenery_, cable.half_width);
         picture_.add(disc(link->offset, r, theme_.ink));
