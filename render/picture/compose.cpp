@@ -58,9 +58,9 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
-    for (const CableState& cable : world_.cables) {
-      for (const Link& link : cable.links) {
-        if (link.layers.way != 0 && link.orientation != 0) add_riser(link, cable.half_width);
+    for (std::size_t c = 0; c < world_.cables.size(); ++c) {
+      for (const Link& link : links_in_layers(scene_, world_, c)) {
+        add_riser(link, world_.cables[c].half_width);
       }
     }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);

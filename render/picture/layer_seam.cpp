@@ -4,11 +4,50 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "sim/cable/cable.h"
 #include "sim/tangent.h"
 
 namespace pinchlab {
+
+namespace {
+
+/// The link that an end's drum would have, of which all has run off.
+Link unwound(const World& world, const CableState& cable, const Link& end, int orientation,
+             int way) {
+  Link link = end;
+  const double inner = at(world.bodies, end.body).radius + cable.half_width;
+  const Vec2 out = link_centre(world, end) - at(world.position, end.body);
+  const double alpha = heading(orientation * left(out.normalized()));
+  link.orientation = orientation;
+  link.layers = {way, inner, cable.half_width / std::numbers::pi,
+                 orientation * (alpha - at(world.angle, end.body))};
+  return link;
+}
+
+}  // namespace
+
+std::vector<Link> links_in_layers(const Scene& scene, const World& world, std::size_t c) {
+  const CableState& cable = world.cables[c];
+  std::vector<Link> found;
+  bool at_start = false, at_end = false;
+  for (const Link& link : cable.links) {
+    if (link.layers.way == 0 || link.orientation == 0) continue;
+    found.push_back(link);
+    (link.layers.way > 0 ? at_start : at_end) = true;
+  }
+  const Cable& whole = scene.cables[c];
+  if (whole.start.layers && !at_start) {
+    const int orientation = whole.wraps.front().orientation;
+    found.push_back(unwound(world, cable, cable.links.front(), orientation, 1));
+  }
+  if (whole.end.layers && !at_end) {
+    const int orientation = whole.wraps.back().orientation;
+    found.push_back(unwound(world, cable, cable.links.back(), orientation, -1));
+  }
+  return found;
+}
 
 void append_seam(const World& world, const Link& link, double half_width, double sweep,
                  std::vector<StripPoint>& points) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-// Where the turns of rope on a drum that fills touch.
+// What is drawn of drums that fill beside their rope.
 
 #include <vector>
 
@@ -8,6 +8,10 @@
 #include "sim/world.h"
 
 namespace pinchlab {
+
+/// The links of cable c that lie in layers, and for drums from which all has run off such as there
+/// will be when they are wound again as at the start.
+std::vector<Link> links_in_layers(const Scene& scene, const World& world, std::size_t c);
 
 /// Appends the line along which the turns on a drum that fills touch one another, from the inside
 /// out, where the cable turns on it by `sweep` (rad); nothing where there is none.
