@@ -33,8 +33,8 @@ TEST(CablePath, SlackCableHangsUntilWhatFallsComesDownToIt) {
       "bodies": [
         {"name": "a", "kind": "free", "radius_m": 0.15, "mass_kg": 1, "position_m": [-0.5, 0.6]},
         {"name": "b", "kind": "free", "radius_m": 0.15, "mass_kg": 1, "position_m": [0.16, 0.6]}],
-      "cables": [{"name": "c", "half_width_m": 0.03, "slack_m": 0.5, "start": {"world_m": [-1, 0.3]},
-                  "end": {"world_m": [)" +
+      "cables": [{"name": "c", "half_width_m": 0.03, "slack_m": 0.5,
+                  "start": {"world_m": [-1, 0.3]}, "end": {"world_m": [)" +
             std::string(end) + R"(, 0.3]}}]})",
         "hammock.json");
     World world = make_world(file.scene, Method::pinch);
