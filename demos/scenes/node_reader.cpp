@@ -73,6 +73,9 @@ void read_nodes(SceneContent& to, const std::map<std::string, int>& body_names,
                 std::vector<SceneProblem>& problems) {
   const std::vector<Cable> cables = to.scene.cables;
   if (!are_few(cables, problems)) return;
+  for (std::size_t i = 0; i < to.look.bodies.size(); ++i) {
+    to.look.bodies[i].mass = to.scene.bodies[i].mass;
+  }
   try {
     for (const NodedCable& made : spread_nodes(to.scene)) {
       const Cable& cable = at(cables, made.cable);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
+#include "render/picture/fade.h"
 #include "render/picture/hanging.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held_spans.h"
@@ -26,17 +28,6 @@ struct Bounds {
   double tail_material = 0.0, head_material = 0.0;
 };
 
-/// 1 at s = 0, falling smoothly to 0 at s = reach, and its derivative (1/m).
-struct Fade {
-  double value = 0.0, slope = 0.0;
-};
-Fade fade(double s, double reach) {
-  if (s >= reach) return {};
-  if (s <= 0.0) return {1.0, 0.0};
-  const double x = s / reach;
-  return {1.0 - x * x * (3.0 - 2.0 * x), -6.0 * x * (1.0 - x) / reach};
-}
-
 /// The centre line of one cable, built link by link.
 class PathBuilder {
  public:
@@ -49,6 +40,11 @@ class PathBuilder {
         begins_{points.size()} {
     const double g = scene.gravity.norm();
     up_ = g > 0.0 ? Vec2(-scene.gravity / g) : Vec2(0.0, 1.0);
+  }
+
+  /// rad, by which the cable turns on a link.
+  double sweep(std::size_t i) const {
+    return std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
   }
 
   std::vector<std::size_t> build() {
@@ -74,7 +70,9 @@ class PathBuilder {
   struct Span {
     bool drawn = false;
     bool hanging = false;
+    bool merged = false;             // past a link that it has let go of
     double slack = 0.0;              // m, by which it hangs
+    double length = 0.0;             // m of material, as it hangs
     std::size_t tail = 0, head = 0;  // the links between which it is drawn
     Catenary curve;
   };
@@ -87,7 +85,8 @@ class PathBuilder {
   SpanEnd span_end(std::size_t i, double alpha) const {
     const Link& link = cable_.links[i];
     const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
-    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha};
+    const double growth = link.layers.way != 0 ? link.layers.growth : 0.0;
+    return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha, growth};
   }
 
   /// Whether segment i is a pinch between two wraps, at one place of the cable.
@@ -119,7 +118,8 @@ class PathBuilder {
   HangingSpan shape(std::size_t i) {
     Span& span = spans_[i];
     const Segment& segment = cable_.segments[i];
-    double length = segment.length + span.slack;
+    double length = span.length;
+    if (span.merged) return hang(tail_end(i), head_end(i), length, up_);
     const double alpha = from_x_axis(segment.alpha);
     SpanEnd tail = span_end(span.tail, alpha), head = span_end(span.head, alpha);
     const HangingSpan straight = hang(tail, head, length, up_);
@@ -136,6 +136,58 @@ class PathBuilder {
       head = pass(by_head, span.head, span.head, segment.tail, length);
     }
     return pass_tail || pass_head ? hang(tail, head, length, up_) : straight;
+  }
+
+  /// The ends of span i as long as nothing of it has been hung.
+  SpanEnd tail_end(std::size_t i) const {
+    const std::size_t link = spans_[i].tail;
+    return span_end(link, bounds_[link].head_angle - (i == 0 ? cable_.turning : 0.0));
+  }
+  SpanEnd head_end(std::size_t i) const {
+    return span_end(spans_[i].head, bounds_[spans_[i].head].tail_angle);
+  }
+
+  /// The span that leaves link i, which is not the last of an open cable.
+  std::size_t span_after(std::size_t i) const {
+    const std::size_t next = (i + 1) % cable_.links.size();
+    return passed_[next] ? span_after(next) : next;
+  }
+
+  /// rad, by which cable that is slack on both sides of link i would turn on it the wrong way; 0
+  /// or less: it lies on it.
+  double lifted(std::size_t i) const {
+    const Link& link = cable_.links[i];
+    if (passed_[i] || link.orientation == 0 || link.layers.way != 0) return 0.0;
+    const std::size_t after = span_after(i);
+    if (!spans_[i].hanging || !spans_[after].hanging) return 0.0;
+    SpanEnd head = head_end(i), tail = tail_end(after);
+    head.most_unwrap = tail.most_unwrap = std::numbers::pi;
+    const HangingSpan come = hang(tail_end(i), head, spans_[i].length, up_);
+    const HangingSpan go = hang(tail, head_end(after), spans_[after].length, up_);
+    const double seam = after == 0 ? cable_.turning : 0.0;
+    return link.orientation * (come.head_angle - go.tail_angle - seam);
+  }
+
+  /// What falls on to a slack cable without mass meets it where the straight line is, high above
+  /// what hangs. Until it comes down there the cable hangs as if nothing were on it.
+  void let_go() {
+    if (cable_.first_node >= 0 || cable_.density > 0.0) return;  // it hangs as the simulator says
+    const std::size_t end = cable_.links.size() - (cable_.closed ? 0 : 1);
+    for (;;) {
+      std::size_t most = 0;
+      double lift = 0.0;
+      for (std::size_t i = 1; i < end; ++i) {
+        if (const double here = lifted(i); here > lift) std::tie(most, lift) = std::tuple(i, here);
+      }
+      if (most == 0) return;
+      Span& after = spans_[span_after(most)];
+      after.merged = true;
+      after.tail = spans_[most].tail;
+      after.length += spans_[most].length;
+      after.length += bounds_[most].head_material - bounds_[most].tail_material;
+      spans_[most].drawn = spans_[most].hanging = false;
+      passed_[most] = true;
+    }
   }
 
   /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
@@ -209,7 +261,11 @@ class PathBuilder {
       // A chord of length l and slack d sags by sqrt(3 l d / 8).
       span.hanging = span.drawn &&
                      span.slack * cable_.segments[i].length > 2.0 * smallest_sag_ * smallest_sag_;
-      if (span.hanging) hang_span(i);
+      span.length = cable_.segments[i].length + span.slack;
+    }
+    let_go();
+    for (std::size_t i = first; i < count; ++i) {
+      if (spans_[i].hanging) hang_span(i);
     }
   }
 
@@ -219,11 +275,13 @@ class PathBuilder {
     span.curve = hung.curve;
     Bounds &before = bounds_[span.tail], &after = bounds_[span.head];
     const double seam = i == 0 ? cable_.turning : 0.0;
+    const Link &tail = cable_.links[span.tail], &head = cable_.links[span.head];
     before.head_material +=
-        cable_.links[span.tail].signed_radius() * (hung.tail_angle + seam - before.head_angle);
+        taken_up(span_end(span.tail, before.head_angle),
+                 tail.orientation * (hung.tail_angle + seam - before.head_angle));
     before.head_angle = hung.tail_angle + seam;
-    after.tail_material +=
-        cable_.links[span.head].signed_radius() * (hung.head_angle - after.tail_angle);
+    after.tail_material -= taken_up(span_end(span.head, after.tail_angle),
+                                    -head.orientation * (hung.head_angle - after.tail_angle));
     after.tail_angle = hung.head_angle;
   }
 
@@ -314,11 +372,6 @@ class PathBuilder {
                 (e - slope * left(e)).normalized(),
                 layers.way > 0 ? b.tail_material + wound : b.head_material - wound);
     }
-  }
-
-  /// rad, by which the cable turns on a link.
-  double sweep(std::size_t i) const {
-    return std::abs(bounds_[i].head_angle - bounds_[i].tail_angle);
   }
 
   /// Share of the arc on link i that later turns on the same body hide: the last full turn shows. A
@@ -436,26 +489,12 @@ double mark_spacing(const CableState& cable) {
 
 std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
                                            const CableState& cable, double smallest_sag,
-                                           std::vector<StripPoint>& points) {
-  return PathBuilder(scene, world, cable, smallest_sag, points).build();
-}
-
-void append_seam(const World& world, const Link& link, double half_width,
-                 std::vector<StripPoint>& points) {
-  const Layers& layers = link.layers;
-  if (layers.way == 0 || link.orientation == 0) return;
-  const double covered =  // rad, of all but the last turn
-      thickness_of_layers(link) / layers.growth - 2.0 * std::numbers::pi;
-  if (covered <= 0.0) return;
-  const double start = from_x_axis(at(world.angle, link.body) + link.orientation * layers.begins);
-  const int pieces = static_cast<int>(std::ceil(covered / most_turn));
-  for (int k = 0; k <= pieces; ++k) {
-    const double turned = covered * k / pieces, radius = layers.radius(turned) + half_width;
-    const Vec2 e = unit_vector(start + layers.way * link.orientation * turned);
-    const Vec2 tangent = layers.way * e - link.orientation * layers.growth / radius * left(e);
-    points.push_back({tangent_point(link_centre(world, link), link.orientation * radius, e),
-                      tangent.normalized(), 0.0});
-  }
+                                           std::vector<StripPoint>& points,
+                                           std::vector<double>* sweeps) {
+  PathBuilder path(scene, world, cable, smallest_sag, points);
+  std::vector<std::size_t> begins = path.build();
+  for (std::size_t i = 0; sweeps && i < cable.links.size(); ++i) sweeps->push_back(path.sweep(i));
+  return begins;
 }
 
 }  // namespace pinchlab

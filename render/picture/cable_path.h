@@ -24,14 +24,11 @@ double mark_spacing(const CableState& cable);
 /// than one only where the cable runs round a body by more than a turn: the turns that the last one
 /// hides are left out. Slack spans hang with their rest length, unless they sag less than about
 /// `smallest_sag` m; a span too short to hang hands its slack to a slack one beside it. A middle
-/// link of a non-transitional pinch has no wrap: its two segments are left out.
+/// link of a non-transitional pinch has no wrap: its two segments are left out. `sweeps`, if given,
+/// gets by how much (rad) the cable turns on each link.
 std::vector<std::size_t> append_cable_path(const Scene& scene, const World& world,
                                            const CableState& cable, double smallest_sag,
-                                           std::vector<StripPoint>& points);
-
-/// Appends the line along which the turns on a drum that fills touch one another, from the inside
-/// out; nothing where there is none.
-void append_seam(const World& world, const Link& link, double half_width,
-                 std::vector<StripPoint>& points);
+                                           std::vector<StripPoint>& points,
+                                           std::vector<double>* sweeps = nullptr);
 
 }  // namespace pinchlab

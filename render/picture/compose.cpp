@@ -8,6 +8,7 @@
 #include "base/at.h"
 #include "render/picture/cable_path.h"
 #include "render/picture/chain_path.h"
+#include "render/picture/layer_seam.h"
 #include "render/picture/polygon_outline.h"
 #include "sim/cable/cable.h"
 #include "sim/compound.h"
@@ -57,9 +58,9 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_rail(i);
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
-    for (const CableState& cable : world_.cables) {
-      for (const Link& link : cable.links) {
-        if (link.layers.way != 0 && link.orientation != 0) add_riser(link, cable.half_width);
+    for (std::size_t c = 0; c < world_.cables.size(); ++c) {
+      for (const Link& link : links_in_layers(scene_, world_, c)) {
+        add_riser(link, world_.cables[c].half_width);
       }
     }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
@@ -69,7 +70,7 @@ class Composer {
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
     for (std::size_t c = 0; c < world_.cables.size(); ++c) {
       if (world_.cables[c].joint == Joint::none) {
-        add_fastenings(world_.cables[c]);
+        add_fastenings(c);
       } else {
         add_joint(c);
       }
@@ -133,18 +134,27 @@ class Composer {
     }
   }
 
+  CableLook look_of(std::size_t c) const {
+    return scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
+  }
+
+  Paint cable_paint(std::size_t c) const {
+    const std::optional<Colour> colour = look_of(c).colour;
+    return colour ? Paint{*colour, shade(*colour)} : theme_.cable;
+  }
+
   void add_cable(std::size_t c) {
     const CableState& cable = world_.cables[c];
     if (cable.joint != Joint::none) return;
-    const CableLook look = scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
+    const CableLook look = look_of(c);
     Strip strip;
     strip.half_width = cable.half_width;
     strip.edge_width = std::min(0.22 * cable.half_width, 2.0 * scenery_.line());
     strip.mark_spacing = mark_spacing(cable);
     strip.mark_length = look.marks ? (cable.closed ? 0.4 : 0.25) * strip.mark_spacing : 0.0;
-    strip.fill = look.colour.value_or(theme_.cable.fill);
-    strip.edge = look.colour ? shade(*look.colour) : theme_.cable.edge;
-    strip.mark = look.colour ? shade(*look.colour) : theme_.cable_mark;
+    strip.fill = cable_paint(c).fill;
+    strip.edge = cable_paint(c).edge;
+    strip.mark = look.colour ? strip.edge : theme_.cable_mark;
     if (cable.rod) {
       if (is_on_node(scene_, cable.links.front())) return;
       strip.first = picture_.points.size();
@@ -154,10 +164,10 @@ class Composer {
       return;
     }
     const double smallest_sag = 5e-3 * scenery_.unit();  // 1/20 px in 960
-    for (const Link& link : cable.links) add_seam(link, strip);
-    std::vector<std::size_t> begins =
-        append_cable_path(scene_, world_, cable, smallest_sag, picture_.points);
+    std::vector<double> sweeps;                          // rad, on each link
+    auto begins = append_cable_path(scene_, world_, cable, smallest_sag, picture_.points, &sweeps);
     begins.push_back(picture_.points.size());
+    for (std::size_t i = 0; i < sweeps.size(); ++i) add_seam(cable.links[i], sweeps[i], strip);
     for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
       strip.first = begins[i];
       strip.count = begins[i + 1] - begins[i];
@@ -167,10 +177,10 @@ class Composer {
 
   /// Lies under a cable where its turns on a drum that fills touch: pixels that two of them share
   /// would let the paper through.
-  void add_seam(const Link& link, const Strip& cable) {
+  void add_seam(const Link& link, double sweep, const Strip& cable) {
     Strip seam;
     seam.first = picture_.points.size();
-    append_seam(world_, link, cable.half_width, picture_.points);
+    append_seam(world_, link, cable.half_width, sweep, picture_.points);
     seam.count = picture_.points.size() - seam.first;
     seam.half_width = 0.5 * cable.half_width;
     seam.fill = cable.edge;
@@ -258,8 +268,7 @@ class Composer {
     const CableState& cable = world_.cables[c];
     const Vec2 from = link_centre(world_, cable.links.front());
     const Vec2 to = link_centre(world_, cable.links.back());
-    const CableLook look = scenery_.look.cables.empty() ? CableLook{} : scenery_.look.cables[c];
-    const Colour colour = look.colour.value_or(theme_.fixed.edge);
+    const Colour colour = look_of(c).colour.value_or(theme_.fixed.edge);
     switch (cable.joint) {
       case Joint::none:
         return;
@@ -414,12 +423,14 @@ class Composer {
   }
 
   /// What holds the ends of an open cable: a bolt in the world, a pin on a body.
-  void add_fastenings(const CableState& cable) {
+  void add_fastenings(std::size_t c) {
+    const CableState& cable = world_.cables[c];
     if (cable.closed || cable.links.size() < 2) return;
     for (const Link* link : {&cable.links.front(), &cable.links.back()}) {
       if (is_on_node(scene_, *link)) continue;
       if (link->body >= 0) {
-        picture_.add(disc(link_centre(world_, *link), 1.05 * cable.half_width, theme_.cable.edge));
+        picture_.add(
+            disc(link_centre(world_, *link), 1.05 * cable.half_width, cable_paint(c).edge));
       } else {
         const double r = anchor_radius(scenery_, cable.half_width);
         picture_.add(disc(link->offset, r, theme_.ink));

@@ -110,15 +110,23 @@ HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double rest_length, c
     bare = grow < -end.most_unwrap;
     return end.alpha + sense * std::clamp(grow, -end.most_unwrap, std::numbers::pi);
   };
+  // By how much the wrap grows, rad, and where the cable runs in a direction then.
+  const auto grown = [](const SpanEnd& end, double angle, double wrap_sense) {
+    return wrap_sense * std::copysign(1.0, end.signed_radius) * (angle - end.alpha);
+  };
+  const auto place = [](const SpanEnd& end, double turned, const Vec2& e) {
+    const double more = std::copysign(end.growth, end.signed_radius) * turned;
+    return tangent_point(end.centre, end.signed_radius + more, e);
+  };
   constexpr int most_rounds = 200;
   constexpr double close_enough = 1e-9;
   double damping = 0.7, last_change = 2.0 * std::numbers::pi;
   for (int round = 0;; ++round) {
-    const Vec2 e_tail = unit(span.tail_angle), e_head = unit(span.head_angle);
-    const Vec2 from = tangent_point(tail.centre, tail.signed_radius, e_tail);
-    const Vec2 to = tangent_point(head.centre, head.signed_radius, e_head);
-    const double length = rest_length - tail.signed_radius * (span.tail_angle - tail.alpha) +
-                          head.signed_radius * (span.head_angle - head.alpha);
+    const double at_tail = grown(tail, span.tail_angle, 1.0);
+    const double at_head = grown(head, span.head_angle, -1.0);
+    const Vec2 from = place(tail, at_tail, unit(span.tail_angle));
+    const Vec2 to = place(head, at_head, unit(span.head_angle));
+    const double length = rest_length - taken_up(tail, at_tail) - taken_up(head, at_head);
     span.curve = Catenary(from, to, length, up);
     const double tail_angle = limited(tail, span.curve.tangent(0.0), 1.0, span.tail_bare);
     const double head_angle =

@@ -2,6 +2,8 @@
 #pragma once
 // How a slack span hangs: a catenary of its rest length, tangent to the bodies at its ends.
 
+#include <cmath>
+
 #include "sim/scene.h"
 
 namespace pinchlab {
@@ -29,13 +31,20 @@ class Catenary {
   bool straight_ = true;    // then `across_` is the direction
 };
 
-/// One end of a span: a circle that the cable runs round, or a point (signed radius 0).
+/// One end of a span: a circle that the cable runs round, or a point (signed radius 0). Of a drum
+/// that fills it is the circle at `alpha`; its radius grows with the wrap.
 struct SpanEnd {
   Vec2 centre = Vec2::Zero();  // m
   double signed_radius = 0.0;  // m, orientation * (body radius + half width)
   double most_unwrap = 0.0;    // rad >= 0, by how much the wrap may shrink
   double alpha = 0.0;          // rad, the direction of the straight tangent there
+  double growth = 0.0;         // m/rad
 };
+
+/// m of cable that an end's circle takes up where its wrap grows by `turned` rad.
+inline double taken_up(const SpanEnd& end, double turned) {
+  return (std::abs(end.signed_radius) + 0.5 * end.growth * turned) * turned;
+}
 
 /// A span's shape between two ends. The cable leaves the first circle in direction `tail_angle` and
 /// meets the second one in direction `head_angle` (rad); the wraps grow or shrink accordingly.

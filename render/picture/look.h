@@ -41,6 +41,7 @@ enum class LabelSide { automatic, below, above, left, right };
 struct BodyLook {
   std::optional<Colour> colour;      ///< of its fill; the edge is a shade of it
   std::optional<std::string> label;  ///< empty: none; default: its mass if it can move
+  std::optional<double> mass;        ///< kg, where cables that it holds have added to the body's
   LabelSide side = LabelSide::automatic;
   bool marks = true;  ///< spokes and dot, by which one sees it turn
 };

@@ -360,8 +360,9 @@ std::vector<SceneryLabel> find_labels(const Scene& scene, const SceneLook& look)
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
     if (body.node || body.carrier >= 0) continue;
-    std::string text = can_move(body) ? fmt::format("{:.4g} kg", body.mass) : "";
-    if (!look.bodies.empty() && look.bodies[i].label) text = *look.bodies[i].label;
+    const BodyLook own = look.bodies.empty() ? BodyLook{} : look.bodies[i];
+    std::string text = can_move(body) ? fmt::format("{:.4g} kg", own.mass.value_or(body.mass)) : "";
+    if (own.label) text = *own.label;
     if (!text.empty()) labels.push_back({i, text, Vec2::Zero()});
   }
   return labels;

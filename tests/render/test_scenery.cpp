@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "demos/scenes/scene_json.h"
 #include "render/picture/compose.h"
 #include "sim/outline.h"
 #include "sim/step.h"
@@ -211,6 +212,22 @@ TEST(Scenery, ThemeAndLooksReachThePicture) {
   EXPECT_EQ(plain.strokes.size(), picture.strokes.size() + 4) << "three spokes and a dot";
   const auto green = [](const Stroke& s) { return s.fill == Colour{10, 200, 10, 255}; };
   EXPECT_EQ(std::count_if(picture.strokes.begin(), picture.strokes.end(), green), 1);
+}
+
+// A cable whose number of nodes adapts gives half of its last piece to the body at its end.
+TEST(Scenery, LabelsTellTheMassesThatTheSceneGives) {
+  const SceneFile file = parse_scene(R"({"title": "ring", "duration_s": 0.1, "view": "fit",
+      "baseline": {"method": "cable", "reason": "none"},
+      "bodies": [{"name": "ring", "kind": "free", "radius_m": 0.05, "mass_kg": 0.5,
+                  "position_m": [1, 1]}],
+      "cables": [{"name": "c", "half_width_m": 0.02, "mass_per_metre_kg": 0.8, "slack_m": 0.5,
+                  "nodes": 31, "node_tolerance_m": 0.004, "start": {"world_m": [-1, 1]},
+                  "end": {"body": "ring"}}]})",
+                                     "ring.json");
+  ASSERT_GT(file.scene.bodies[0].mass, 0.51);
+  const Scenery scenery = set_scenery(file.scene, file.look);
+  ASSERT_EQ(scenery.labels.size(), 1U);
+  EXPECT_EQ(scenery.labels[0].text, "0.5 kg");
 }
 
 }  // namespace

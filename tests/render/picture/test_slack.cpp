@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How slack cable without mass is drawn where bodies come on to it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "demos/scenes/scene_json.h"
+#include "render/picture/cable_path.h"
+#include "sim/step.h"
+
+namespace pinchlab {
+namespace {
+
+/// Where material `m` (m) of a path lies.
+Vec2 place_of(const std::vector<StripPoint>& points, double m) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const StripPoint &from = points[i - 1], &to = points[i];
+    if (to.material < m || to.material == from.material) continue;
+    const double share = (m - from.material) / (to.material - from.material);
+    return from.position + share * (to.position - from.position);
+  }
+  return points.back().position;
+}
+
+// Balls that fall on to a slack cable meet it where the straight line is. It jumped up to them by
+// twenty half widths in a frame and hung from them in garlands.
+TEST(CablePath, SlackCableHangsUntilWhatFallsComesDownToIt) {
+  for (const char* end : {"1.0", "1.4"}) {
+    const SceneFile file = parse_scene(
+        R"({"title": "hammock", "duration_s": 1, "view": "fit",
+      "baseline": {"method": "cable", "reason": "none"},
+      "bodies": [
+        {"name": "a", "kind": "free", "radius_m": 0.15, "mass_kg": 1, "position_m": [-0.5, 0.6]},
+        {"name": "b", "kind": "free", "radius_m": 0.15, "mass_kg": 1, "position_m": [0.16, 0.6]}],
+      "cables": [{"name": "c", "half_width_m": 0.03, "slack_m": 0.5,
+                  "start": {"world_m": [-1, 0.3]}, "end": {"world_m": [)" +
+            std::string(end) + R"(, 0.3]}}]})",
+        "hammock.json");
+    World world = make_world(file.scene, Method::pinch);
+    Workspace work;
+    std::vector<StripPoint> last;
+    const CableState& cable = world.cables[0];
+    std::size_t most_links = 0;
+    for (int frame = 0; frame < 40; ++frame) {
+      std::vector<StripPoint> now;
+      append_cable_path(file.scene, world, cable, 1e-4, now);
+      const double fastest = std::max(world.velocity[0].norm(), world.velocity[1].norm());  // m/s
+      for (double m = 0.05; !last.empty() && m < cable.length - 0.04; m += 0.05) {
+        EXPECT_LT((place_of(now, m) - place_of(last, m)).norm(), 0.03 + 3.0 * fastest / 60.0)
+            << "frame " << frame << ", material " << m;
+      }
+      for (std::size_t i = 1; i < now.size(); ++i) {
+        EXPECT_GE(now[i].material, now[i - 1].material - 1e-9);
+      }
+      last = now;
+      most_links = std::max(most_links, cable.links.size());
+      for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
+    }
+    EXPECT_EQ(most_links, 4U) << "both balls came on to the cable";
+  }
+}
+
+}  // namespace
+}  // namespace pinchlab
