@@ -219,9 +219,9 @@ void EnergyWatch::start(const Scene& scene, const World& world) {
 
 // Energy at the step's start: velocities were from before it and are half an interval after it, and
 // between the two they change evenly. Where the step was divided that half is not known: then there
-// is at least what the lesser of the velocities before and after tells, and at most what the greater
-// does, but for what these and positions can have exchanged meanwhile, no more than potential energy
-// changes by in the step.
+// is at least what the lesser of the velocities before and after tells, and at most what the
+// greater does, but for what these and positions can have exchanged meanwhile, no more than
+// potential energy changes by in the step.
 EnergyWatch::Range EnergyWatch::energy_at_start(const Group& group, const Sums& sums) {
   if (sums.whole) return {sums.kinetic + group.potential, sums.kinetic + group.potential};
   const auto [lesser, greater] = std::minmax(group.kinetic, sums.kinetic_after);

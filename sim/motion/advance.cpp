@@ -66,8 +66,8 @@ bool is_squeezed(const World& world, const Parts& parts, const Part& part) {
          });
 }
 
-/// Contacts have been found for twice what bodies do in a step at their speeds, and outlines as they
-/// turn as well. Strikes a part; whether that has made a body of it faster still.
+/// Contacts have been found for twice what bodies do in a step at their speeds, and outlines as
+/// they turn as well. Strikes a part; whether that has made a body of it faster still.
 bool strike_and_hasten(const Scene& scene, World& world, Workspace& work, const Part& part,
                        double time, bool rebounds) {
   const std::span<const int> bodies = bodies_of(work.parts, part);

@@ -22,8 +22,8 @@ inline double clearance_of(const World& world, const Row& row) {
   return segment.rest_length - segment.length;
 }
 
-/// The same of one that was clear by `before` (m) when the interval began, at the first place on the
-/// way from there at which it has been less than -`late`; `now`, its clearance at the present
+/// The same of one that was clear by `before` (m) when the interval began, at the first place on
+/// the way from there at which it has been less than -`late`; `now`, its clearance at the present
 /// positions, where there is none. What crosses another within one interval, or passes through its
 /// edge, ends it clear of that again. Bodies move evenly along their ways, and between two of the
 /// places that are tried by no more than half of what is thinnest; of discs the nearest place is

@@ -90,7 +90,7 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 }
 
 const Golden goldens[] = {
-    {"01-roll-over", 0x386e403590a4eff2, 0x5ac450cb06d54546},
+    {"01-roll-over", 0x386e403590a4eff2, 0x6643fdf97ec867e5},
     {"02-stack", 0xf8feeadc69e97f5b, 0x99bc292537cdf6b7},
     {"03-drop", 0x71bd50afc64b146b, 0x506cc218cee0dcd8},
     {"04-two-blocking", 0xed586bbf86aa32f4, 0x233dd9d203e1d99a},

@@ -127,8 +127,8 @@ TEST(Fast, APaddleHitsWhatIsInItsWay) {
   }
 }
 
-// What none of its corners is beside when a step begins: it comes down on a ramp that is as short as
-// itself, or flies through the middle of an oblique wall.
+// What none of its corners is beside when a step begins, as of a box that flies through the middle
+// of an oblique wall.
 TEST(Fast, ABoxMeetsAWallThatItComesUponObliquely) {
   Scene scene;
   scene.gravity = Vec2::Zero();
@@ -204,8 +204,8 @@ TEST(Fast, NothingPassesAHangingRope) {
   }
 }
 
-// A plank throws a box at a wall that this would not have reached in the step. It spins before as it
-// does after, so that its corners are hardly faster, but it is.
+// A plank throws a box at a wall that this would not have reached in the step. It spins before as
+// it does after, so that its corners are hardly faster, but it is.
 TEST(Fast, WhatIsThrownWithinAStepMeetsAWall) {
   Scene scene;
   scene.gravity = Vec2::Zero();
