@@ -167,9 +167,10 @@ bool is_rubbed(const World& world, const CableState& cable) {
 /// so does, in the first step, what the scene gives a velocity that does not fit its cables.
 void EnergyWatch::find_what_takes(const World& world) {
   const Diagnostics& now = world.diagnostics;
-  const bool anywhere = world.step == 1 || now.events != diagnostics_.events ||
-                        now.node_changes != diagnostics_.node_changes || links_changed_;
-  diagnostics_ = now;
+  const bool anywhere = world.step == 1 || now.events != events_ ||
+                        now.node_changes != node_changes_ || links_changed_;
+  events_ = now.events;
+  node_changes_ = now.node_changes;
   if (anywhere) {
     for (Sums& sums : sums_) sums.taken = true;
     return;
@@ -214,7 +215,8 @@ void EnergyWatch::start(const Scene& scene, const World& world) {
     group.start = group.kinetic + group.potential;
     group.at_play = std::max(group.at_play, group.kinetic);
   }
-  diagnostics_ = world.diagnostics;
+  events_ = world.diagnostics.events;
+  node_changes_ = world.diagnostics.node_changes;
 }
 
 // Energy at the step's start: velocities were from before it and are half an interval after it, and

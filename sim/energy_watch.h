@@ -9,6 +9,7 @@
 // Energy that goes nowhere is watched likewise, since something last may have taken some: a blow, a
 // catch or another event, friction where something slides, drag, a damped spring, cable with mass.
 
+#include <cstdint>
 #include <vector>
 
 #include "sim/diagnostics.h"
@@ -85,9 +86,9 @@ class EnergyWatch {
   std::vector<int> changes_;   // CableState::changes when the last step was noted
   std::vector<int> first_;     // item of each part, while parts are united
   Parts parts_, parts_before_;
-  Instant before_;              // of the last step's end
-  Diagnostics diagnostics_;     // likewise
-  bool links_changed_ = false;  // in the step being noted; by unite_all
+  Instant before_;                              // of the last step's end
+  std::int64_t events_ = 0, node_changes_ = 0;  // of Diagnostics, by then
+  bool links_changed_ = false;                  // in the step being noted; by unite_all
 };
 
 }  // namespace pinchlab

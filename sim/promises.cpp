@@ -194,6 +194,11 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
   for (std::size_t i = 0; i < worst_.size(); ++i) {
     const Worst& w = worst_[i];
     if (w.steps_broken == 0) continue;
+    const auto energy_changed = [&](const char* how, const char* why, double limit) {
+      return fmt::format(
+          "{} and what has acted on it {} {} of the energy at play there, and {} (limit {})",
+          name_of_item(scene, w.item), how, percent(w.value), why, percent(limit));
+    };
     std::string what;
     switch (static_cast<Promise>(i)) {
       case Promise::strain:
@@ -213,16 +218,10 @@ std::vector<std::string> Promises::broken(const Scene& scene, const World& world
                         at(scene.cables, w.item).name, percent(w.value), percent(limits_.length));
         break;
       case Promise::energy:
-        what = fmt::format(
-            "{} and what has acted on it gained {} of the energy at play there, and nothing drives "
-            "them (limit {})",
-            name_of_item(scene, w.item), percent(w.value), percent(limits_.energy));
+        what = energy_changed("gained", "nothing drives them", limits_.energy);
         break;
       case Promise::loss:
-        what = fmt::format(
-            "{} and what has acted on it lost {} of the energy at play there, and nothing took it "
-            "(limit {})",
-            name_of_item(scene, w.item), percent(w.value), percent(limits_.loss));
+        what = energy_changed("lost", "nothing took it", limits_.loss);
         break;
       case Promise::straight:
         what = fmt::format(

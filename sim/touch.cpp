@@ -416,17 +416,16 @@ bool comes_off(const World& world, const Contact& contact) {
   const double left_over = on_straight(world, contact, world.position, world.angle);
   if (left_over > near) return false;
   if (left_over < -near) return true;
-  const auto [owner, other] = parties_of(contact);
-  const int next = (contact.side + 1) % points_of(at(world.bodies, other));
+  const int other = parties_of(contact).other;
   const Vec2 begin = place_of_point(world, other, contact.side);
-  const Vec2 along = (place_of_point(world, other, next) - begin).normalized();
+  const Vec2 end =
+      place_of_point(world, other, (contact.side + 1) % points_of(at(world.bodies, other)));
   const Vec2 point = place_of_touch(world, contact, places_now(world));
-  const bool at_begin =
-      2.0 * along.dot(point - begin) < (place_of_point(world, other, next) - begin).dot(along);
+  Vec2 out = (end - begin).normalized();
+  if (out.dot(2.0 * point - begin - end) < 0.0) out = -out;
   // Of b less that of a, and the point is a's or b's (a wall's end stands).
-  const bool of_a = contact.touch == Touch::point_of_a;
-  const double speed = (of_a ? -1.0 : 1.0) * relative_velocity(world, contact, point).dot(along);
-  return (at_begin ? -speed : speed) > near / world.step_length;
+  const double of_point = contact.touch == Touch::point_of_a ? -1.0 : 1.0;
+  return of_point * relative_velocity(world, contact, point).dot(out) > near / world.step_length;
 }
 
 }  // namespace
