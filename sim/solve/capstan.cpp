@@ -413,6 +413,12 @@ Shortage shortage_of(const Group& group, const PartSystem& system, const Capstan
   return shortage;
 }
 
+bool may_bear(const Group& group, const Shortage& shortage, const PartSystem& system,
+              const SolveScratch& set) {
+  if (set.reach > -infinity) return shortage.clearance <= set.reach;
+  return group.slack < 0 || !at(system.rows, at(set.capstan.members, group.slack)).idle;
+}
+
 namespace {
 
 /// Where no body of a group can give, its neighbours on the cable may: runs at its ends begin to
@@ -443,7 +449,7 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
       // gives way.
       const Shortage shortage = shortage_of(group, system, s);
       const int row = s.members[index(group.slack)];
-      if (shortage.speed > speed_tolerance && shortage.clearance <= set.reach &&
+      if (shortage.speed > speed_tolerance && may_bear(group, shortage, system, set) &&
           (shortage.gives || slides_to(group, set))) {
         set.flips.push_back({row, false, true, Slip::stick});
       }

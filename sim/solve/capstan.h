@@ -119,6 +119,11 @@ void add_group_equations(PartSystem& system, SolveScratch& scratch);
 /// After add_group_equations.
 Shortage shortage_of(const Group& group, const PartSystem& system, const CapstanScratch& capstan);
 
+/// Whether a group of which that much is short may bear force: within reach; where nothing is to
+/// that does not do so already, if what is slack of it now did.
+bool may_bear(const Group& group, const Shortage& shortage, const PartSystem& system,
+              const SolveScratch& scratch);
+
 /// Sliding speeds of all runs for the rows' present speeds: those of elastic cables such that their
 /// tensions at the interval's end follow from one another as the impulses do. Slack cable in a
 /// pinch goes with the body that holds it more; its friction on the other is both bodies'.

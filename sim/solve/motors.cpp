@@ -90,7 +90,7 @@ double stretching(const PartSystem& s, const SolveScratch& set, Counts counts) {
   for (const Group& group : capstan.groups) {
     if (!counts(at(capstan.members, group.begin))) continue;
     const Shortage shortage = shortage_of(group, s, capstan);
-    if (shortage.clearance <= set.reach) most = std::max(most, shortage.speed);
+    if (may_bear(group, shortage, s, set)) most = std::max(most, shortage.speed);
   }
   return most;
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/joints.h"
 #include "sim/scene_error.h"
@@ -183,6 +184,63 @@ TEST(MotorLimits, HoldWhatTheyHaveWoundUp) {
         EXPECT_NEAR(now.angular[0], 0.0, 1e-9) << pull << ", " << steps << ": " << i;
       }
     }
+  }
+}
+
+/// A sheave whose brake is put on while its counterweight goes down and its car up.
+Scene elevator(double cable_friction, double limit) {
+  Scene scene = winch(300.0, 0.0, limit);
+  scene.bodies[0].mass = 20.0;
+  scene.bodies[0].angular_velocity = 5.0;
+  scene.bodies[0].cable_friction = cable_friction;
+  Body counterweight = scene.bodies[1];
+  counterweight.name = "counterweight";
+  counterweight.mass = 250.0;
+  counterweight.position = Vec2(-arm, -4.0);
+  scene.bodies.push_back(counterweight);
+  scene.bodies[1].velocity = Vec2(0.0, 5.0 * arm);
+  scene.bodies[2].velocity = Vec2(0.0, -5.0 * arm);
+  scene.cables[0].wraps = {{0, 1}};
+  scene.cables[0].end = {2, Vec2::Zero()};
+  return scene;
+}
+
+// A rope that rubs and does not slip brakes as one that cannot, at the time of the positions too:
+// there the motor was taken to hold without it, and the rope, slack by that, not to come back.
+TEST(MotorLimits, BrakeByARopeThatRubs) {
+  const double limit = 900.0, of_sheave = 0.5 * 20.0 * radius * radius;
+  const double alpha = (limit + 50.0 * g * arm) / (of_sheave + 550.0 * arm * arm);
+  for (const int steps : {1, 4, 16}) {
+    Scene scene = elevator(0.6, limit);
+    scene.steps_per_frame = steps;
+    World world = make_world(scene, Method::pinch);
+    Workspace work, of_table;
+    for (int i = 0; i < 15 * steps; ++i) {
+      ASSERT_EQ(step(scene, world, work), StepStatus::ok) << world.failure;
+      const double turning = 5.0 - alpha * (i + 1) * world.step_length;
+      const Velocities now = velocities_now(scene, world, of_table);
+      ASSERT_NEAR(now.angular[0], turning, 1e-9) << steps << ": " << i;
+      EXPECT_NEAR(now.linear[1].y(), turning * arm, 1e-9) << steps << ": " << i;
+      EXPECT_NEAR(now.linear[2].y(), -turning * arm, 1e-9) << steps << ": " << i;
+    }
+  }
+}
+
+// Velocities are taken on at each corner of a motor's table.
+TEST(MotorLimits, FollowATableByARopeThatRubs) {
+  for (const int steps : {1, 4, 16}) {
+    std::array<Scene, 2> scenes = {elevator(0.6, 500.0), elevator(infinity, 500.0)};
+    for (Scene& scene : scenes) {
+      for (int corner = 0; corner <= 25; ++corner) {
+        const double time = 0.02 * corner;
+        scene.bodies[0].motor.push_back(
+            {time, 2.5 * (1.0 + std::cos(2.0 * std::numbers::pi * time))});
+      }
+    }
+    const World rubs = run_for(scenes[0], 0.5, steps), holds = run_for(scenes[1], 0.5, steps);
+    EXPECT_NEAR(rubs.angle[0], holds.angle[0], 1e-10) << steps;
+    EXPECT_NEAR(rubs.position[1].y(), holds.position[1].y(), 1e-10) << steps;
+    EXPECT_NEAR(rubs.position[2].y(), holds.position[2].y(), 1e-10) << steps;
   }
 }
 
