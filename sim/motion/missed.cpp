@@ -109,7 +109,7 @@ double add_missed(const World& world, const Parts& parts, const Part& part, cons
     // way has bent by what they let it have.
     if (!set.direct && bears && group < 0 && row.compliance == 0.0 &&
         std::abs(missed) <= s.tolerance()) {
-      const double speed = row_speed(s, r);
+      const double speed = row_speed(s, r) + (middle ? sliding_of_run(s, capstan, row) : 0.0);
       if (std::abs(speed) > round_off) curvature -= speed;
     }
     row.bias += curvature;

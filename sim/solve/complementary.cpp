@@ -204,9 +204,8 @@ void Assembly::set_states() {
 namespace {
 
 /// Whether there is nothing but what the conditions above are of.
-bool suits(const PartSystem& s, const SolveScratch& set) {
-  return (s.elastic_ends.empty() || set.capstan.runs.empty()) &&
-         std::ranges::none_of(set.capstan.passages,
+bool suits(const SolveScratch& set) {
+  return std::ranges::none_of(set.capstan.passages,
                               [](const Passage& passage) { return passage.middle_out >= 0; });
 }
 
@@ -256,9 +255,32 @@ bool solve_once(PartSystem& s, SolveScratch& set, double round_off) {
   return false;
 }
 
+/// The laws of elastic segments that may slide for as long as it lives: those of their tensions at
+/// the interval's end, from which sliding speeds follow (elastic.h).
+class EndLaws {
+ public:
+  explicit EndLaws(PartSystem& s) : s_(s) { exchange(); }
+  ~EndLaws() { exchange(); }
+  EndLaws(const EndLaws&) = delete;
+  EndLaws& operator=(const EndLaws&) = delete;
+
+ private:
+  void exchange() {
+    for (std::size_t r = 0; r < s_.elastic_ends.size(); ++r) {
+      ElasticEnd& end = s_.elastic_ends[r];
+      if (end.compliance == 0.0) continue;
+      std::swap(s_.rows[r].bias, end.bias);
+      std::swap(s_.rows[r].compliance, end.compliance);
+    }
+  }
+
+  PartSystem& s_;
+};
+
 }  // namespace
 
 void take_complementary(PartSystem& s, SolveScratch& set) {
+  const EndLaws laws(s);
   Assembly assembly(s, set);
   assembly.clear_rounding(s.reach / set.step_length);
   assembly.set_values();
@@ -270,10 +292,13 @@ void take_complementary(PartSystem& s, SolveScratch& set) {
 
 bool solve_complementary(PartSystem& s, SolveScratch& set) {
   set.left_out = false;
-  if (!suits(s, set)) return false;
+  if (!suits(set)) return false;
   const double round_off = s.reach / set.step_length;
-  leave_round_off(s, round_off);
-  if (!solve_once(s, set, round_off)) return false;
+  {
+    const EndLaws laws(s);
+    leave_round_off(s, round_off);
+    if (!solve_once(s, set, round_off)) return false;
+  }
   take_complementary(s, set);
   return true;
 }

@@ -13,7 +13,10 @@
 //     sigma-                 and  T_out - limit-,            limits by passages from that before
 //     sigma+                 and  p + f+,  sigma- and  -p - f-, of a sleeve's friction p where
 //                                 w = sigma (rubbing.h),
-// with limit+ = k T_in + mu N - p_middle and so on (capstan.h). For z >= 0 the matrix has
+// with limit+ = k T_in + mu N - p_middle and so on (capstan.h). Of elastic cable that may slide p
+// and w are those of its tensions at the interval's end, from which sliding speeds follow
+// (elastic.h): the states are of these, and so are impulses where those of the kick's means
+// contradict them. For z >= 0 the matrix has
 //     z' M z = p' J M^-1 J' p + lambda mu N + sigma+ (k - 1) T_in + ...  >= 0
 // where no middle body that rubs comes before an arc: it is copositive, and Lemke's method finds a
 // solution if velocities are that all conditions allow (lemke.h). Of many unknowns doubles mostly
