@@ -136,6 +136,7 @@ void describe(const World& world, Parts& parts, Part& part) {
     part.dormant = part.dormant || is_dormant(at(world.cables, c));
     part.has_mass = part.has_mass || at(world.cables, c).piece || is_massed(at(world.cables, c));
     part.creeps = part.creeps || at(world.cables, c).creeps;
+    part.stretches = part.stretches || at(world.cables, c).elastic;
     part.may_slide = part.may_slide || slides_somewhere(world, at(world.cables, c));
     part.may_brake = part.may_brake || rubs_somewhere(world, at(world.cables, c));
     part.has_sleeves = part.has_sleeves || has_sleeves(world, at(world.cables, c));

@@ -24,6 +24,7 @@ struct Part {
   double lightest = infinity;                // kg, of the bodies that can do more than turn
   bool can_move = false;                     // a body of it may change gaps: touch.h
   bool creeps = false;                       // a cable of it does
+  bool stretches = false;                    // likewise
   bool may_slide = false;                    // a cable of it touches a body of finite friction,
   bool may_brake = false;                    // of some friction
   bool has_mass = false;                     // a cable of it has, or is a piece between nodes

@@ -76,9 +76,11 @@ struct alignas(64) Link {
 
 /// A place on a rim that carries an elastic cable, and the material that lies on it up to there.
 struct Laid {
-  double place = 0.0;     // m along the rim: p (alpha - angle), see Link, and Rim::slides
-  double material = 0.0;  // m
-  double slope = 1.0;     // m of material in a m of the rim, from here to the next
+  double place = 0.0;          // m along the rim: p (alpha - angle), see Link, and Rim::slides
+  double material = 0.0;       // m
+  double slope = 1.0;          // m of material in a m of the rim, from here to the next
+  Vec2 moment = Vec2::Zero();  // m, integral of slope e up to there, e being the direction of place
+                               // / p; of cables with mass (laid_moment)
 };
 
 /// What a link's rim carries of an elastic cable, stretched as it came on: creep.h.
@@ -114,6 +116,9 @@ struct alignas(64) Segment {
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, when the interval began
   Curvature curvature{};                                            // by note_curvatures
+  double grew = infinity, grew_before = infinity;  // m/s, elastic: by what it has lengthened in the
+                                                   // last two intervals more than its material, by
+                                                   // note_growth
 };
 
 /// The finest piece between two nodes of a cable with mass that runs over bodies, of those whose

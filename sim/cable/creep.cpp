@@ -24,10 +24,29 @@ double place_on_rim(const World& world, const CableState& cable, std::size_t i, 
 /// What comes on of one strain is one piece, but for round-off.
 constexpr double same_slope = 1e-13;
 
+/// The piece on which a place lies that is neither before the first nor after the last.
+const Laid& piece_at(const Rim& rim, double place) {
+  return *(std::upper_bound(rim.laid.begin(), rim.laid.end(), place,
+                            [](double value, const Laid& laid) { return value < laid.place; }) -
+           1);
+}
+
+/// Integral of e over a piece of the rim (m).
+Vec2 moment_of_piece(double p, double from, double to) {
+  return p * (left(direction_at(from / p)) - left(direction_at(to / p)));
+}
+
+/// Of what lies on a rim up to a place, from which on it has that slope. Moments are of cables with
+/// mass, and p that of their circle; else it is 0.
+Laid laid_at(const Rim& rim, double p, double place, double slope) {
+  return {place, laid_material(rim, place), slope,
+          p != 0.0 ? laid_moment(rim, p, place) : Vec2::Zero()};
+}
+
 /// Moves the end at the head to a place beyond it, or back.
-void move_head(Rim& rim, double place) {
+void move_head(Rim& rim, double p, double place) {
   std::vector<Laid>& laid = rim.laid;
-  const Laid end{place, laid_material(rim, place)};
+  const Laid end = laid_at(rim, p, place, 1.0);
   while (laid.size() > 1 && laid[laid.size() - 2].place >= place) laid.pop_back();
   const bool extends = place > laid.back().place;
   if (extends && (laid.size() == 1 ||
@@ -40,9 +59,9 @@ void move_head(Rim& rim, double place) {
 }
 
 /// The same at the tail.
-void move_tail(Rim& rim, double place) {
+void move_tail(Rim& rim, double p, double place) {
   std::vector<Laid>& laid = rim.laid;
-  Laid end{place, laid_material(rim, place), rim.comes_on_at_tail};
+  Laid end = laid_at(rim, p, place, rim.comes_on_at_tail);
   const auto kept =
       std::find_if(laid.begin(), laid.end(), [place](const Laid& l) { return l.place > place; });
   if (kept == laid.end()) {
@@ -60,10 +79,11 @@ void move_tail(Rim& rim, double place) {
 
 /// Ends what the rim carries where the cable leaves it. So little that tensions cannot tell waits
 /// for more to come.
-void keep(Rim& rim, const RimSpan& span, double radius) {
-  const double rounding = 1e-10 * radius;
-  if (std::abs(span.head - rim.laid.back().place) > rounding) move_head(rim, span.head);
-  if (std::abs(span.tail - rim.laid.front().place) > rounding) move_tail(rim, span.tail);
+void keep(const CableState& cable, const Link& link, const RimSpan& span, Rim& rim) {
+  const double rounding = 1e-10 * link.radius;
+  const double p = cable.density > 0.0 ? link.signed_radius() : 0.0;
+  if (std::abs(span.head - rim.laid.back().place) > rounding) move_head(rim, p, span.head);
+  if (std::abs(span.tail - rim.laid.front().place) > rounding) move_tail(rim, p, span.tail);
 }
 
 /// Material that lies in a metre of the rim at its end towards a segment. On one that is hardly
@@ -133,11 +153,29 @@ double laid_material(const Rim& rim, double place) {
   const Laid &first = rim.laid.front(), &last = rim.laid.back();
   if (place <= first.place) return first.material + (place - first.place) * rim.comes_on_at_tail;
   if (place >= last.place) return last.material + (place - last.place) * rim.comes_on_at_head;
-  const auto after =
-      std::upper_bound(rim.laid.begin(), rim.laid.end(), place,
-                       [](double value, const Laid& laid) { return value < laid.place; });
-  const Laid& piece = *(after - 1);
+  const Laid& piece = piece_at(rim, place);
   return piece.material + (place - piece.place) * piece.slope;
+}
+
+Vec2 laid_moment(const Rim& rim, double p, double place) {
+  const Laid &first = rim.laid.front(), &last = rim.laid.back();
+  const auto from = [p, place](const Laid& laid, double slope) -> Vec2 {
+    return laid.moment + slope * moment_of_piece(p, laid.place, place);
+  };
+  if (place <= first.place) return from(first, rim.comes_on_at_tail);
+  if (place >= last.place) return from(last, rim.comes_on_at_head);
+  const Laid& piece = piece_at(rim, place);
+  return from(piece, piece.slope);
+}
+
+void sum_moments(CableState& cable, std::size_t i) {
+  if (cable.density == 0.0) return;
+  const double p = cable.links[i].signed_radius();
+  std::vector<Laid>& laid = cable.rims[i].laid;
+  for (std::size_t k = 1; k < laid.size(); ++k) {
+    const Laid& before = laid[k - 1];
+    laid[k].moment = before.moment + before.slope * moment_of_piece(p, before.place, laid[k].place);
+  }
 }
 
 double place_of_laid(const Rim& rim, double material) {
@@ -171,6 +209,7 @@ void begin_to_carry(const World& world, CableState& cable, std::size_t i, double
   if (span.head > span.tail) {
     laid.push_back({span.head, span.tail + (span.head - span.tail) * slope, slope});
   }
+  sum_moments(cable, i);
 }
 
 // The strain at the middle of the interval to come is extrapolated from those at its start and at
@@ -179,7 +218,7 @@ void lay_down(const World& world, CableState& cable, double time) {
   if (cable.rims.empty()) return;
   for (std::size_t i = 0; i < cable.links.size(); ++i) {
     Rim& rim = cable.rims[i];
-    if (!rim.laid.empty()) keep(rim, span_on_rim(world, cable, i), cable.links[i].radius);
+    if (!rim.laid.empty()) keep(cable, cable.links[i], span_on_rim(world, cable, i), rim);
   }
   if (slides_somewhere(world, cable)) {
     if (cable.density == 0.0) relax_rims(world, cable, time);
@@ -235,6 +274,7 @@ void lay_on_rim(const World& world, CableState& cable, int link, std::span<const
       laid.push_back({place, laid.back().material + width * slope, slope});
     }
   }
+  sum_moments(cable, index(link));
   shift_material(cable, link, before + later - tail_material(cable, index(link), angle));
 }
 

@@ -24,7 +24,13 @@ namespace pinchlab {
 /// Material on a rim up to a place (m), beyond what lies there by what comes on.
 double laid_material(const Rim& rim, double place);
 
-/// The same near the end where the cable leaves the rim, or comes to it: whichever way the place
+/// Laid::moment up to a place on the rim of a link's circle, of signed radius p.
+Vec2 laid_moment(const Rim& rim, double p, double place);
+
+/// Finds the moments of all that a link's rim carries, if its cable has mass.
+void sum_moments(CableState& cable, std::size_t link);
+
+/// Material near the end where the cable leaves the rim, or comes to it: whichever way the place
 /// lies off that by round-off, without a jump.
 inline double laid_near_end(const Rim& rim, bool at_head, double place) {
   const std::size_t last = rim.laid.size() - 1;

@@ -42,6 +42,7 @@ void take_over(CableState& cable, int link, int later) {
       all.push_back({place, laid.material + shift, laid.slope});
     }
   }
+  sum_moments(cable, index(link));
 }
 
 /// What the spans between two links had more than lies there now that these are one is with the

@@ -96,18 +96,17 @@ void lie_on_rim(const CableState& cable, const Link& link, const Vec2& comes, co
   arc.second = arc.mass * squared;
 }
 
-/// The same piece by piece, of what the rim has carried over as stretched as it came on.
+/// The same of what the rim has carried over as stretched as it came on.
 void lie_as_laid(const World& world, const CableState& cable, std::size_t i, MassedArc& arc) {
   const Link& link = cable.links[i];
+  const Rim& rim = cable.rims[i];
   const double p = link.signed_radius();
   const double angle = body_angle(world, link) - origin_of_rim(cable, i) / p;
+  const RimSpan on = span_on_rim(world, cable, i);
   arc.kept = true;
-  each_piece(world, cable, i, [&](double from, double to, double slope) {
-    const double mass = cable.density * slope;  // kg/m
-    const Vec2 comes = direction_at(from / p + angle), goes = direction_at(to / p + angle);
-    arc.mass += mass * (to - from);
-    arc.first += mass * p * p * (left(comes) - left(goes));
-  });
+  arc.mass = cable.density * (laid_material(rim, on.head) - laid_material(rim, on.tail));
+  arc.first = cable.density * p *
+              turned(laid_moment(rim, p, on.head) - laid_moment(rim, p, on.tail), angle);
   arc.second = arc.mass * p * p;
 }
 

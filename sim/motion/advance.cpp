@@ -21,7 +21,6 @@
 #include "sim/motion/interval.h"
 #include "sim/motion/repair.h"
 #include "sim/solve/forces.h"
-#include "sim/solve/foresight.h"
 #include "sim/touch.h"
 #include "sim/workspace.h"
 
@@ -181,24 +180,6 @@ StepStatus fail_by_changes(World& world) {
       "step {} (t = {} s): cables meet and leave bodies without end; move apart what they are in",
       world.step, world.time());
   return StepStatus::failed;
-}
-
-/// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was, and its
-/// pace; `met`: nothing happened in it, and lengths and gaps are exact.
-void note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
-               double length, bool met) {
-  const Pace before = pace_of(world, work.parts, part);
-  Pace after{.lag = 0.5 * length};
-  if (met && trial.settled) {
-    const double allowed = share_of_error * world.configuration.error;
-    after = pace_after(before, {length, trial.foreseen, trial.local_error, allowed});
-    const int known = after.intervals - 1;
-    const bool curved = known > 0 && before.curved;
-    if (curved || (known >= 0 && trial.curves)) {
-      after.curved = note_curvatures(at(work.systems, part.system), length, known, curved, world);
-    }
-  }
-  if (after != before) set_pace(world, work.parts, part, after);
 }
 
 /// Whether forces jump by these, and nothing meets or comes off.

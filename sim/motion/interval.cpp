@@ -11,6 +11,8 @@
 #include "sim/motion/part_trial.h"
 #include "sim/motion/turning.h"
 #include "sim/motion/vanishing.h"
+#include "sim/solve/elastic.h"
+#include "sim/solve/foresight.h"
 #include "sim/workspace.h"
 
 namespace pinchlab {
@@ -402,6 +404,23 @@ bool cross_interval(const Scene& scene, World& world, Workspace& work, const Mov
     try_again(scene, world, work, movers, attempt, watch);
   }
   return false;
+}
+
+void note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
+               double length, bool met) {
+  const Pace before = pace_of(world, work.parts, part);
+  Pace after{.lag = 0.5 * length};
+  if (met && trial.settled) {
+    const double allowed = share_of_error * world.configuration.error;
+    after = pace_after(before, {length, trial.foreseen, trial.local_error, allowed});
+    const int known = after.intervals - 1;
+    const bool curved = known > 0 && before.curved;
+    if (curved || (known >= 0 && trial.curves)) {
+      after.curved = note_curvatures(at(work.systems, part.system), length, known, curved, world);
+    }
+  }
+  if (part.stretches) note_growth(at(work.systems, part.system), length, world);
+  if (after != before) set_pace(world, work.parts, part, after);
 }
 
 }  // namespace pinchlab

@@ -11,6 +11,7 @@
 namespace pinchlab {
 
 struct IntervalTrial;
+struct Part;
 struct Workspace;
 
 /// The share of Configuration::error that one interval may err by. Intervals' errors add up, and an
@@ -61,5 +62,10 @@ double length_to_try(const World& world, const Workspace& work, std::span<const 
 
 /// Puts these back to where their interval began.
 void go_back(World& world, Workspace& work, std::span<const int> parts);
+
+/// Notes how a part's ways bend in an interval of `length` (s), whose last trial that was, how fast
+/// it stretches, and its pace; `met`: nothing happened in it, and lengths and gaps are exact.
+void note_ways(World& world, const Workspace& work, const Part& part, const IntervalTrial& trial,
+               double length, bool met);
 
 }  // namespace pinchlab

@@ -115,9 +115,10 @@ bool goes_straight(const World& world, const Segment& segment, const Link& from,
   return back * back * way.squaredNorm() <= least * least;
 }
 
-/// m/s, dC/dt(v-) of a row of segment in the mean, and by what rims carry less than they turn.
+/// m/s, -dC/dt(v-) of a row of segment in the mean, by what rims carry less than they turn, and
+/// what the former was an interval earlier, where intervals are steady; else infinite.
 struct Lengthening {
-  double before = 0.0, creep = 0.0;
+  double before = 0.0, creep = 0.0, earlier = infinity;
 };
 
 Lengthening lengthening(const World& world, const Segment& segment, const TimeSpan& t,
@@ -153,13 +154,19 @@ struct Spring {
 /// The row of a segment in an interval, which lengthens so, `damped` being its a - b.
 void make_row(const Cable& given, const Segment& segment, const TimeSpan& t, Spring spring,
               Lengthening lengthens, double damped, PartSystem& s, int number) {
-  const auto [before, creep] = lengthens;
+  const double before = lengthens.before, creep = lengthens.creep;
   const bool both_ways = given.rod;
   Row& row = at(s.rows, number);
   const double h = t.length;
   const double b = 0.25 * (1.0 - damped);
   double known = known_part(t, damped, spring.clearance, before);
   double scale = b * h * h + damped * h * t.kick;  // s^2
+  if (damped > 0.0 && lengthens.earlier < infinity) {
+    const double at_end = b + damped * 8.0 / 27.0, at_start = damped / 27.0;  // w_1, w_-2
+    const double since = b + damped * 7.0 / 27.0;                             // w_-1 + w_-2
+    known = h * (spring.clearance + h * (since * before + at_start * lengthens.earlier));
+    scale = at_end * h * h;
+  }
   if (given.damping > 0.0) {
     const double damper = spring.flexibility * given.damping * t.kick;  // s^2
     const double taken = given.damping * t.kick * row.diagonal;
@@ -338,8 +345,9 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   if (flexibility == 0.0) return;
   const double damped = damped_share(world, t, flexibility, row.diagonal);
   if (t.length == 0.0 && damped > 0.0) return;
-  const Lengthening lengthens = lengthening(world, segment, t, s, number);
+  Lengthening lengthens = lengthening(world, segment, t, s, number);
   if (t.length > 0.0) {
+    if (t.steady) lengthens.earlier = segment.grew_before;
     const Spring spring{flexibility, row.clearance};
     return make_row(given, segment, t, spring, lengthens, damped, s, number);
   }
@@ -379,6 +387,15 @@ void make_all_elastic(const Scene& scene, const World& world, const Parts& parts
       make_rows(section, t, s);
       section.first = i + 1;
     }
+  }
+}
+
+void note_growth(const PartSystem& s, double length, World& world) {
+  for (const Row& row : s.rows) {
+    if (row.kind != RowKind::segment || row.compliance == 0.0) continue;
+    Segment& segment = at(at(world.cables, row.index).segments, row.item);
+    segment.grew_before = segment.grew;
+    segment.grew = (row.clearance - (segment.rest_length - segment.length)) / length;
   }
 }
 

@@ -14,6 +14,15 @@
 // of a way that turns (motion/missed.h): then the rule is the same in both directions of time. At
 // an instant (h = 0) such a cable is inextensible.
 //
+// That damps slow vibrations of the same cable as well, by far more than is theirs: a load that
+// bobs on a rope with light nodes comes to rest. Where two more intervals of this length came just
+// before, the share d = a - b is of a mean over four positions instead,
+//     C = sum w_j C_n+j,  j = 1, 0, -1, -2,  w = (1 - d) (1, 2, 1, 0) / 4 + d (8, 12, 6, 1) / 27,
+// the latter being (z + 1/2)^3 made 1 at z = 1: sum j w_j = 0, so that it is of second order, and
+// what is slow is damped by (omega h)^3 / 27 a step at most; what is infinitely stiff is halved by
+// each, and nothing grows whatever s and d are (the roots of z (z - 1)^2 + s w(z)). Not of cable
+// that slides without mass, whose groups come and go.
+//
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //
 // Where cable slides over bodies, the tensions of a group of segments follow one another (the
@@ -45,5 +54,9 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
 /// The same for all segments of a part whose cables may slide over bodies.
 void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                       const TimeSpan& t, PartSystem& s);
+
+/// Notes how much the elastic segments that have rows have grown in an interval of such a length
+/// (s) that is over: Segment::grew.
+void note_growth(const PartSystem& s, double length, World& world);
 
 }  // namespace pinchlab

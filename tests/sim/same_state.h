@@ -16,7 +16,8 @@ inline bool same_layers(const Layers& p, const Layers& q) {
 }
 
 inline bool same_laid(const Laid& p, const Laid& q) {
-  return p.place == q.place && p.material == q.material && p.slope == q.slope;
+  return p.place == q.place && p.material == q.material && p.slope == q.slope &&
+         p.moment == q.moment;
 }
 
 inline bool same_rim(const Rim& p, const Rim& q) {
