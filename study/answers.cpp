@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using namespace nlohmann::literals;
 
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
@@ -131,7 +130,7 @@ void save_answers(const fs::path& path, const ordered_json& file) {
   }
 }
 
-std::optional<Withdrawn> withdraw(const fs::path& folder, const std::string& code) {
+std::optional<std::string> withdraw(const fs::path& folder, const std::string& code) {
   const std::string hash = withdrawal_hash(code);
   if (hash.empty()) {
     throw std::invalid_argument(fmt::format(
@@ -141,12 +140,7 @@ std::optional<Withdrawn> withdraw(const fs::path& folder, const std::string& cod
     const nlohmann::json file = read_answer_json(path);
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
-      Withdrawn withdrawn{path.stem().string(), {}, ""};
-      const nlohmann::json number = file.value("participant_number", nlohmann::json());
-      if (number.is_number_unsigned()) withdrawn.number = number.get<std::uint64_t>();
-      const nlohmann::json id = file.value("/recruited/participant"_json_pointer, nlohmann::json());
-      if (id.is_string()) withdrawn.recruited = id.get<std::string>();
-      return withdrawn;
+      return path.stem().string();
     }
   }
   return std::nullopt;

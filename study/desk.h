@@ -132,8 +132,8 @@ class Desk {
   Progress preview(std::uint64_t number);
 
   /// Removes the answers of who has this withdrawal code, and returns the participant's id. The
-  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have
-  /// it.
+  /// number goes to the next who comes, as it does where `study withdraw` has removed them.
+  /// Refused: 422 for what is no code, 404 where no answers have it.
   std::string withdraw(const std::string& code);
 
   [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
@@ -162,6 +162,11 @@ class Desk {
     std::shared_ptr<Entry> entry;
     std::uint64_t signs = 0;  // when chosen; who has given another one since, stays
   };
+  // What somebody takes up whose answers are saved.
+  struct Finished {
+    std::optional<std::uint64_t> number;  // none in files that tell none
+    std::string recruited;                // id at the site that sent them; empty: none did
+  };
   struct Media {
     const PairFiles* files;
     Side side;
@@ -179,6 +184,7 @@ class Desk {
             std::optional<std::uint64_t> signs = std::nullopt);
   void forget(const std::string& id) const;
   void sweep() const;
+  void free_withdrawn();
   std::optional<Leaver> who_makes_room(const std::string& link, const std::string& address,
                                        const Recruited& recruited);
   void take(const Session& session);
@@ -201,10 +207,11 @@ class Desk {
   std::map<std::string, Place> places_;  // by participant, who is running
   std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;
-  std::set<std::uint64_t> taken_;     // numbers of running and finished participants
-  std::set<std::uint64_t> starting_;  // of them, whose session is not on the disk yet
-  std::set<std::string> recruited_;   // their ids at the site that sent them
-  std::size_t finished_ = 0, left_ = 0;
+  std::set<std::uint64_t> taken_;             // numbers of running and finished participants
+  std::set<std::uint64_t> starting_;          // of them, whose session is not on the disk yet
+  std::set<std::string> recruited_;           // their ids at the site that sent them
+  std::map<std::string, Finished> finished_;  // by participant
+  std::size_t left_ = 0;
 };
 
 }  // namespace pinchlab::study

@@ -46,14 +46,16 @@ void Desk::read_finished() {
           options_.config.is_pilot ? "is of the study, and this is a pilot"
                                    : "is of a pilot, and this is the study"));
     }
+    Finished& finished = finished_[path.stem().string()];
     if (file.value("participant_number", json()).is_number_unsigned()) {
-      taken_.insert(file["participant_number"].get<std::uint64_t>());
+      finished.number = file["participant_number"].get<std::uint64_t>();
+      taken_.insert(*finished.number);
     }
     if (file.contains("recruited")) {
-      recruited_.insert(
-          read_recruited(JsonObject(file["recruited"], path.string(), "/recruited")).participant);
+      finished.recruited =
+          read_recruited(JsonObject(file["recruited"], path.string(), "/recruited")).participant;
+      recruited_.insert(finished.recruited);
     }
-    ++finished_;
   }
 }
 
@@ -92,6 +94,30 @@ void Desk::sweep() const {
       if (is_archive || is_partial_of(name, ".json")) partial.push_back(file.path());
     }
     std::ranges::for_each(partial, remove_durably);
+  }
+}
+
+// Whoever's answers are gone has withdrawn them, here or by `study withdraw`, and holds no place
+// any more, as after a restart. Where the folder itself is away, nobody has.
+void Desk::free_withdrawn() {
+  std::vector<std::string> gone;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [id, finished] : finished_) gone.push_back(id);
+  }
+  std::erase_if(gone, [&](const std::string& id) {
+    std::error_code unknown;
+    return fs::exists(answer_path(options_.answers, id), unknown) || unknown;
+  });
+  std::error_code unknown;
+  if (gone.empty() || !fs::exists(running_folder(options_.answers), unknown)) return;
+  const std::scoped_lock lock(mutex_);
+  for (const std::string& id : gone) {
+    const auto finished = finished_.extract(id);
+    if (finished.empty()) continue;  // by somebody else meanwhile
+    if (finished.mapped().number) taken_.erase(*finished.mapped().number);
+    recruited_.erase(finished.mapped().recruited);
+    options_.tell(fmt::format("the answers of {} are withdrawn; the place is free", id));
   }
 }
 

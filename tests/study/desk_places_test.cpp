@@ -14,6 +14,7 @@
 #include "analysis/answers_table.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
+#include "study/answers.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -222,6 +223,27 @@ TEST(Desk, PlacesAreReleased) {
   desk.release(second.substr(0, 16));
   EXPECT_EQ(refused([&] { desk.progress(second); }), 401);
   desk.start("", "");
+}
+
+// As `study withdraw` does it, which tells a running server nothing.
+TEST(Desk, ThePlaceOfAnswersThatAreGoneIsFree) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  options.config.participant_limit = 2;
+  Desk desk(std::move(options));
+  const auto take_part_as_is = [&] { return take_part(desk, [](json&) {}); };
+  const std::string code = take_part_as_is();
+  take_part_as_is();
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  fs::rename(folder / "answers", folder / "away");
+  EXPECT_NE(refused([&] { desk.start("", ""); }), 0) << "a disk that is gone is nobody's wish";
+  fs::rename(folder / "away", folder / "answers");
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  EXPECT_TRUE(withdraw(folder / "answers", code));
+  EXPECT_EQ(desk.overview().finished, 1U);
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.at(0).number, 0U);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
 }
 
 TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
