@@ -56,6 +56,9 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   if (!options_.utc_now) {
     options_.utc_now = &utc_now;
   }
+  if (!options_.steady_now) {
+    options_.steady_now = &std::chrono::steady_clock::now;
+  }
   if (!options_.tell) {
     options_.tell = [](const std::string&) {};
   }
@@ -179,7 +182,7 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
   note(entry->session);
-  ++places_.at(next.id).signs;
+  see(next.id);
   offer(entry->session, entry->session.answers.size());
 }
 

@@ -38,6 +38,8 @@ struct DeskOptions {
   std::size_t most_unanswered = 500;  ///< of one address, participants who have not answered yet
   std::chrono::seconds longest_idle{24 * 3600};  ///< without a sign, before a place is released
   std::function<std::string()> utc_now;
+  /// How much time goes by, where nobody sets the clock: by it places are released.
+  std::function<std::chrono::steady_clock::time_point()> steady_now;
   std::function<void(const std::string&)> tell;  ///< who started, finished, left
 };
 
@@ -153,7 +155,7 @@ class Desk {
     std::shared_ptr<Entry> entry;
     std::string address;      // where the participant started; never on the disk
     std::uint64_t order = 0;  // of starting
-    std::chrono::sys_seconds seen;
+    std::chrono::steady_clock::time_point seen;
     std::uint64_t signs = 0;    // of somebody there: requests since the start that are noted
     bool is_shown = false;      // the first clip, at least
     bool has_answered = false;  // a trial, or questions
@@ -175,7 +177,8 @@ class Desk {
 
   void read_finished();
   void read_running();
-  void add(const std::shared_ptr<Entry>& entry, const std::string& address);
+  void add(const std::shared_ptr<Entry>& entry, const std::string& address,
+           std::chrono::seconds since_seen = {});
   void note(const Session& session);
   void see(const std::string& id);
   void offer(const Session& session, std::size_t trial);

@@ -78,7 +78,10 @@ void Desk::read_running() {
       remove_durably(path);
       continue;
     }
-    add(entry, "");
+    // By the calendar: how much time has gone by since the server ended, no other clock knows.
+    const auto last_seen = parse_utc(entry->session.last_seen_utc);
+    const std::chrono::seconds since = parse_utc(options_.utc_now()) - last_seen;
+    add(entry, "", std::clamp(since, std::chrono::seconds(0), options_.longest_idle));
   }
 }
 
@@ -121,11 +124,13 @@ void Desk::free_withdrawn() {
   }
 }
 
-void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
+void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address,
+               std::chrono::seconds since_seen) {
   const Session& session = entry->session;
   for (std::size_t i = 0; i < session.plan.size(); ++i) offer(session, i);
   take(session);
-  places_[session.id] = {entry, address, ++starts_, {}, 0, false, false};
+  const auto seen = options_.steady_now() - since_seen;
+  places_[session.id] = {entry, address, ++starts_, seen, 0, false, false};
   note(session);
 }
 
@@ -155,16 +160,15 @@ void Desk::offer(const Session& session, std::size_t trial) {
 void Desk::note(const Session& session) {
   const auto place = places_.find(session.id);
   if (place != places_.end()) {
-    place->second.seen = parse_utc(session.last_seen_utc);
     place->second.is_shown = !session.answers.empty() || !session.shown_utc.empty();
     place->second.has_answered = !session.answers.empty() || !session.questionnaires.empty();
   }
 }
 
-// A sign of somebody that changes nothing. Under mutex_.
+// A sign of somebody. Under mutex_.
 void Desk::see(const std::string& id) {
   if (const auto place = places_.find(id); place != places_.end()) {
-    place->second.seen = parse_utc(options_.utc_now());
+    place->second.seen = options_.steady_now();
     ++place->second.signs;
   }
 }
@@ -209,7 +213,7 @@ void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
 }
 
 void Desk::drop_idle() {
-  const auto now = parse_utc(options_.utc_now());
+  const auto now = options_.steady_now();
   std::vector<Leaver> idle;
   {
     const std::scoped_lock lock(mutex_);
@@ -245,7 +249,7 @@ void Desk::release(const std::string& id) {
 std::optional<Desk::Leaver> Desk::who_makes_room(const std::string& link,
                                                  const std::string& address,
                                                  const Recruited& recruited) {
-  const auto now = parse_utc(options_.utc_now());
+  const auto now = options_.steady_now();
   const std::scoped_lock lock(mutex_);
   const auto has_only_started = [](const Place& place) {
     return place.signs == 0 && !place.is_shown && !place.has_answered;

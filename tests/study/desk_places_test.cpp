@@ -44,7 +44,7 @@ TEST(Desk, WhoLeavesIsReplaced) {
 TEST(Desk, IdleSessionsEndAfterADay) {
   DeskOptions options = desk_options(scratch_folder());
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   Desk desk(std::move(options));
   const std::string token = desk.start("", "");
   *now = "2026-11-21T11:59:59.000Z";
@@ -64,9 +64,9 @@ TEST(Desk, IdleSessionsEndAlsoWhileNobodyComes) {
   const fs::path folder = scratch_folder();
   auto is_next_day = std::make_shared<std::atomic<bool>>(false);
   DeskOptions options = desk_options(folder);
-  options.utc_now = [is_next_day] {
+  set_clock(options, [is_next_day] {
     return *is_next_day ? "2026-11-21T12:00:00.000Z" : "2026-11-20T12:00:00.000Z";
-  };
+  });
   ServerOptions often;
   often.idle_check = std::chrono::milliseconds(5);
   RunningServer running(std::move(options), often);
@@ -84,7 +84,7 @@ TEST(Desk, IdleSessionsEndAtARestart) {
   const fs::path folder = scratch_folder();
   const auto at = [&](const char* now) {
     DeskOptions options = desk_options(folder);
-    options.utc_now = [now] { return now; };
+    set_clock(options, [now] { return now; });
     return options;
   };
   const std::string first = Desk(at("2026-11-20T12:00:00.000Z")).start("", "");
@@ -95,11 +95,33 @@ TEST(Desk, IdleSessionsEndAtARestart) {
   EXPECT_EQ(desk.overview().left, 1U);
 }
 
+// Set by a network, or by hand: nobody has been away for a day.
+TEST(Desk, AClockThatIsSetEndsNoSession) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  std::string now = "2026-11-20T12:00:00.000Z";
+  options.utc_now = [&] { return now; };
+  options.config.participant_limit = 2;
+  Desk desk(std::move(options));
+  const std::string before = desk.start("", "");
+  for (const char* set : {"2026-11-22T12:00:00.000Z", "2026-11-18T12:00:00.000Z"}) {
+    now = set;
+    desk.drop_idle();
+    EXPECT_EQ(refused([&] { desk.resume(before); }), 0) << set;
+  }
+  const std::string after = desk.start("", "");
+  now = "2026-11-20T12:00:00.000Z";
+  desk.drop_idle();
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409) << "nobody is away for five minutes either";
+  EXPECT_EQ(refused([&] { desk.progress(before); }), 0);
+  EXPECT_EQ(refused([&] { desk.progress(after); }), 0);
+}
+
 TEST(Desk, WhoWaitsForAFullDiskIsNotIdle) {
   const fs::path folder = scratch_folder();
   std::string now = "2026-11-20T12:00:00.000Z";
   DeskOptions options = desk_options(folder);
-  options.utc_now = [&] { return now; };
+  set_clock(options, [&] { return now; });
   options.longest_idle = std::chrono::minutes(30);
   Desk desk(std::move(options));
   const std::string token = desk.start("", "");
@@ -202,7 +224,7 @@ TEST(Desk, PlacesAreReleased) {
   const fs::path folder = scratch_folder();
   DeskOptions options = desk_options(folder);
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   options.config.participant_limit = 1;
   options.longest_idle = std::chrono::minutes(30);
   Desk desk(std::move(options));
@@ -250,7 +272,7 @@ TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
   const fs::path folder = scratch_folder();
   DeskOptions options = desk_options(folder);
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   options.config.participant_limit = 16;
   options.most_unanswered = 20;
   Desk desk(std::move(options));
@@ -278,7 +300,7 @@ struct SmallStudy {
   explicit SmallStudy(const fs::path& folder, bool has_links = false)
       : desk([&] {
           DeskOptions options = desk_options(folder);
-          options.utc_now = [this] { return now; };
+          set_clock(options, [this] { return now; });
           options.config.participant_limit = 3;
           options.config.one_time_links = has_links;
           Question age;
