@@ -47,6 +47,7 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   }
   optional_count(object, "loops_watched");
   trial.frame_count = optional_count(object, "frame_count");
+  if (object.has("frame_count")) check_frames(object, trial.frame_count, trial.dropped_frames);
   for (const char* key : {"loop_gap_median_s", "loop_gap_max_s"}) {
     if (object.has(key)) object.number(key, -1.0, 86400.0);
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/told_trial.h"
 
+#include <fmt/format.h>
+
 namespace pinchlab {
 
 ToldChoice read_choice(JsonObject& object) {
@@ -14,6 +16,13 @@ ToldChoice read_choice(JsonObject& object) {
                 "must be left, right or tie as `preference` is less than, more than, or 0");
   }
   return told;
+}
+
+void check_frames(JsonObject& object, long frame_count, long dropped_frames) {
+  if (dropped_frames <= frame_count) return;
+  object.fail("dropped_frames", fmt::format("{} is more than `frame_count` ({}), which counts them "
+                                            "too; correct what recorded them",
+                                            dropped_frames, frame_count));
 }
 
 }  // namespace pinchlab

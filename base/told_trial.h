@@ -17,4 +17,7 @@ struct ToldChoice {
 /// Reads `choice`, which follows from `preference` where there is one. Throws InputError.
 ToldChoice read_choice(JsonObject& object);
 
+/// Throws InputError if more frames are told to be dropped than there were.
+void check_frames(JsonObject& object, long frame_count, long dropped_frames);
+
 }  // namespace pinchlab

@@ -68,6 +68,7 @@ TrialAnswer read_answer(JsonObject& object) {
   answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
   answer.frame_count = whole(object, "frame_count", most_frames);
   answer.dropped_frames = whole(object, "dropped_frames", most_frames);
+  check_frames(object, answer.frame_count, answer.dropped_frames);
   answer.loop_gap_median_s = optional_seconds(object, "loop_gap_median_s");
   answer.loop_gap_max_s = optional_seconds(object, "loop_gap_max_s");
   for (const json& entry : object.array("playback_errors", 100)) {

@@ -250,7 +250,7 @@ class Watch {
       loops_watched: this.loops,
       focus_lost_count: this.focusLost,
       dropped_frames: droppedVideoFrames,
-      frame_count: totalVideoFrames,
+      frame_count: Math.max(totalVideoFrames, droppedVideoFrames),  // dropped ones among them, also where a browser miscounts
       ...(gaps.length > 0 && { loop_gap_median_s: median(gaps), loop_gap_max_s: gaps.at(-1) }),
       playback_errors: this.errors,
     };

@@ -282,6 +282,7 @@ TEST(Malformed, AnswerFileValues) {
       {"/trials/1/loops_watched", 1.5, "whole number"},
       {"/trials/1/focus_lost_count", -1, "whole number"},
       {"/trials/1/dropped_frames", "0", "whole number"},
+      {"/trials/1/dropped_frames", 901, "901 is more than `frame_count` (900)"},
       {"/trials/1/loop_gap_max_s", -2, "loop_gap_max_s"},
       {"/trials/1/playback_errors", 0, "must be an array"},
       {"/trials/1/playback_errors", json::array({1}), "must hold strings"},
