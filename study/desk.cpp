@@ -84,14 +84,7 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
   }
   drop_idle();
   free_withdrawn();
-  try {
-    if (const auto leaver = who_makes_room(link, address, recruited)) {
-      drop(leaver->entry, "had answered no trial and made room", leaver->signs);
-    }
-  } catch (const std::exception& error) {
-    options_.tell(fmt::format("a place cannot be released: {}", error.what()));
-    throw Refused(503, "the disk does not take it");
-  }
+  make_room(link, address, recruited);
   const std::string secret = random_hex(16);
   auto entry = std::make_shared<Entry>();
   Session& session = entry->session;

@@ -188,6 +188,7 @@ class Desk {
   void forget(const std::string& id) const;
   void sweep() const;
   void free_withdrawn();
+  void make_room(const std::string& link, const std::string& address, const Recruited& recruited);
   std::optional<Leaver> who_makes_room(const std::string& link, const std::string& address,
                                        const Recruited& recruited);
   void take(const Session& session);

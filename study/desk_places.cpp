@@ -301,6 +301,18 @@ std::optional<Desk::Leaver> Desk::who_makes_room(const std::string& link,
   return oldest(is_away);
 }
 
+void Desk::make_room(const std::string& link, const std::string& address,
+                     const Recruited& recruited) {
+  try {
+    if (const auto leaver = who_makes_room(link, address, recruited)) {
+      drop(leaver->entry, "had answered no trial and made room", leaver->signs);
+    }
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("a place cannot be released: {}", error.what()));
+    throw Refused(503, "the disk does not take it");
+  }
+}
+
 std::string Desk::link_of(std::uint64_t number) const {
   return sha256(fmt::format("link {} {}", study_.link_secret, number)).substr(0, 32);
 }
