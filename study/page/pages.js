@@ -278,8 +278,9 @@ export function questions(stage, texts, onLeave) {
 const nextParticipant = (texts, onNext) => (onNext ? [make('div', { class: 'row' },
   make('button', { type: 'button', id: 'next-participant', onclick: onNext }, texts.next_participant))] : []);
 
+// In one line, as JATOS exports results, so that it can be imported as one.
 function offerDownload(content) {
-  const url = URL.createObjectURL(new Blob([JSON.stringify(content, null, 2)], { type: 'application/json' }));
+  const url = URL.createObjectURL(new Blob([JSON.stringify(content), '\n'], { type: 'application/json' }));
   make('a', { href: url, download: 'answers.json' }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
