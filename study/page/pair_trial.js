@@ -281,7 +281,7 @@ function side(choices, texts) {
       decide(choice, 'keyboard');
     };
     const buttons = ['left', 'right'].map((choice) => make('button', {
-      type: 'button', id: choice, 'aria-label': texts[`${choice}_label`], onclick: (event) => decide(choice, inputOf(event)),
+      type: 'button', id: choice, 'aria-label': `${texts[choice]}: ${texts[`${choice}_label`]}`, onclick: (event) => decide(choice, inputOf(event)),
     }, texts[choice]));
     choices.replaceChildren(buttons[0], make('p', { class: 'arrows hint' }, texts.arrow_hint), buttons[1]);
     addEventListener('keydown', onKey);

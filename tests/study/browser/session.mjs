@@ -91,6 +91,7 @@ test('with the keyboard only', () => withStudy({ language: 'sv' }, async (server
   const expected = ['left', 'right', 'left'];
   for (const [i, key] of ['ArrowLeft', 'ArrowRight', 'Tab'].entries()) {
     await page.waitForSelector('#left');
+    await assertAccessible(page, 'Swedish trial');
     const remaining = await page.textContent('#remaining');
     if (key === 'Tab') {
       await tabTo('left');
