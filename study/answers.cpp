@@ -8,6 +8,7 @@
 
 #include "base/answer_file.h"
 #include "base/durable_file.h"
+#include "base/input_error.h"
 #include "base/read_file.h"
 #include "study/secrets.h"
 
@@ -137,7 +138,13 @@ std::optional<std::string> withdraw(const fs::path& folder, const std::string& c
         "`{}` is no withdrawal code; it looks like 7K3M-9Q2X-0BVA", code.substr(0, 60)));
   }
   for (const fs::path& path : answer_files(folder)) {
-    const nlohmann::json file = read_answer_json(path);
+    nlohmann::json file;
+    try {
+      file = read_answer_json(path);
+    } catch (const InputError&) {
+      if (!fs::exists(path)) continue;  // withdrawn since the folder was listed
+      throw;
+    }
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
       return path.stem().string();

@@ -268,6 +268,33 @@ TEST(Desk, ThePlaceOfAnswersThatAreGoneIsFree) {
   EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
 }
 
+// Files that another one removes meanwhile are nobody's concern.
+TEST(Withdraw, SeveralAtOnce) {
+  const fs::path folder = scratch_folder();
+  constexpr int people = 128, threads = 4;
+  std::vector<std::string> codes;
+  for (int i = 0; i < people; ++i) {
+    codes.push_back(withdrawal_code(random_hex(16)));
+    write_text(folder / (std::to_string(i) + ".json"),
+               json{{"withdrawal_code_sha256", withdrawal_hash(codes.back())}}.dump());
+  }
+  std::atomic<int> removed = 0, failed = 0;
+  const auto withdraw_every = [&](int first) {
+    for (int i = first; i < people; i += threads) {
+      try {
+        removed += withdraw(folder, codes.at(static_cast<std::size_t>(i))) ? 1 : 0;
+      } catch (const std::exception&) {
+        ++failed;
+      }
+    }
+  };
+  std::vector<std::thread> running;
+  for (int i = 0; i < threads; ++i) running.emplace_back(withdraw_every, i);
+  for (std::thread& thread : running) thread.join();
+  EXPECT_EQ(failed, 0);
+  EXPECT_EQ(removed, people);
+}
+
 TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
   const fs::path folder = scratch_folder();
   DeskOptions options = desk_options(folder);
