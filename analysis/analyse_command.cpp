@@ -20,6 +20,7 @@
 #include "analysis/threshold_report.h"
 #include "base/did_you_mean.h"
 #include "base/number_option.h"
+#include "base/rates.h"
 #include "base/text_checks.h"
 
 namespace pinchlab::analysis {
@@ -77,8 +78,6 @@ std::map<std::string, std::string> column_map(const std::vector<std::string>& pa
   return columns;
 }
 
-constexpr double most_guessed = 0.9, most_lapsed = 0.5;  // of fixed rates
-
 // "free", or a rate from 0 to `most_fixed`; a free one is estimated up to `most_free`.
 Rate rate_of(const char* flag, const std::string& text, double most_fixed, double most_free) {
   if (text == "free") return {true, 0.0, most_free};
@@ -88,20 +87,6 @@ Rate rate_of(const char* flag, const std::string& text, double most_fixed, doubl
         flag, fmt::format("`{}` is neither `free` nor a number from 0 to {}", text, most_fixed));
   }
   return {false, *value, most_free};
-}
-
-// A function needs room between guesses and lapses, wherever free ones come to lie.
-void check_room(const Rate& guess, const Rate& lapse) {
-  const auto most = [](const Rate& rate) { return rate.free ? rate.most : rate.value; };
-  const auto in_words = [&](const Rate& rate) {
-    return fmt::format("{}{:g}", rate.free ? "up to " : "", most(rate));
-  };
-  if (most(guess) + most(lapse) < 1.0) return;
-  throw CLI::ValidationError(
-      "--guess, --lapse",
-      fmt::format("guesses of {} and lapses of {} leave no room for a function that rises between "
-                  "them; give rates with a sum below 1",
-                  in_words(guess), in_words(lapse)));
 }
 
 /// What rate_of takes.
@@ -203,15 +188,19 @@ void add_statistics_options(CLI::App& command, Arguments& args) {
       ->capture_default_str()
       ->check(CLI::IsMember(shapes));
   command
-      .add_option("--guess", args.guess,
-                  "Rate of hits by guessing, 0 to 0.9, or `free`: estimated up to 0.5")
+      .add_option(
+          "--guess", args.guess,
+          fmt::format("Rate of hits by guessing, 0 to {:g}, or `free`: estimated up to {:g}",
+                      most_fixed_guess, most_free_guess))
       ->capture_default_str()
-      ->check(rate_up_to(most_guessed));
+      ->check(rate_up_to(most_fixed_guess));
   command
-      .add_option("--lapse", args.lapse,
-                  "Rate of misses by inattention, 0 to 0.5, or `free`: estimated up to 0.1")
+      .add_option(
+          "--lapse", args.lapse,
+          fmt::format("Rate of misses by inattention, 0 to {:g}, or `free`: estimated up to {:g}",
+                      most_fixed_lapse, most_free_lapse))
       ->capture_default_str()
-      ->check(rate_up_to(most_lapsed));
+      ->check(rate_up_to(most_fixed_lapse));
   command
       .add_option("--threshold-at", args.threshold_at,
                   "Share of the function's height at the threshold")
@@ -300,9 +289,13 @@ void analyse_levels(Arguments& args) {
                         has_guess        ? args.guess
                         : levels.correct ? "0.5"
                                          : "0",
-                        most_guessed, most_free_guess);
-  model.lapse = rate_of("--lapse", args.lapse, most_lapsed, most_free_lapse);
-  check_room(model.guess, model.lapse);
+                        most_fixed_guess, most_free_guess);
+  model.lapse = rate_of("--lapse", args.lapse, most_fixed_lapse, most_free_lapse);
+  const auto fixed = [](const Rate& rate) {
+    return rate.free ? std::nullopt : std::optional(rate.value);
+  };
+  const std::string why = why_no_room(fixed(model.guess), fixed(model.lapse));
+  if (!why.empty()) throw CLI::ValidationError("--guess, --lapse", why);
   if (!args.is_given("--bootstrap") && !args.design) args.analyse.bootstrap = threshold_resamples;
   const ThresholdReport report = analyse_thresholds(
       levels, model, {args.analyse.alpha, args.analyse.bootstrap, args.analyse.seed});

@@ -26,6 +26,7 @@ void write_pages(const Document& document, std::vector<Figure> figures, StagingF
 /// Adds report.json, `json` with a list of all files of the report, and puts the report in place.
 /// Of the report that was there before, the files that its list has and this one's has not are
 /// removed, but for `sources`, which this one was made from. Returns the files' names. Throws
+/// InputError where it would replace one of these, or lie among answer files, and otherwise
 /// std::runtime_error.
 std::vector<std::string> keep_report(const std::string& json, StagingFolder& folder,
                                      const std::vector<std::string>& sources);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/free_rates.h"
+#include "base/rates.h"
 
 namespace pinchlab::analysis {
 

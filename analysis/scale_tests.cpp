@@ -129,6 +129,35 @@ void count_stochastic_transitivity(std::size_t m, const std::vector<PairChoices>
   }
 }
 
+// How often the score is as extreme where participants' answers change sides by chance; `wins` less
+// losses are each participant's.
+void flip_signs(EqualScale& result, const Matrix& metric,
+                const std::vector<std::vector<double>>& wins, const Rng& rng, int resamples) {
+  constexpr std::size_t most_exact = 16;
+  const std::size_t participants = wins.size();
+  result.exact = participants <= most_exact;
+  const auto flipped = [&](const auto& is_flipped) {
+    std::vector<double> total(wins.front().size());
+    for (std::size_t i = 0; i < participants; ++i) {
+      const double sign = is_flipped(i) ? -1.0 : 1.0;
+      for (std::size_t j = 0; j < total.size(); ++j) total[j] += sign * wins[i][j];
+    }
+    return as_extreme(score_of(metric, total), result.score) ? 1.0 : 0.0;
+  };
+  double extreme = 0.0;
+  if (result.exact) {
+    // The last never turns: turning all changes nothing.
+    const std::uint64_t patterns = std::uint64_t{1} << (participants - 1);
+    for (std::uint64_t pattern = 0; pattern < patterns; ++pattern)
+      extreme += flipped([&](std::size_t i) { return ((pattern >> i) & 1U) == 1; });
+    result.p_sign_flip = extreme / static_cast<double>(patterns);
+    return;
+  }
+  for (int i = 0; i < resamples; ++i)
+    extreme += flipped([&](std::size_t) { return gsl_rng_uniform_int(rng.get(), 2) == 1; });
+  result.p_sign_flip = (extreme + 1) / (resamples + 1.0);
+}
+
 }  // namespace
 
 EqualScale equal_scale(std::size_t methods, const std::vector<PairChoices>& choices,
@@ -174,29 +203,7 @@ EqualScale equal_scale(std::size_t methods, const std::vector<PairChoices>& choi
   std::vector<std::vector<double>> wins;
   wins.reserve(participants);
   for (auto& [participant, own] : by_participant) wins.push_back(std::move(own));
-  constexpr std::size_t most_exact = 16;
-  result.exact = participants <= most_exact;
-  const auto flipped = [&](const auto& is_flipped) {
-    std::vector<double> total(size);
-    for (std::size_t i = 0; i < participants; ++i) {
-      const double sign = is_flipped(i) ? -1.0 : 1.0;
-      for (std::size_t j = 0; j < size; ++j) total[j] += sign * wins[i][j];
-    }
-    return as_extreme(score_of(metric, total), result.score) ? 1.0 : 0.0;
-  };
-  double extreme = 0.0;
-  if (result.exact) {
-    // The last never turns: turning all changes nothing.
-    const std::uint64_t patterns = std::uint64_t{1} << (participants - 1);
-    for (std::uint64_t pattern = 0; pattern < patterns; ++pattern)
-      extreme += flipped([&](std::size_t i) { return ((pattern >> i) & 1U) == 1; });
-    result.p_sign_flip = extreme / static_cast<double>(patterns);
-    return result;
-  }
-  const Rng rng = make_rng(RandomUse::sign_flip, seed, methods);
-  for (int i = 0; i < resamples; ++i)
-    extreme += flipped([&](std::size_t) { return gsl_rng_uniform_int(rng.get(), 2) == 1; });
-  result.p_sign_flip = (extreme + 1) / (resamples + 1.0);
+  flip_signs(result, metric, wins, make_rng(RandomUse::sign_flip, seed, methods), resamples);
   return result;
 }
 

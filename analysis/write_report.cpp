@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "analysis/gnuplot.h"
 #include "analysis/pages.h"
 #include "analysis/report.h"
+#include "base/input_error.h"
 #include "base/output_file.h"
 #include "base/partial_file.h"
 #include "base/read_file.h"
@@ -32,6 +35,31 @@ std::vector<std::string> listed_files(const fs::path& folder) {
   return names;
 }
 
+// What is read stays as it is, and gets no report.json beside it that would pass for one more
+// answer file.
+void check_sources(const StagingFolder& folder, const std::vector<std::string>& sources) {
+  for (const std::string& file : sources) {
+    const fs::path source = file;
+    const bool is_answers = fs::is_directory(source) || source.extension() == ".json";
+    const fs::path around = fs::is_directory(source) ? source : source.parent_path() / ".";
+    if (is_answers && is_same_file(around, folder.folder())) {
+      throw InputError(source.string(),
+                       "is among answers, for one of which report.json would be taken there; name "
+                       "another folder for the report");
+    }
+  }
+  for (const std::string& name : folder.names()) {
+    const fs::path path = folder.folder() / name;
+    for (const std::string& source : sources) {
+      if (!fs::is_regular_file(path) || !is_same_file(source, path)) continue;
+      if (read_whole(path) == read_whole(folder.path() / name)) continue;  // a report's own
+      throw InputError(source, fmt::format("is read, and the report's {} would replace "
+                                           "it; name another folder for the report",
+                                           name));
+    }
+  }
+}
+
 }  // namespace
 
 void write_pages(const Document& document, std::vector<Figure> figures, StagingFolder& folder) {
@@ -49,6 +77,7 @@ void write_pages(const Document& document, std::vector<Figure> figures, StagingF
 
 std::vector<std::string> keep_report(const std::string& json, StagingFolder& folder,
                                      const std::vector<std::string>& sources) {
+  check_sources(folder, sources);
   ordered_json report = ordered_json::parse(json);
   std::vector<std::string> files = folder.names();
   files.emplace_back("report.json");

@@ -13,6 +13,7 @@
 #include "base/json_object.h"
 #include "base/strict_json.h"
 #include "base/text_checks.h"
+#include "base/told_trial.h"
 
 namespace pinchlab {
 
@@ -46,6 +47,7 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   }
   optional_count(object, "loops_watched");
   trial.frame_count = optional_count(object, "frame_count");
+  if (object.has("frame_count")) check_frames(object, trial.frame_count, trial.dropped_frames);
   for (const char* key : {"loop_gap_median_s", "loop_gap_max_s"}) {
     if (object.has(key)) object.number(key, -1.0, 86400.0);
   }
@@ -60,21 +62,6 @@ void read_circumstances(JsonObject& object, Trial& trial) {
   trial.screen_width_px = size("screen_width_px");
   trial.screen_height_px = size("screen_height_px");
   if (object.has("device_pixel_ratio")) object.number("device_pixel_ratio", 0.01, 100.0);
-}
-
-// The choice, which follows from the grade where there is one.
-void read_choice(JsonObject& object, const AnswerFile& file, Trial& trial) {
-  const std::string choice = object.choice("choice", {"left", "right", "tie"});
-  trial.choice = choice == "tie" ? Side::unknown : side_of(choice);
-  if (object.has("preference")) {
-    trial.preference = static_cast<int>(object.whole("preference", -3, 3));
-    if (!file.graded_hit.empty()) object.fail("preference", "has no place in a study of levels");
-  }
-  const int sign = trial.preference.value_or(choice == "left" ? -1 : 1);
-  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
-    object.fail("choice",
-                "must be left, right or tie as `preference` is less than, more than, or 0");
-  }
 }
 
 // What a study can ask in each trial besides.
@@ -112,7 +99,12 @@ Trial read_trial(JsonObject object, const AnswerFile& file) {
     object.fail("right",
                 fmt::format("`{}` on both sides; a pair shows each method once", trial.right));
   }
-  read_choice(object, file, trial);
+  const ToldChoice told = read_choice(object);
+  trial.choice = told.word == "tie" ? Side::unknown : side_of(told.word);
+  trial.preference = told.preference;
+  if (trial.preference && !file.graded_hit.empty()) {
+    object.fail("preference", "has no place in a study of levels");
+  }
   read_besides(object, trial);
   if (trial.kind == TrialKind::attention) {
     trial.expected = side_of(object.choice("expected", {"left", "right"}));

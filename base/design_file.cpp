@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "base/free_rates.h"
 #include "base/json_object.h"
+#include "base/rates.h"
 #include "base/sha256.h"
 #include "base/strict_json.h"
 #include "base/text_checks.h"
@@ -90,8 +90,8 @@ const std::vector<AnalysisOption> analysis_options = {
     {"bootstrap", {}, 99, 1000000, true},
     {"seed", {}, 0, 9007199254740991.0, true},
     {"function", {"logistic", "normal", "weibull"}, 0, 0, false},
-    {"guess", {"free"}, 0, 0.9, false},
-    {"lapse", {"free"}, 0, 0.5, false},
+    {"guess", {"free"}, 0, most_fixed_guess, false},
+    {"lapse", {"free"}, 0, most_fixed_lapse, false},
     {"threshold_at", {}, 0.01, 0.99, false},
     {"scale", {"bradley-terry", "thurstone"}, 0, 0, false}};
 
@@ -108,15 +108,10 @@ void read_analysis(JsonObject object, Rules& rules) {
 
 // As `pinchlab analyse` refuses them.
 void check_room(const JsonObject& object, const Rules& rules) {
-  const auto most = [&](const char* key, double most_free) {
-    const auto found = rules.analysis.find(key);
-    if (found == rules.analysis.end()) return 0.0;
-    return found->second == "free" ? most_free : *parse_number(found->second);
-  };
-  if (most("guess", most_free_guess) + most("lapse", most_free_lapse) < 1.0) return;
-  object.fail("analysis",
-              "`guess` and `lapse`, the most that a free one may be, leave no room "
-              "for a function that rises between them; give rates with a sum below 1");
+  const auto guess = rules.analysis.find("guess"), lapse = rules.analysis.find("lapse");
+  if (guess == rules.analysis.end()) return;  // of no levels
+  const std::string why = why_no_room(parse_number(guess->second), parse_number(lapse->second));
+  if (!why.empty()) object.fail("analysis", why);
 }
 
 void read_exclusions(JsonObject object, Rules& rules) {

@@ -8,6 +8,7 @@
 
 #include "base/answer_file.h"
 #include "base/durable_file.h"
+#include "base/input_error.h"
 #include "base/read_file.h"
 #include "study/secrets.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using namespace nlohmann::literals;
 
 // In a check the right answer and the wrong one are no methods.
 std::pair<std::string, std::string> sides(const PlannedTrial& trial) {
@@ -131,22 +131,23 @@ void save_answers(const fs::path& path, const ordered_json& file) {
   }
 }
 
-std::optional<Withdrawn> withdraw(const fs::path& folder, const std::string& code) {
+std::optional<std::string> withdraw(const fs::path& folder, const std::string& code) {
   const std::string hash = withdrawal_hash(code);
   if (hash.empty()) {
     throw std::invalid_argument(fmt::format(
         "`{}` is no withdrawal code; it looks like 7K3M-9Q2X-0BVA", code.substr(0, 60)));
   }
   for (const fs::path& path : answer_files(folder)) {
-    const nlohmann::json file = read_answer_json(path);
+    nlohmann::json file;
+    try {
+      file = read_answer_json(path);
+    } catch (const InputError&) {
+      if (!fs::exists(path)) continue;  // withdrawn since the folder was listed
+      throw;
+    }
     if (file.is_object() && file.value("withdrawal_code_sha256", nlohmann::json()) == hash) {
       remove_durably(path);
-      Withdrawn withdrawn{path.stem().string(), {}, ""};
-      const nlohmann::json number = file.value("participant_number", nlohmann::json());
-      if (number.is_number_unsigned()) withdrawn.number = number.get<std::uint64_t>();
-      const nlohmann::json id = file.value("/recruited/participant"_json_pointer, nlohmann::json());
-      if (id.is_string()) withdrawn.recruited = id.get<std::string>();
-      return withdrawn;
+      return path.stem().string();
     }
   }
   return std::nullopt;

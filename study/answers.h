@@ -2,7 +2,6 @@
 #pragma once
 // The answers as they are kept: one whole file a participant (analysis/answers.schema.json).
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -48,15 +47,8 @@ std::filesystem::path answer_path(const std::filesystem::path& folder, const std
 /// again. When it returns, the answers are safe. Throws std::runtime_error; then there is no file.
 void save_answers(const std::filesystem::path& path, const nlohmann::ordered_json& file);
 
-/// Somebody whose answers are removed.
-struct Withdrawn {
-  std::string participant;
-  std::optional<std::uint64_t> number;  ///< that the plan was counterbalanced by
-  std::string recruited;                ///< id at the site that sent them; empty: none did
-};
-
-/// Removes the answers that belong to a code; nothing if there are none. Throws
-/// std::invalid_argument if it cannot be a code.
-std::optional<Withdrawn> withdraw(const std::filesystem::path& folder, const std::string& code);
+/// Removes the answers that belong to a code and returns their participant's id; nothing if there
+/// are none. Throws std::invalid_argument if it cannot be a code.
+std::optional<std::string> withdraw(const std::filesystem::path& folder, const std::string& code);
 
 }  // namespace pinchlab::study

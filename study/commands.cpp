@@ -470,7 +470,7 @@ void add_withdraw(CLI::App& study) {
                       "another study",
                       options->answers.string()));
     }
-    fmt::print("The answers of {} are removed\n", withdrawn->participant);
+    fmt::print("The answers of {} are removed\n", *withdrawn);
   });
 }
 

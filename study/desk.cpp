@@ -56,6 +56,9 @@ Desk::Desk(DeskOptions options) : options_(std::move(options)) {
   if (!options_.utc_now) {
     options_.utc_now = &utc_now;
   }
+  if (!options_.steady_now) {
+    options_.steady_now = &std::chrono::steady_clock::now;
+  }
   if (!options_.tell) {
     options_.tell = [](const std::string&) {};
   }
@@ -80,14 +83,8 @@ std::string Desk::start(const std::string& link, const std::string& user_agent,
     throw Refused(403, "this study needs the id of the site that it recruits by");
   }
   drop_idle();
-  try {
-    if (const auto leaver = who_makes_room(link, address, recruited)) {
-      drop(leaver->entry, "had answered no trial and made room", leaver->signs);
-    }
-  } catch (const std::exception& error) {
-    options_.tell(fmt::format("a place cannot be released: {}", error.what()));
-    throw Refused(503, "the disk does not take it");
-  }
+  free_withdrawn();
+  make_room(link, address, recruited);
   const std::string secret = random_hex(16);
   auto entry = std::make_shared<Entry>();
   Session& session = entry->session;
@@ -178,7 +175,7 @@ void Desk::change(const std::string& token, const std::function<void(Session&)>&
   entry->session.resumed_count = next.resumed_count;
   const std::scoped_lock desk_lock(mutex_);
   note(entry->session);
-  ++places_.at(next.id).signs;
+  see(next.id);
   offer(entry->session, entry->session.answers.size());
 }
 
@@ -355,7 +352,7 @@ std::string Desk::save(const std::string& token,
   {
     const std::scoped_lock lock(mutex_);
     remove(*entry);
-    ++finished_;
+    finished_[id] = {entry->session.number, entry->session.recruited.participant};
   }
   options_.tell(fmt::format("{} finished; the answers are saved", id));
   try {
@@ -380,6 +377,7 @@ const Clip* Desk::clip(const std::string& media, Encoding encoding) {
 }
 
 Overview Desk::overview() {
+  free_withdrawn();
   std::vector<std::shared_ptr<Entry>> all;
   Overview overview;
   {
@@ -387,7 +385,7 @@ Overview Desk::overview() {
     for (const auto& [id, place] : places_) {
       all.push_back(place.entry);
     }
-    overview.finished = finished_;
+    overview.finished = finished_.size();
     overview.left = left_;
   }
   for (const auto& entry : all) {
@@ -430,7 +428,7 @@ Progress Desk::preview(std::uint64_t number) {
 }
 
 std::string Desk::withdraw(const std::string& code) {
-  std::optional<Withdrawn> withdrawn;
+  std::optional<std::string> withdrawn;
   try {
     withdrawn = study::withdraw(options_.answers, code);
   } catch (const std::invalid_argument&) {
@@ -439,14 +437,8 @@ std::string Desk::withdraw(const std::string& code) {
   if (!withdrawn) {
     throw Refused(404, "no answers have this code");
   }
-  const std::string& id = withdrawn->participant;
-  const std::scoped_lock lock(mutex_);
-  --finished_;
-  // As after a restart, which finds nothing of them.
-  if (withdrawn->number) taken_.erase(*withdrawn->number);
-  recruited_.erase(withdrawn->recruited);
-  options_.tell(fmt::format("the answers of {} are removed, as their participant asked", id));
-  return id;
+  free_withdrawn();
+  return *withdrawn;
 }
 
 fs::path Desk::session_path(const std::string& id) const {

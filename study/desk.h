@@ -38,6 +38,8 @@ struct DeskOptions {
   std::size_t most_unanswered = 500;  ///< of one address, participants who have not answered yet
   std::chrono::seconds longest_idle{24 * 3600};  ///< without a sign, before a place is released
   std::function<std::string()> utc_now;
+  /// How much time goes by, where nobody sets the clock: by it places are released.
+  std::function<std::chrono::steady_clock::time_point()> steady_now;
   std::function<void(const std::string&)> tell;  ///< who started, finished, left
 };
 
@@ -132,8 +134,8 @@ class Desk {
   Progress preview(std::uint64_t number);
 
   /// Removes the answers of who has this withdrawal code, and returns the participant's id. The
-  /// number goes to the next who comes. Refused: 422 for what is no code, 404 where no answers have
-  /// it.
+  /// number goes to the next who comes, as it does where `study withdraw` has removed them.
+  /// Refused: 422 for what is no code, 404 where no answers have it.
   std::string withdraw(const std::string& code);
 
   [[nodiscard]] const std::filesystem::path& answers() const { return options_.answers; }
@@ -153,7 +155,7 @@ class Desk {
     std::shared_ptr<Entry> entry;
     std::string address;      // where the participant started; never on the disk
     std::uint64_t order = 0;  // of starting
-    std::chrono::sys_seconds seen;
+    std::chrono::steady_clock::time_point seen;
     std::uint64_t signs = 0;    // of somebody there: requests since the start that are noted
     bool is_shown = false;      // the first clip, at least
     bool has_answered = false;  // a trial, or questions
@@ -161,6 +163,11 @@ class Desk {
   struct Leaver {
     std::shared_ptr<Entry> entry;
     std::uint64_t signs = 0;  // when chosen; who has given another one since, stays
+  };
+  // What somebody takes up whose answers are saved.
+  struct Finished {
+    std::optional<std::uint64_t> number;  // none in files that tell none
+    std::string recruited;                // id at the site that sent them; empty: none did
   };
   struct Media {
     const PairFiles* files;
@@ -170,7 +177,8 @@ class Desk {
 
   void read_finished();
   void read_running();
-  void add(const std::shared_ptr<Entry>& entry, const std::string& address);
+  void add(const std::shared_ptr<Entry>& entry, const std::string& address,
+           std::chrono::seconds since_seen = {});
   void note(const Session& session);
   void see(const std::string& id);
   void offer(const Session& session, std::size_t trial);
@@ -179,6 +187,8 @@ class Desk {
             std::optional<std::uint64_t> signs = std::nullopt);
   void forget(const std::string& id) const;
   void sweep() const;
+  void free_withdrawn();
+  void make_room(const std::string& link, const std::string& address, const Recruited& recruited);
   std::optional<Leaver> who_makes_room(const std::string& link, const std::string& address,
                                        const Recruited& recruited);
   void take(const Session& session);
@@ -201,10 +211,11 @@ class Desk {
   std::map<std::string, Place> places_;  // by participant, who is running
   std::uint64_t starts_ = 0;
   std::map<std::string, Media> media_;
-  std::set<std::uint64_t> taken_;     // numbers of running and finished participants
-  std::set<std::uint64_t> starting_;  // of them, whose session is not on the disk yet
-  std::set<std::string> recruited_;   // their ids at the site that sent them
-  std::size_t finished_ = 0, left_ = 0;
+  std::set<std::uint64_t> taken_;             // numbers of running and finished participants
+  std::set<std::uint64_t> starting_;          // of them, whose session is not on the disk yet
+  std::set<std::string> recruited_;           // their ids at the site that sent them
+  std::map<std::string, Finished> finished_;  // by participant
+  std::size_t left_ = 0;
 };
 
 }  // namespace pinchlab::study

@@ -46,14 +46,16 @@ void Desk::read_finished() {
           options_.config.is_pilot ? "is of the study, and this is a pilot"
                                    : "is of a pilot, and this is the study"));
     }
+    Finished& finished = finished_[path.stem().string()];
     if (file.value("participant_number", json()).is_number_unsigned()) {
-      taken_.insert(file["participant_number"].get<std::uint64_t>());
+      finished.number = file["participant_number"].get<std::uint64_t>();
+      taken_.insert(*finished.number);
     }
     if (file.contains("recruited")) {
-      recruited_.insert(
-          read_recruited(JsonObject(file["recruited"], path.string(), "/recruited")).participant);
+      finished.recruited =
+          read_recruited(JsonObject(file["recruited"], path.string(), "/recruited")).participant;
+      recruited_.insert(finished.recruited);
     }
-    ++finished_;
   }
 }
 
@@ -76,7 +78,10 @@ void Desk::read_running() {
       remove_durably(path);
       continue;
     }
-    add(entry, "");
+    // By the calendar: how much time has gone by since the server ended, no other clock knows.
+    const auto last_seen = parse_utc(entry->session.last_seen_utc);
+    const std::chrono::seconds since = parse_utc(options_.utc_now()) - last_seen;
+    add(entry, "", std::clamp(since, std::chrono::seconds(0), options_.longest_idle));
   }
 }
 
@@ -95,11 +100,37 @@ void Desk::sweep() const {
   }
 }
 
-void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address) {
+// Whoever's answers are gone has withdrawn them, here or by `study withdraw`, and holds no place
+// any more, as after a restart. Where the folder itself is away, nobody has.
+void Desk::free_withdrawn() {
+  std::vector<std::string> gone;
+  {
+    const std::scoped_lock lock(mutex_);
+    for (const auto& [id, finished] : finished_) gone.push_back(id);
+  }
+  std::erase_if(gone, [&](const std::string& id) {
+    std::error_code unknown;
+    return fs::exists(answer_path(options_.answers, id), unknown) || unknown;
+  });
+  std::error_code unknown;
+  if (gone.empty() || !fs::exists(running_folder(options_.answers), unknown)) return;
+  const std::scoped_lock lock(mutex_);
+  for (const std::string& id : gone) {
+    const auto finished = finished_.extract(id);
+    if (finished.empty()) continue;  // by somebody else meanwhile
+    if (finished.mapped().number) taken_.erase(*finished.mapped().number);
+    recruited_.erase(finished.mapped().recruited);
+    options_.tell(fmt::format("the answers of {} are withdrawn; the place is free", id));
+  }
+}
+
+void Desk::add(const std::shared_ptr<Entry>& entry, const std::string& address,
+               std::chrono::seconds since_seen) {
   const Session& session = entry->session;
   for (std::size_t i = 0; i < session.plan.size(); ++i) offer(session, i);
   take(session);
-  places_[session.id] = {entry, address, ++starts_, {}, 0, false, false};
+  const auto seen = options_.steady_now() - since_seen;
+  places_[session.id] = {entry, address, ++starts_, seen, 0, false, false};
   note(session);
 }
 
@@ -129,16 +160,15 @@ void Desk::offer(const Session& session, std::size_t trial) {
 void Desk::note(const Session& session) {
   const auto place = places_.find(session.id);
   if (place != places_.end()) {
-    place->second.seen = parse_utc(session.last_seen_utc);
     place->second.is_shown = !session.answers.empty() || !session.shown_utc.empty();
     place->second.has_answered = !session.answers.empty() || !session.questionnaires.empty();
   }
 }
 
-// A sign of somebody that changes nothing. Under mutex_.
+// A sign of somebody. Under mutex_.
 void Desk::see(const std::string& id) {
   if (const auto place = places_.find(id); place != places_.end()) {
-    place->second.seen = parse_utc(options_.utc_now());
+    place->second.seen = options_.steady_now();
     ++place->second.signs;
   }
 }
@@ -183,7 +213,7 @@ void Desk::drop(const std::shared_ptr<Entry>& entry, const std::string& why,
 }
 
 void Desk::drop_idle() {
-  const auto now = parse_utc(options_.utc_now());
+  const auto now = options_.steady_now();
   std::vector<Leaver> idle;
   {
     const std::scoped_lock lock(mutex_);
@@ -219,7 +249,7 @@ void Desk::release(const std::string& id) {
 std::optional<Desk::Leaver> Desk::who_makes_room(const std::string& link,
                                                  const std::string& address,
                                                  const Recruited& recruited) {
-  const auto now = parse_utc(options_.utc_now());
+  const auto now = options_.steady_now();
   const std::scoped_lock lock(mutex_);
   const auto has_only_started = [](const Place& place) {
     return place.signs == 0 && !place.is_shown && !place.has_answered;
@@ -269,6 +299,18 @@ std::optional<Desk::Leaver> Desk::who_makes_room(const std::string& link,
     });
   }
   return oldest(is_away);
+}
+
+void Desk::make_room(const std::string& link, const std::string& address,
+                     const Recruited& recruited) {
+  try {
+    if (const auto leaver = who_makes_room(link, address, recruited)) {
+      drop(leaver->entry, "had answered no trial and made room", leaver->signs);
+    }
+  } catch (const std::exception& error) {
+    options_.tell(fmt::format("a place cannot be released: {}", error.what()));
+    throw Refused(503, "the disk does not take it");
+  }
 }
 
 std::string Desk::link_of(std::uint64_t number) const {

@@ -290,6 +290,24 @@ std::string clock_note(const std::string& place, const ordered_json& file,
       place, saved_utc, file.at("saved_utc").get<std::string>());
 }
 
+// The rest is what a session file of our own server holds, and is checked as such.
+json session_document_of(JsonObject& object, long number, const std::string& saved_utc,
+                         const Key& key) {
+  return {{"format", "pinchlab-session 1"},
+          {"id", object.name("participant")},
+          {"secret_sha256", std::string(64, '0')},
+          {"number", number},
+          {"seed", key.seed},
+          {"language", object.need("language")},
+          {"user_agent", object.need("user_agent")},
+          {"started_utc", object.need("started_utc")},
+          {"last_seen_utc", saved_utc},
+          {"resumed_count", object.need("resumed_count")},
+          {"shown_utc", ""},
+          {"plan", key.plans[static_cast<std::size_t>(number)]},
+          {"answers", object.need("answers")}};
+}
+
 // One line of the results: what jatos_server.js submitted.
 Result read_result(const std::string& line, const std::string& place, const Key& key) {
   json document;
@@ -309,20 +327,7 @@ Result read_result(const std::string& line, const std::string& place, const Key&
     object.fail("withdrawal_code", "is no withdrawal code");
   }
   const std::string saved_utc = object.utc("saved_utc");
-  // The rest is what a session file of our own server holds, and is checked as such.
-  const json session_document = {{"format", "pinchlab-session 1"},
-                                 {"id", object.name("participant")},
-                                 {"secret_sha256", std::string(64, '0')},
-                                 {"number", number},
-                                 {"seed", key.seed},
-                                 {"language", object.need("language")},
-                                 {"user_agent", object.need("user_agent")},
-                                 {"started_utc", object.need("started_utc")},
-                                 {"last_seen_utc", saved_utc},
-                                 {"resumed_count", object.need("resumed_count")},
-                                 {"shown_utc", ""},
-                                 {"plan", key.plans[static_cast<std::size_t>(number)]},
-                                 {"answers", object.need("answers")}};
+  const json session_document = session_document_of(object, number, saved_utc, key);
   const json free_text = {{"free_text", object.need("free_text")}};
   const std::map<std::string, json> questionnaires = read_questionnaires(object, key);
   object.finish();

@@ -5,6 +5,7 @@
 
 #include "base/input_error.h"
 #include "base/json_object.h"
+#include "base/told_trial.h"
 
 namespace pinchlab::study {
 namespace {
@@ -41,20 +42,6 @@ std::string word_of(std::optional<Side> choice) {
   return choice ? to_string(*choice) : "tie";
 }
 
-// The choice, which follows from the grade where there is one.
-void read_choice(JsonObject& object, TrialAnswer& answer) {
-  const std::string choice = object.choice("choice", {"left", "right", "tie"});
-  if (choice != "tie") answer.choice = side_from(choice);
-  if (object.has("preference")) {
-    answer.preference = static_cast<int>(object.whole("preference", -3, 3));
-  }
-  const int sign = answer.preference.value_or(choice == "left" ? -1 : 1);
-  if (choice != (sign < 0 ? "left" : sign > 0 ? "right" : "tie")) {
-    object.fail("choice",
-                "must be left, right or tie as `preference` is less than, more than, or 0");
-  }
-}
-
 void read_besides(JsonObject& object, TrialAnswer& answer) {
   if (object.has("confidence")) {
     answer.confidence = static_cast<int>(object.whole("confidence", 1, 9));
@@ -72,13 +59,16 @@ void read_besides(JsonObject& object, TrialAnswer& answer) {
 // The answer proper, without what goes around it; used for requests and for session files.
 TrialAnswer read_answer(JsonObject& object) {
   TrialAnswer answer;
-  read_choice(object, answer);
+  const ToldChoice told = read_choice(object);
+  if (told.word != "tie") answer.choice = side_from(told.word);
+  answer.preference = told.preference;
   read_besides(object, answer);
   answer.reaction_time_s = object.number("reaction_time_s", 0, 86400);
   answer.loops_watched = whole(object, "loops_watched", most_counted);
   answer.focus_lost_count = whole(object, "focus_lost_count", most_counted);
   answer.frame_count = whole(object, "frame_count", most_frames);
   answer.dropped_frames = whole(object, "dropped_frames", most_frames);
+  check_frames(object, answer.frame_count, answer.dropped_frames);
   answer.loop_gap_median_s = optional_seconds(object, "loop_gap_median_s");
   answer.loop_gap_max_s = optional_seconds(object, "loop_gap_max_s");
   for (const json& entry : object.array("playback_errors", 100)) {

@@ -357,6 +357,43 @@ std::string distances(const std::array<std::vector<Made>, 2>& samples) {
       rows);
 }
 
+constexpr const char* page_text =
+    "# Random scenes\n\n"
+    "{} scenes (seeds from {} on) of one to six discs, of masses up to 1e4 apart, that fall on "
+    "one to four cables over two to five pulleys: taut, slack or closed, with slip or without, "
+    "with restitution from 0 to 1, some with drag or a motor. One second each, `pinch`, with "
+    "events at their time (`located`) and at the steps (`at_steps`, as before 0.2).\n\n"
+    "## What no motion may show\n\n"
+    "Runs in which it happened, and in brackets the worst of any. Energy is that above the "
+    "start's, as a share of the most kinetic energy, where nothing drives. A loose span is "
+    "longer than its material without tension. In a span lies a body without a link on it. "
+    "Unsettled is a run with a step whose states went in circles, so that something stuck beyond "
+    "its bounds, or whose lengths and gaps no repair met.\n\n{}\n"
+    "## How far two runs of a scene end apart\n\n"
+    "The largest distance of any body after the second. Scenes of many impacts are chaotic: what "
+    "differs by 1e-12 m grows.\n\n{}\n"
+    "## Corners, compounds and weight\n\n"
+    "{} scenes of one to four discs, polygons and compounds that fall on a cable over discs and "
+    "polygons: {}. Ropes have mass and run over bodies between a weight and an end, chains hang "
+    "between two points. Events at their time. Energy that is gained is what leapfrog swings by "
+    "in violent turns, of second order in the step; what is beyond 1e-2 is not. {}.\n\n{}\n"
+    "## Cables that stretch\n\n"
+    "The same scenes, the cable as soft as 1e3 to 1e5 N. What vibrates is followed with no less "
+    "than three steps a period, and what is faster is damped: at so few energy swings, by what "
+    "falls with the step. Beyond 1e-2 are vibrations that a short interval lets loose, and "
+    "bodies that are moved when a cable comes between them. {}.\n\n{}\n"
+    "## Ropes that hang\n\n"
+    "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
+    "between the bodies that it runs over: {}. Of every other rope the number of nodes adapts, "
+    "with a tolerance of 2 mm. Energy that is gained is leapfrog's swing, as there: a rim that "
+    "takes a node in lifts nothing (`sim/cable/taking_in.h`). {}.\n\n{}\n"
+    "## Over an edge\n\n"
+    "{} scenes of one to three boxes, polygons and discs that are thrown along a table and over "
+    "its edge: a wall, a block that is fixed, or one that lies on the floor. A corner that "
+    "slides off is let go at its time (`sim/motion/jumps.h`). Many lose nothing: energy that "
+    "they gain is leapfrog's error, a sixteenth with a quarter of the step.\n\n{}\n"
+    "How far two runs of a scene end apart, as above:\n\n{}";
+
 /// The most that so many values in succession all reach somewhere; 0: they reach nothing above it.
 double reached_by(const std::vector<double>& values, std::size_t many) {
   double greatest = 0.0;
@@ -438,15 +475,13 @@ void run_population(const PopulationRun& run) {
       return run_ladder(thrown_off_a_table(seed), configuration);
     });
   }
-  const std::vector<ShapelySample> shapely = run_samples<ShapelySample>(
-      run.shapely_scenes, run.first, progress,
-      [](std::uint64_t seed) { return run_shapely(dropped_shapes(seed)); });
-  const std::vector<ShapelySample> stretched = run_samples<ShapelySample>(
-      run.shapely_scenes, run.first, progress,
-      [](std::uint64_t seed) { return run_shapely(stretched_shapes(seed)); });
-  const std::vector<ShapelySample> hanging = run_samples<ShapelySample>(
-      run.shapely_scenes, run.first, progress,
-      [](std::uint64_t seed) { return run_shapely(shapes_on_hanging_rope(seed)); });
+  const auto run_all = [&](const auto& make) {
+    return run_samples<ShapelySample>(run.shapely_scenes, run.first, progress,
+                                      [&](std::uint64_t seed) { return run_shapely(make(seed)); });
+  };
+  const std::vector<ShapelySample> shapely = run_all(dropped_shapes);
+  const std::vector<ShapelySample> stretched = run_all(stretched_shapes);
+  const std::vector<ShapelySample> hanging = run_all(shapes_on_hanging_rope);
   Output output(run.options.out);
   output.csv("population", table_of(run, samples), run.options.command);
   output.csv("population_shapes", table_of(run, shapely), run.options.command);
@@ -454,42 +489,7 @@ void run_population(const PopulationRun& run) {
   output.csv("population_ropes", table_of(run, hanging), run.options.command);
   output.csv("population_tables", table_of(run, tables), run.options.command);
   const std::string page = fmt::format(
-      "# Random scenes\n\n"
-      "{} scenes (seeds from {} on) of one to six discs, of masses up to 1e4 apart, that fall on "
-      "one to four cables over two to five pulleys: taut, slack or closed, with slip or without, "
-      "with restitution from 0 to 1, some with drag or a motor. One second each, `pinch`, with "
-      "events at their time (`located`) and at the steps (`at_steps`, as before 0.2).\n\n"
-      "## What no motion may show\n\n"
-      "Runs in which it happened, and in brackets the worst of any. Energy is that above the "
-      "start's, as a share of the most kinetic energy, where nothing drives. A loose span is "
-      "longer than its material without tension. In a span lies a body without a link on it. "
-      "Unsettled is a run with a step whose states went in circles, so that something stuck beyond "
-      "its bounds, or whose lengths and gaps no repair met.\n\n{}\n"
-      "## How far two runs of a scene end apart\n\n"
-      "The largest distance of any body after the second. Scenes of many impacts are chaotic: what "
-      "differs by 1e-12 m grows.\n\n{}\n"
-      "## Corners, compounds and weight\n\n"
-      "{} scenes of one to four discs, polygons and compounds that fall on a cable over discs and "
-      "polygons: {}. Ropes have mass and run over bodies between a weight and an end, chains hang "
-      "between two points. Events at their time. Energy that is gained is what leapfrog swings by "
-      "in violent turns, of second order in the step; what is beyond 1e-2 is not. {}.\n\n{}\n"
-      "## Cables that stretch\n\n"
-      "The same scenes, the cable as soft as 1e3 to 1e5 N. What vibrates is followed with no less "
-      "than three steps a period, and what is faster is damped: at so few energy swings, by what "
-      "falls with the step. Beyond 1e-2 are vibrations that a short interval lets loose, and "
-      "bodies that are moved when a cable comes between them. {}.\n\n{}\n"
-      "## Ropes that hang\n\n"
-      "{} scenes of the same kind on a rope with mass and 5 to 34 nodes, taut or slack, that hangs "
-      "between the bodies that it runs over: {}. Of every other rope the number of nodes adapts, "
-      "with a tolerance of 2 mm. Energy that is gained is leapfrog's swing, as there: a rim that "
-      "takes a node in lifts nothing (`sim/cable/taking_in.h`). {}.\n\n{}\n"
-      "## Over an edge\n\n"
-      "{} scenes of one to three boxes, polygons and discs that are thrown along a table and over "
-      "its edge: a wall, a block that is fixed, or one that lies on the floor. A corner that "
-      "slides off is let go at its time (`sim/motion/jumps.h`). Many lose nothing: energy that "
-      "they gain is leapfrog's error, a sixteenth with a quarter of the step.\n\n{}\n"
-      "How far two runs of a scene end apart, as above:\n\n{}",
-      run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
+      page_text, run.scenes, run.first, promises(samples), distances(samples), run.shapely_scenes,
       shares(shapely), left_with_finer(shapely), shapely_promises(shapely),
       left_with_finer(stretched), shapely_promises(stretched), run.shapely_scenes, shares(hanging),
       left_with_finer(hanging), shapely_promises(hanging), run.shapely_scenes,

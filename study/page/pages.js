@@ -5,8 +5,10 @@
 import { Refused, SessionGone } from './errors.js';
 import { make } from './make.js';
 
-const smallest = { width: 1280, height: 720 };  // px, of the screen
-const smallestWindow = { width: 1200, height: 540 };  // px; a screen has bars besides the window
+// Pixels of the screen, not CSS pixels: the zoom that some need to read must not keep them out, and takes nothing from the
+// clips, which are shown by pixels of the screen too.
+const smallest = { width: 1280, height: 720 };  // as it is told
+const smallestWindow = { width: 1200, height: 540 };  // a screen has bars besides the window
 
 const paragraphs = (text) => text.split('\n\n').map((part) => make('p', {}, part));
 
@@ -57,8 +59,7 @@ function startProblem(texts, error, site) {
 }
 
 const isTouchOnly = () => matchMedia('(pointer: coarse)').matches && !matchMedia('(any-pointer: fine)').matches;
-const isSmall = () => innerWidth < smallestWindow.width || innerHeight < smallestWindow.height ||
-  screen.width < smallest.width || screen.height < smallest.height;
+const isSmall = () => innerWidth * devicePixelRatio < smallestWindow.width || innerHeight * devicePixelRatio < smallestWindow.height;
 
 function fullScreen() {
   document.documentElement.requestFullscreen?.().catch(() => { /* then without */ });
@@ -277,8 +278,9 @@ export function questions(stage, texts, onLeave) {
 const nextParticipant = (texts, onNext) => (onNext ? [make('div', { class: 'row' },
   make('button', { type: 'button', id: 'next-participant', onclick: onNext }, texts.next_participant))] : []);
 
+// In one line, as JATOS exports results, so that it can be imported as one.
 function offerDownload(content) {
-  const url = URL.createObjectURL(new Blob([JSON.stringify(content, null, 2)], { type: 'application/json' }));
+  const url = URL.createObjectURL(new Blob([JSON.stringify(content), '\n'], { type: 'application/json' }));
   make('a', { href: url, download: 'answers.json' }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }

@@ -111,7 +111,8 @@ function build(display, { texts, practice, remaining, exit }) {
   return { video, choices, spoken, top, tell };
 }
 
-// One pixel of the clip on one of the screen where the window allows it, smaller otherwise.
+// One pixel of the clip on one of the screen where the window allows it, smaller otherwise; but where words are so large
+// that little room is left, the page scrolls.
 function keepFitting({ video, choices, top }) {
   const notice = document.getElementById('notice');
   const fit = () => {
@@ -119,7 +120,8 @@ function keepFitting({ video, choices, top }) {
     const width = video.videoWidth / devicePixelRatio, height = video.videoHeight / devicePixelRatio;  // CSS px
     const heightOf = (element) => element.getBoundingClientRect().height;
     const others = Math.max(...top.map(heightOf)) + heightOf(choices) + heightOf(notice);
-    const scale = Math.min(1, innerWidth / width, (innerHeight - others - 8) / height);
+    const widest = Math.min(1, document.documentElement.clientWidth / width);
+    const scale = Math.min(widest, Math.max((innerHeight - others - 8) / height, widest / 2));
     lastSize = { width: `${width * scale}px`, height: `${height * scale}px` };
     Object.assign(video.style, lastSize);
     choices.style.visibility = 'visible';
@@ -248,7 +250,7 @@ class Watch {
       loops_watched: this.loops,
       focus_lost_count: this.focusLost,
       dropped_frames: droppedVideoFrames,
-      frame_count: totalVideoFrames,
+      frame_count: Math.max(totalVideoFrames, droppedVideoFrames),  // dropped ones among them, also where a browser miscounts
       ...(gaps.length > 0 && { loop_gap_median_s: median(gaps), loop_gap_max_s: gaps.at(-1) }),
       playback_errors: this.errors,
     };
@@ -279,7 +281,7 @@ function side(choices, texts) {
       decide(choice, 'keyboard');
     };
     const buttons = ['left', 'right'].map((choice) => make('button', {
-      type: 'button', id: choice, 'aria-label': texts[`${choice}_label`], onclick: (event) => decide(choice, inputOf(event)),
+      type: 'button', id: choice, 'aria-label': `${texts[choice]}: ${texts[`${choice}_label`]}`, onclick: (event) => decide(choice, inputOf(event)),
     }, texts[choice]));
     choices.replaceChildren(buttons[0], make('p', { class: 'arrows hint' }, texts.arrow_hint), buttons[1]);
     addEventListener('keydown', onKey);

@@ -103,8 +103,14 @@ export function connect(onTrouble) {
     /** For the next participant at this browser. */
     forget: () => stored.write(null),
 
-    /** What this browser knows, for a participant whose answers the server does not take. */
-    download: (freeText) => ({ ...stored.read(), free_text: freeText }),
+    /**
+     * What this browser knows, for a participant whose answers the server does not take; but for the secret and the link, by
+     * which whoever is sent it could go on in the participant's place.
+     */
+    download(freeText) {
+      const { token, link: unused, ...rest } = stored.read();
+      return { participant: token.split('.')[0], ...rest, free_text: freeText };
+    },
 
     startAnew() {
       return this.leave();

@@ -31,117 +31,126 @@ void expect_refused(const Refused& one, const ReadOptions& options = {}) {
   }
 }
 
-TEST(Malformed, TidyCsv) {
-  const std::string head = "participant,demonstration,choice";
-  const std::string full = head + ",group,side,position,reaction_time_s,kind\n";
-  std::vector<Refused> cases;
-  const auto add = [&](const std::string& content, const std::string& says) {
-    cases.push_back({"log.csv", content, says});
-  };
-  // Headers.
-  add("", "empty");
-  add("\n\n\n", "empty");
-  add("\xEF\xBB\xBF", "empty");
-  add(head + "\n", "no answers");
-  add("participant,demonstration\na,1\n", "`choice` is missing");
-  add("participant,choice\na,pinch\n", "`demonstration` is missing");
-  add("demonstration,choice\n1,pinch\n", "`participant` is missing");
-  add("participant;demonstration;choice\na;1;pinch\n", "--separator");
-  add("participant\tdemonstration\tchoice\n", "--separator");
-  add("Participant,demonstration,choice\na,1,pinch\n", "did you mean `participant`");
-  add(head + ",postion\na,1,pinch,1\n", "did you mean `position`");
-  add(head + ",reaction_time\na,1,pinch,1\n", "did you mean `reaction_time_s`");
-  add(head + ",age\na,1,pinch,1\n", "--ignore-other-columns");
-  add(head + ",choice\na,1,pinch,pinch\n", "twice");
-  add(head + ",\na,1,pinch,\n", "unknown column");
-  add(head + ",pinch\na,1,pinch,1\n", "unknown column `pinch`");
-  add("pinch,cable\n1,2\n", "`demonstration` is missing");
-  // Shapes of records.
-  add(head + "\na,1\n", ":2: 2 fields");
-  add(head + "\na,1,pinch,x\n", ":2: 4 fields");
-  add(head + "\na,1,pinch\n\n\nb,1\n", ":5: 2 fields");
-  add(head + "\n\"a,1,pinch\n", "a quote is not closed");
-  add(head + "\n\"a\"x,1,pinch\n", ":2: text after a closing quote");
-  add(head + "\na\"x,1,pinch\n", ":2: a quote");
-  add(head + "\n\"a\n\",1,pinch\n", "control character");
-  add(head + "\n\"" + std::string(2 << 20, 'x') + "\",1,pinch\n", "1 MiB");
-  add(head + "\n" + std::string(2 << 20, 'x'), "1 MiB");
-  add(head + std::string("\na\0b,1,pinch\n", 13), "zero byte");
-  // Names.
-  add(head + "\n,1,pinch\n", "bad participant: it is empty");
-  add(head + "\na,,pinch\n", "bad demonstration: it is empty");
-  add(head + "\n a,1,pinch\n", "blank");
-  add(head + "\na ,1,pinch\n", "blank");
-  add(head + "\na,1 ,pinch\n", "blank");
-  add(head + "\na\x01,1,pinch\n", "control character");
-  add(head + "\na\x7f,1,pinch\n", "control character");
-  add(head + "\na\tb,1,pinch\n", "control character");
-  add(head + "\n\xff,1,pinch\n", "UTF-8");
-  add(head + "\n\xc3,1,pinch\n", "UTF-8");
-  add(head + "\n\xc0\x80,1,pinch\n", "UTF-8");
-  add(head + "\n\xe0\x80\x80,1,pinch\n", "UTF-8");
-  add(head + "\n\xed\xa0\x80,1,pinch\n", "UTF-8");
-  add(head + "\n\xf4\x90\x80\x80,1,pinch\n", "UTF-8");
-  add(head + "\nJos\xe9,1,pinch\n", "UTF-8");
-  add(head + "\n" + std::string(129, 'x') + ",1,pinch\n", "128 bytes");
-  // Choices.
+const std::string head = "participant,demonstration,choice";
+
+void expect_log_refused(const std::string& content, const std::string& says) {
+  expect_refused({"log.csv", content, says});
+}
+
+TEST(Malformed, TidyCsvHeaders) {
+  expect_log_refused("", "empty");
+  expect_log_refused("\n\n\n", "empty");
+  expect_log_refused("\xEF\xBB\xBF", "empty");
+  expect_log_refused(head + "\n", "no answers");
+  expect_log_refused("participant,demonstration\na,1\n", "`choice` is missing");
+  expect_log_refused("participant,choice\na,pinch\n", "`demonstration` is missing");
+  expect_log_refused("demonstration,choice\n1,pinch\n", "`participant` is missing");
+  expect_log_refused("participant;demonstration;choice\na;1;pinch\n", "--separator");
+  expect_log_refused("participant\tdemonstration\tchoice\n", "--separator");
+  expect_log_refused("Participant,demonstration,choice\na,1,pinch\n", "did you mean `participant`");
+  expect_log_refused(head + ",postion\na,1,pinch,1\n", "did you mean `position`");
+  expect_log_refused(head + ",reaction_time\na,1,pinch,1\n", "did you mean `reaction_time_s`");
+  expect_log_refused(head + ",age\na,1,pinch,1\n", "--ignore-other-columns");
+  expect_log_refused(head + ",choice\na,1,pinch,pinch\n", "twice");
+  expect_log_refused(head + ",\na,1,pinch,\n", "unknown column");
+  expect_log_refused(head + ",pinch\na,1,pinch,1\n", "unknown column `pinch`");
+  expect_log_refused("pinch,cable\n1,2\n", "`demonstration` is missing");
+}
+
+TEST(Malformed, TidyCsvRecords) {
+  expect_log_refused(head + "\na,1\n", ":2: 2 fields");
+  expect_log_refused(head + "\na,1,pinch,x\n", ":2: 4 fields");
+  expect_log_refused(head + "\na,1,pinch\n\n\nb,1\n", ":5: 2 fields");
+  expect_log_refused(head + "\n\"a,1,pinch\n", "a quote is not closed");
+  expect_log_refused(head + "\n\"a\"x,1,pinch\n", ":2: text after a closing quote");
+  expect_log_refused(head + "\na\"x,1,pinch\n", ":2: a quote");
+  expect_log_refused(head + "\n\"a\n\",1,pinch\n", "control character");
+  expect_log_refused(head + "\n\"" + std::string(2 << 20, 'x') + "\",1,pinch\n", "1 MiB");
+  expect_log_refused(head + "\n" + std::string(2 << 20, 'x'), "1 MiB");
+  expect_log_refused(head + std::string("\na\0b,1,pinch\n", 13), "zero byte");
+}
+
+TEST(Malformed, TidyCsvNames) {
+  expect_log_refused(head + "\n,1,pinch\n", "bad participant: it is empty");
+  expect_log_refused(head + "\na,,pinch\n", "bad demonstration: it is empty");
+  expect_log_refused(head + "\n a,1,pinch\n", "blank");
+  expect_log_refused(head + "\na ,1,pinch\n", "blank");
+  expect_log_refused(head + "\na,1 ,pinch\n", "blank");
+  expect_log_refused(head + "\na\x01,1,pinch\n", "control character");
+  expect_log_refused(head + "\na\x7f,1,pinch\n", "control character");
+  expect_log_refused(head + "\na\tb,1,pinch\n", "control character");
+  expect_log_refused(head + "\n\xff,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n\xc3,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n\xc0\x80,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n\xe0\x80\x80,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n\xed\xa0\x80,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n\xf4\x90\x80\x80,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\nJos\xe9,1,pinch\n", "UTF-8");
+  expect_log_refused(head + "\n" + std::string(129, 'x') + ",1,pinch\n", "128 bytes");
+}
+
+TEST(Malformed, TidyCsvChoices) {
   for (const char* choice :
        {"Pinch", "PINCH", "pinc", "1", "0", "left", "right", "baseline", "NA", "nan", "pinch "}) {
-    add(head + fmt::format("\na,1,{}\n", choice), "choice");
+    expect_log_refused(head + fmt::format("\na,1,{}\n", choice), "choice");
   }
-  add(head + "\na,1,pnich\n", "did you mean `pinch`");
-  add(head + "\na,1,\n", "the choice is missing");
-  // Doubles, contradictions, gaps.
-  add(head + "\na,1,pinch\na,1,pinch\n", "with the same choice");
-  add(head + "\na,1,pinch\na,1,cable\n", "contradict");
-  add(head + "\na,1,pinch\nb,1,pinch\na,1,cable\n", "log.csv:4");
-  add(head + "\na,1,pinch\na,2,pinch\nb,1,pinch\n", "missing: demonstration `2`");
-  add(head + "\na,2,pinch\na,1,pinch\nb,2,pinch\n", "missing: demonstration `1`");
-  add(head + ",position\na,1,pinch,1\na,2,pinch,1\n", "two answers at position 1");
-  add(head + ",group\na,1,pinch,x\nb,1,pinch,y\n", "one group");
-  add(head + ",group\na,1,pinch,x\nb,1,pinch,\n", "one group");
-  add(head + ",group\na,1,pinch,all\n", "`all` always exists");
-  // Optional columns.
+  expect_log_refused(head + "\na,1,pnich\n", "did you mean `pinch`");
+  expect_log_refused(head + "\na,1,\n", "the choice is missing");
+}
+
+TEST(Malformed, TidyCsvContradictions) {
+  expect_log_refused(head + "\na,1,pinch\na,1,pinch\n", "with the same choice");
+  expect_log_refused(head + "\na,1,pinch\na,1,cable\n", "contradict");
+  expect_log_refused(head + "\na,1,pinch\nb,1,pinch\na,1,cable\n", "log.csv:4");
+  expect_log_refused(head + "\na,1,pinch\na,2,pinch\nb,1,pinch\n", "missing: demonstration `2`");
+  expect_log_refused(head + "\na,2,pinch\na,1,pinch\nb,2,pinch\n", "missing: demonstration `1`");
+  expect_log_refused(head + ",position\na,1,pinch,1\na,2,pinch,1\n", "two answers at position 1");
+  expect_log_refused(head + ",group\na,1,pinch,x\nb,1,pinch,y\n", "one group");
+  expect_log_refused(head + ",group\na,1,pinch,x\nb,1,pinch,\n", "one group");
+  expect_log_refused(head + ",group\na,1,pinch,all\n", "`all` always exists");
+}
+
+TEST(Malformed, TidyCsvOptionalColumns) {
+  const std::string full = head + ",group,side,position,reaction_time_s,kind\n";
   for (const char* side : {"Left", "l", "top", "0", "leftt"}) {
-    add(full + fmt::format("a,1,pinch,,{},1,1,main\n", side), "side");
+    expect_log_refused(full + fmt::format("a,1,pinch,,{},1,1,main\n", side), "side");
   }
   for (const char* position :
        {"0", "-1", "1.5", "x", "65536", "1e3", "+1", " 1", "99999999999999999999", "0x1"}) {
-    add(full + fmt::format("a,1,pinch,,left,{},1,main\n", position), "position");
+    expect_log_refused(full + fmt::format("a,1,pinch,,left,{},1,main\n", position), "position");
   }
   for (const char* time : {"nan", "inf", "-inf", "-0.1", "86401", "1e400", "1,5", "1s", "0x1p3",
                            "--1", ".", "1e", " 1", "1 "}) {
-    add(full + fmt::format("a,1,pinch,,left,1,\"{}\",main\n", time), "reaction_time_s");
+    expect_log_refused(full + fmt::format("a,1,pinch,,left,1,\"{}\",main\n", time),
+                       "reaction_time_s");
   }
   for (const char* kind : {"Main", "trial", "", "attn"}) {
-    add(full + fmt::format("a,1,pinch,,left,1,1,{}\n", kind), "kind");
+    expect_log_refused(full + fmt::format("a,1,pinch,,left,1,1,{}\n", kind), "kind");
   }
-  add(full + "a,1,pinch,,left,1,1,attention\n", "attention check");
-  add(full + "a,1,pinch,,left,1,1,training\n", "no answers");
-  add(full + "a,1,pinch,,left,1,1,main\nb,1,fail,,,,,attention\n", "missing");
-  for (const Refused& one : cases) expect_refused(one);
-  EXPECT_GE(cases.size(), 90U);
+  expect_log_refused(full + "a,1,pinch,,left,1,1,attention\n", "attention check");
+  expect_log_refused(full + "a,1,pinch,,left,1,1,training\n", "no answers");
+  expect_log_refused(full + "a,1,pinch,,left,1,1,main\nb,1,fail,,,,,attention\n", "missing");
 }
 
 TEST(Malformed, CountTables) {
-  const std::string head = "demonstration,pinch,cable\n";
+  const std::string counts = "demonstration,pinch,cable\n";
   std::vector<Refused> cases;
   const auto add = [&](const std::string& content, const std::string& says) {
     cases.push_back({"counts.csv", content, says});
   };
-  add(head, "no answers");
+  add(counts, "no answers");
   add("demonstration,pinch\n1,2\n", "`cable` is missing");
   add("demonstration,pinch,cables\n1,2,3\n", "did you mean `cable`");
-  add(head + "1,15\n", "2 fields");
-  add(head + "1,15,1\n1,14,2\n", ":3: demonstration `1` is counted twice");
-  add(head + "1,0,0\n", "no answers");
+  add(counts + "1,15\n", "2 fields");
+  add(counts + "1,15,1\n1,14,2\n", ":3: demonstration `1` is counted twice");
+  add(counts + "1,0,0\n", "no answers");
   for (const char* count :
        {"-1", "1.5", "", "x", "nan", "1e3", "1000000001", "15 ", "\"1,000\"", "0x10", "∞"}) {
-    add(head + fmt::format("1,{},1\n", count), "whole number");
-    add(head + fmt::format("1,1,{}\n", count), "whole number");
+    add(counts + fmt::format("1,{},1\n", count), "whole number");
+    add(counts + fmt::format("1,1,{}\n", count), "whole number");
   }
-  add(head + "1,1000000000,1\n2,1000000000,1\n", "2000000000");
-  add(head + ",1,1\n", "bad demonstration");
+  add(counts + "1,1000000000,1\n2,1000000000,1\n", "2000000000");
+  add(counts + ",1,1\n", "bad demonstration");
   for (const Refused& one : cases) expect_refused(one);
   EXPECT_GE(cases.size(), 28U);
 }
@@ -178,8 +187,17 @@ struct Damage {
   const char* says;
 };
 
-TEST(Malformed, AnswerFileValues) {
-  const std::vector<Damage> damages{
+void expect_damages_refused(const std::vector<Damage>& damages) {
+  for (const Damage& damage : damages) {
+    json document = test::answer_document();
+    document[json::json_pointer(damage.pointer)] = damage.value;
+    SCOPED_TRACE(damage.pointer);
+    expect_refused({"p.json", document.dump(), damage.says});
+  }
+}
+
+TEST(Malformed, AnswerFilePlan) {
+  expect_damages_refused({
       {"/format", "pinchlab-answer", "did you mean `pinchlab-answers`"},
       {"/format", 1, "must be a string"},
       {"/version", 2, "version 1"},
@@ -209,6 +227,11 @@ TEST(Malformed, AnswerFileValues) {
       {"/plan/training_trials", -1, "whole number"},
       {"/plan/attention_checks", "1", "whole number"},
       {"/plan/demonstratons", 1, "did you mean `demonstrations`"},
+  });
+}
+
+TEST(Malformed, AnswerFileSession) {
+  expect_damages_refused({
       {"/started_utc", "yesterday", "UTC"},
       {"/started_utc", "2026-11-20 12:00:00", "UTC"},
       {"/started_utc", "2026-11-20T12:00:00+01:00", "UTC"},
@@ -244,6 +267,14 @@ TEST(Malformed, AnswerFileValues) {
       {"/free_text/thoughts", 1, "must be a string"},
       {"/free_text/thoughts", std::string(100001, 'x'), "longer than"},
       {"/free_text/ bad", "x", "bad key"},
+      {"/study/options_sha256", "x", "SHA-256"},
+      {"/trial", 1, "did you mean `trials`"},
+      {"/participants", 1, "did you mean `participant`"},
+  });
+}
+
+TEST(Malformed, AnswerFileTrials) {
+  expect_damages_refused({
       {"/trials", json::object(), "must be an array"},
       {"/trials", json::array(), "no answer of kind `main`"},
       {"/trials/1", 1, "must be an object"},
@@ -269,12 +300,16 @@ TEST(Malformed, AnswerFileValues) {
       {"/trials/1/reason", 5, "must be a string"},
       {"/trials/1/where_side", "left", "`where_x` is missing"},
       {"/trials/1/where_x", 0.5, "unknown key"},
-      {"/study/options_sha256", "x", "SHA-256"},
       {"/trials/1/choice", "Left", "did you mean `left`"},
       {"/trials/1/choice", "", "unknown"},
       {"/trials/1/choice", 0, "must be a string"},
       {"/trials/1/expected", "left", "unknown key"},
       {"/trials/2/expected", "pinch", "unknown"},
+  });
+}
+
+TEST(Malformed, AnswerFileCircumstances) {
+  expect_damages_refused({
       {"/trials/1/reaction_time_s", -0.001, "number from 0"},
       {"/trials/1/reaction_time_s", 86400.5, "number from 0"},
       {"/trials/1/reaction_time_s", "1.5", "number from 0"},
@@ -282,6 +317,7 @@ TEST(Malformed, AnswerFileValues) {
       {"/trials/1/loops_watched", 1.5, "whole number"},
       {"/trials/1/focus_lost_count", -1, "whole number"},
       {"/trials/1/dropped_frames", "0", "whole number"},
+      {"/trials/1/dropped_frames", 901, "901 is more than `frame_count` (900)"},
       {"/trials/1/loop_gap_max_s", -2, "loop_gap_max_s"},
       {"/trials/1/playback_errors", 0, "must be an array"},
       {"/trials/1/playback_errors", json::array({1}), "must hold strings"},
@@ -295,16 +331,7 @@ TEST(Malformed, AnswerFileValues) {
       {"/trials/1/screen_width_px", "x", "whole number"},
       {"/trials/1/device_pixel_ratio", 0, "number from"},
       {"/trials/1/reaction_time", 1.0, "did you mean `reaction_time_s`"},
-      {"/trial", 1, "did you mean `trials`"},
-      {"/participants", 1, "did you mean `participant`"},
-  };
-  for (const Damage& damage : damages) {
-    json document = test::answer_document();
-    document[json::json_pointer(damage.pointer)] = damage.value;
-    SCOPED_TRACE(damage.pointer);
-    expect_refused({"p.json", document.dump(), damage.says});
-  }
-  EXPECT_GE(damages.size(), 95U);
+  });
 }
 
 TEST(Malformed, EveryRequiredKeyIsMissedByName) {
@@ -342,21 +369,24 @@ TEST(Malformed, DamagedBytesNeverDoMoreThanThrow) {
   }
 }
 
+std::string why_refused(const std::vector<fs::path>& inputs, const ReadOptions& options = {}) {
+  try {
+    read_answers(inputs, options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was accepted";
+}
+
+void expect_says(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+const char* const small_log = "participant,demonstration,choice\na,1,pinch\n";
+
 TEST(Malformed, InputsThatDoNotGoTogether) {
   const TemporaryFolder folder;
-  const auto message = [](const std::vector<fs::path>& inputs,
-                          const ReadOptions& options = {}) -> std::string {
-    try {
-      read_answers(inputs, options);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "was accepted";
-  };
-  const auto expect_says = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  const fs::path tidy = folder.write("tidy.csv", "participant,demonstration,choice\na,1,pinch\n");
+  const fs::path tidy = folder.write("tidy.csv", small_log);
   const fs::path counts = folder.write("counts.csv", "demonstration,pinch,cable\n1,2,3\n");
   const fs::path a = folder.write("json/a.json", test::answer_document("p-1").dump());
   const fs::path b = folder.write("json/b.json", test::answer_document("p-1").dump());
@@ -372,22 +402,26 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
   }
   const fs::path d = folder.write("d.json", other_design.dump());
 
-  expect_says(message({}), "name at least one");
-  expect_says(message({folder.path() / "none.csv"}), "no such file");
-  expect_says(message({folder.write("x.txt", "")}), "unknown kind of file");
-  expect_says(message({tidy, tidy}), "named twice");
-  expect_says(message({tidy, counts}), "two runs");
-  expect_says(message({counts, tidy}), "two runs");
-  expect_says(message({folder.path() / "json"}), "has a file already");
-  expect_says(message({a, b}), "has a file already");
-  expect_says(message({a, c}), "other SHA-256");
-  expect_says(message({a, d}), "two designs");
+  expect_says(why_refused({}), "name at least one");
+  expect_says(why_refused({folder.path() / "none.csv"}), "no such file");
+  expect_says(why_refused({folder.write("x.txt", "")}), "unknown kind of file");
+  expect_says(why_refused({tidy, tidy}), "named twice");
+  expect_says(why_refused({tidy, counts}), "two runs");
+  expect_says(why_refused({counts, tidy}), "two runs");
+  expect_says(why_refused({folder.path() / "json"}), "has a file already");
+  expect_says(why_refused({a, b}), "has a file already");
+  expect_says(why_refused({a, c}), "other SHA-256");
+  expect_says(why_refused({a, d}), "two designs");
   fs::create_directories(folder.path() / "empty");
-  expect_says(message({folder.path() / "empty"}), "no answer files");
+  expect_says(why_refused({folder.path() / "empty"}), "no answer files");
+}
 
+TEST(Malformed, FilesOfWhoIsLeftOut) {
+  const TemporaryFolder folder;
+  const fs::path tidy = folder.write("tidy.csv", small_log);
   ReadOptions options;
   options.exclude_file = folder.path() / "none.csv";
-  expect_says(message({tidy}, options), "cannot be opened");
+  expect_says(why_refused({tidy}, options), "cannot be opened");
   for (const auto& [content, says] : std::vector<std::pair<std::string, std::string>>{
            {"", "first line"},
            {"participant\na\n", "first line"},
@@ -400,9 +434,14 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
            {"participant,reason\naa,x\n", "in no input"},
            {"participant,reason\na,x\n", "all participants are left out, by --exclude"}}) {
     options.exclude_file = folder.write("exclude.csv", content);
-    expect_says(message({tidy}, options), says);
+    expect_says(why_refused({tidy}, options), says);
   }
-  options.exclude_file.clear();
+}
+
+TEST(Malformed, FilesOfGroups) {
+  const TemporaryFolder folder;
+  const fs::path tidy = folder.write("tidy.csv", small_log);
+  ReadOptions options;
   for (const auto& [content, says] : std::vector<std::pair<std::string, std::string>>{
            {"", "first line"},
            {"demonstration,groups\n1,x\n", "first line"},
@@ -412,7 +451,7 @@ TEST(Malformed, InputsThatDoNotGoTogether) {
            {"demonstration,group\n1,all\n", "always exists"},
            {"demonstration,group\n1,x\n1,x\n", "twice"}}) {
     options.groups_file = folder.write("groups.csv", content);
-    expect_says(message({tidy}, options), says);
+    expect_says(why_refused({tidy}, options), says);
   }
 }
 

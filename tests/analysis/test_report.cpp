@@ -397,6 +397,23 @@ TEST(WriteReport, KeepsWhatItReads) {
   EXPECT_TRUE(fs::exists(out / "answers.csv"));
 }
 
+// Another program's answers.csv has more columns than the report's.
+TEST(WriteReport, ReplacesNothingThatItReads) {
+  const TemporaryFolder folder;
+  AnswersTable table = test::clustered_table();
+  const Report report = analyse_table(table, {});
+  const fs::path log = folder.write("logs/answers.csv", "participant,demonstration,choice,age\n");
+  const fs::path answers = folder.write("answers/p-1.json", "{}");
+  for (const auto& [source, out] :
+       {std::pair(log, log.parent_path()), std::pair(answers, answers.parent_path()),
+        std::pair(answers.parent_path(), folder.path() / "logs/../answers")}) {
+    table.sources = {source.string()};
+    EXPECT_THROW(write_report(report, table, out, false), InputError) << source;
+    EXPECT_FALSE(fs::exists(out / "report.json")) << "no answer file, among answer files";
+  }
+  EXPECT_EQ(test::read_text(log), "participant,demonstration,choice,age\n");
+}
+
 TEST(WriteReport, RefusesAFileAsItsFolder) {
   const TemporaryFolder folder;
   const AnswersTable table = test::clustered_table();

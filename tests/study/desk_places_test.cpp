@@ -14,6 +14,7 @@
 #include "analysis/answers_table.h"
 #include "base/answer_file.h"
 #include "base/input_error.h"
+#include "study/answers.h"
 #include "study/tables.h"
 #include "tests/study/support.h"
 
@@ -43,7 +44,7 @@ TEST(Desk, WhoLeavesIsReplaced) {
 TEST(Desk, IdleSessionsEndAfterADay) {
   DeskOptions options = desk_options(scratch_folder());
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   Desk desk(std::move(options));
   const std::string token = desk.start("", "");
   *now = "2026-11-21T11:59:59.000Z";
@@ -63,9 +64,9 @@ TEST(Desk, IdleSessionsEndAlsoWhileNobodyComes) {
   const fs::path folder = scratch_folder();
   auto is_next_day = std::make_shared<std::atomic<bool>>(false);
   DeskOptions options = desk_options(folder);
-  options.utc_now = [is_next_day] {
+  set_clock(options, [is_next_day] {
     return *is_next_day ? "2026-11-21T12:00:00.000Z" : "2026-11-20T12:00:00.000Z";
-  };
+  });
   ServerOptions often;
   often.idle_check = std::chrono::milliseconds(5);
   RunningServer running(std::move(options), often);
@@ -83,7 +84,7 @@ TEST(Desk, IdleSessionsEndAtARestart) {
   const fs::path folder = scratch_folder();
   const auto at = [&](const char* now) {
     DeskOptions options = desk_options(folder);
-    options.utc_now = [now] { return now; };
+    set_clock(options, [now] { return now; });
     return options;
   };
   const std::string first = Desk(at("2026-11-20T12:00:00.000Z")).start("", "");
@@ -94,11 +95,33 @@ TEST(Desk, IdleSessionsEndAtARestart) {
   EXPECT_EQ(desk.overview().left, 1U);
 }
 
+// Set by a network, or by hand: nobody has been away for a day.
+TEST(Desk, AClockThatIsSetEndsNoSession) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  std::string now = "2026-11-20T12:00:00.000Z";
+  options.utc_now = [&] { return now; };
+  options.config.participant_limit = 2;
+  Desk desk(std::move(options));
+  const std::string before = desk.start("", "");
+  for (const char* set : {"2026-11-22T12:00:00.000Z", "2026-11-18T12:00:00.000Z"}) {
+    now = set;
+    desk.drop_idle();
+    EXPECT_EQ(refused([&] { desk.resume(before); }), 0) << set;
+  }
+  const std::string after = desk.start("", "");
+  now = "2026-11-20T12:00:00.000Z";
+  desk.drop_idle();
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409) << "nobody is away for five minutes either";
+  EXPECT_EQ(refused([&] { desk.progress(before); }), 0);
+  EXPECT_EQ(refused([&] { desk.progress(after); }), 0);
+}
+
 TEST(Desk, WhoWaitsForAFullDiskIsNotIdle) {
   const fs::path folder = scratch_folder();
   std::string now = "2026-11-20T12:00:00.000Z";
   DeskOptions options = desk_options(folder);
-  options.utc_now = [&] { return now; };
+  set_clock(options, [&] { return now; });
   options.longest_idle = std::chrono::minutes(30);
   Desk desk(std::move(options));
   const std::string token = desk.start("", "");
@@ -201,7 +224,7 @@ TEST(Desk, PlacesAreReleased) {
   const fs::path folder = scratch_folder();
   DeskOptions options = desk_options(folder);
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   options.config.participant_limit = 1;
   options.longest_idle = std::chrono::minutes(30);
   Desk desk(std::move(options));
@@ -224,11 +247,59 @@ TEST(Desk, PlacesAreReleased) {
   desk.start("", "");
 }
 
+// As `study withdraw` does it, which tells a running server nothing.
+TEST(Desk, ThePlaceOfAnswersThatAreGoneIsFree) {
+  const fs::path folder = scratch_folder();
+  DeskOptions options = desk_options(folder);
+  options.config.participant_limit = 2;
+  Desk desk(std::move(options));
+  const auto take_part_as_is = [&] { return take_part(desk, [](json&) {}); };
+  const std::string code = take_part_as_is();
+  take_part_as_is();
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  fs::rename(folder / "answers", folder / "away");
+  EXPECT_NE(refused([&] { desk.start("", ""); }), 0) << "a disk that is gone is nobody's wish";
+  fs::rename(folder / "away", folder / "answers");
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+  EXPECT_TRUE(withdraw(folder / "answers", code));
+  EXPECT_EQ(desk.overview().finished, 1U);
+  desk.start("", "");
+  EXPECT_EQ(desk.overview().running.at(0).number, 0U);
+  EXPECT_EQ(refused([&] { desk.start("", ""); }), 409);
+}
+
+// Files that another one removes meanwhile are nobody's concern.
+TEST(Withdraw, SeveralAtOnce) {
+  const fs::path folder = scratch_folder();
+  constexpr int people = 128, threads = 4;
+  std::vector<std::string> codes;
+  for (int i = 0; i < people; ++i) {
+    codes.push_back(withdrawal_code(random_hex(16)));
+    write_text(folder / (std::to_string(i) + ".json"),
+               json{{"withdrawal_code_sha256", withdrawal_hash(codes.back())}}.dump());
+  }
+  std::atomic<int> removed = 0, failed = 0;
+  const auto withdraw_every = [&](int first) {
+    for (int i = first; i < people; i += threads) {
+      try {
+        removed += withdraw(folder, codes.at(static_cast<std::size_t>(i))) ? 1 : 0;
+      } catch (const std::exception&) {
+        ++failed;
+      }
+    }
+  };
+  std::vector<std::thread> running;
+  for (int i = 0; i < threads; ++i) running.emplace_back(withdraw_every, i);
+  for (std::thread& thread : running) thread.join();
+  EXPECT_EQ(failed, 0);
+  EXPECT_EQ(removed, people);
+}
+
 TEST(Desk, ManyStartsFromOneAddressFillNoStudy) {
   const fs::path folder = scratch_folder();
   DeskOptions options = desk_options(folder);
   auto now = std::make_shared<std::string>("2026-11-20T12:00:00.000Z");
-  options.utc_now = [now] { return *now; };
+  set_clock(options, [now] { return *now; });
   options.config.participant_limit = 16;
   options.most_unanswered = 20;
   Desk desk(std::move(options));
@@ -256,7 +327,7 @@ struct SmallStudy {
   explicit SmallStudy(const fs::path& folder, bool has_links = false)
       : desk([&] {
           DeskOptions options = desk_options(folder);
-          options.utc_now = [this] { return now; };
+          set_clock(options, [this] { return now; });
           options.config.participant_limit = 3;
           options.config.one_time_links = has_links;
           Question age;

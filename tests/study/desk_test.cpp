@@ -71,6 +71,8 @@ TEST(Session, BodiesAreCheckedWholly) {
   EXPECT_EQ(status("choice", "both"), 422);
   EXPECT_EQ(status("reaction_time_s", 1e9), 422);
   EXPECT_EQ(status("unknown", 1), 422);
+  EXPECT_EQ(status("dropped_frames", 900), 0);
+  EXPECT_EQ(status("dropped_frames", 901), 422) << "of 900 frames";
   EXPECT_EQ(status("playback_errors", json::array({std::string(501, 'x')})), 422);
   EXPECT_EQ(refused([] {
               parse_free_text({{"free_text", {{"thoughts", std::string(20001, 'x')}}}});

@@ -337,7 +337,7 @@ TEST(Freeze, RulesAreCheckedWholly) {
                      {"analysis", {{"guess", 0.9}, {"lapse", "free"}}}};
   EXPECT_NE(message_of<InputError>([&] {
               parse_rules(none, "r.json", AnswersKind::graded);
-            }).find("r.json: /analysis: `guess` and `lapse`"),
+            }).find("r.json: /analysis: guesses of 0.9 and lapses of up to 0.1 leave no room"),
             std::string::npos);
 }
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The server over HTTP: malformed requests, many participants at once, and being killed.
+// The server over HTTP: many participants at once, and being killed.
 #include "study/server.h"
 #include "base/read_file.h"
 #include "base/sha256.h"
-
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -20,6 +16,7 @@
 #include "study/http_client.h"
 #include "study/http_server.h"
 #include "study/page_assets.h"
+#include "tests/study/raw_connection.h"
 #include "tests/study/support.h"
 
 namespace pinchlab::study {
@@ -95,166 +92,6 @@ TEST(Server, PartsOfClips) {
   for (const char* bad : {"bytes=99999999-", "bytes=5-2", "bytes=0-1,3-4", "bytes=-0", "bytes=x"}) {
     EXPECT_EQ(part(bad)->status, 416) << bad;
   }
-}
-
-// Sends bytes as they are.
-class RawConnection {
- public:
-  explicit RawConnection(const std::string& address)
-      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in to = {};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(port_of(address));
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
-  }
-  ~RawConnection() { ::close(socket_); }
-  RawConnection(const RawConnection&) = delete;
-  RawConnection& operator=(const RawConnection&) = delete;
-
-  void send(const std::string& bytes) const {
-    ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-  }
-  // The status of the answer, 0 if there is none.
-  [[nodiscard]] int status() const {
-    const timeval patience = {60, 0};
-    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    std::array<char, 4096> buffer{};
-    std::string reply;
-    ssize_t got = 0;
-    while (reply.size() <= 12 && (got = ::recv(socket_, buffer.data(), buffer.size(), 0)) > 0) {
-      reply.append(buffer.data(), static_cast<std::size_t>(got));
-    }
-    return reply.size() > 12 ? std::atoi(reply.c_str() + 9) : 0;
-  }
-  // The server has closed it. What it said before is read and forgotten.
-  static bool has_ended(const std::unique_ptr<RawConnection>& connection) {
-    std::array<char, 4096> buffer{};
-    ssize_t got = 0;
-    while ((got = ::recv(connection->socket_, buffer.data(), buffer.size(), MSG_DONTWAIT)) > 0) {
-    }
-    return got == 0 || errno != EAGAIN;
-  }
-
- private:
-  int socket_;
-};
-
-// The status of the answer to `bytes`, 0 if there is none.
-int raw_status(const std::string& address, const std::string& bytes) {
-  const RawConnection connection(address);
-  connection.send(bytes);
-  return connection.status();
-}
-
-std::string state_of(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) {
-      files[entry.path().string()] = sha256(read_whole(entry.path()));
-    }
-  }
-  return json(files).dump();
-}
-
-std::vector<std::string> malformed_requests(const std::string& token) {
-  std::vector<std::string> requests;
-  const auto add = [&](const std::string& line, const std::string& headers = "",
-                       const std::string& body = "") {
-    requests.push_back(
-        line + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n" + headers +
-        (body.empty() ? "" : "Content-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" +
-        body);
-  };
-  const std::string type = "Content-Type: application/json\r\n";
-  const std::string ours = type + "Authorization: Bearer " + token + "\r\n";
-  for (const char* path : {"/../../etc/passwd",
-                           "/media/../../etc/passwd",
-                           "/media/%2e%2e/%2e%2e/etc/passwd",
-                           "/%2e%2e/%2e%2e/etc/passwd",
-                           "/texts/en.json",
-                           "/index.html",
-                           "/media/",
-                           "/media/x.mp4",
-                           "/media/0123456789abcdef0123456789abcdef.mp4",
-                           "/media/0123456789abcdef0123456789abcdef.json",
-                           "/answers/",
-                           "/.running/study.json",
-                           "/api/",
-                           "/api/nothing",
-                           "/api/session",
-                           "/api/overview",
-                           "//",
-                           "/main.js/",
-                           "/main.js%00",
-                           "/api/save"}) {
-    add(std::string("GET ") + path);
-  }
-  for (const char* method : {"PUT", "DELETE", "PATCH", "NONSENSE"}) {
-    add(std::string(method) + " /api/save", ours, "{}");
-  }
-  for (const char* body : {"{", "[]", "null", "3", "\"x\"", "{\"consent\":1}",
-                           "{\"consent\":false}", "{}", "{\"consent\":true,\"consent\":true}",
-                           "{\"consent\":true,\"x\":1}", "{\"consent\":true,\"link\":3}",
-                           "[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]", "\xFF\xFE", "{\"consent\":NaN}"}) {
-    add("POST /api/start", type, body);
-  }
-  add("POST /api/start", "", "{\"consent\":true}");
-  add("POST /api/start", "Content-Type: text/plain\r\n", "{\"consent\":true}");
-  for (const char* body : {"{\"index\":-1}", "{\"index\":1}", "{\"index\":0.5}",
-                           "{\"index\":\"0\"}", "{\"index\":0,\"x\":1}", "{}"}) {
-    add("POST /api/show", ours, body);
-  }
-  add("POST /api/answer", ours, answer_body(0).dump());
-  add("POST /api/answer", ours, answer_body(99999).dump());
-  add("POST /api/save", ours, "{\"free_text\":{}}");
-  add("POST /api/save", ours, "{\"free_text\":{\"thoughts\":1}}");
-  add("POST /api/leave", ours, "{\"now\":true}");
-  add("POST /api/leave", type, "{}");
-  add("POST /api/resume", type + "Authorization: Basic eDp5\r\n", "{}");
-  add("POST /api/show", type + "Authorization: Bearer " + std::string(5000, 'a') + "\r\n",
-      "{\"index\":0}");
-  add("POST /api/start", type, "{\"consent\":true,\"link\":\"" + std::string(300000, 'x') + "\"}");
-  add("GET /" + std::string(9000, 'a'));
-  add("GET /", "X: " + std::string(9000, 'a') + "\r\n");
-  const std::string start = "POST /api/start HTTP/1.1\r\nHost: 127.0.0.1\r\n" + type;
-  const std::string consent = "{\"consent\":true}";
-  // Bodies whose end two readers could take to be in two places.
-  requests.push_back(start + "Transfer-Encoding: chunked\r\n\r\n10\r\n" + consent +
-                     "\r\n0\r\n\r\n");
-  requests.push_back(start + "Transfer-Encoding: gzip\r\nContent-Length: 16\r\n\r\n" + consent);
-  requests.push_back(start + "Content-Length: 16\r\nContent-Length: 16\r\n\r\n" + consent);
-  requests.push_back(start + "Content-Length: 16\r\nContent-Length: 2\r\n\r\n" + consent);
-  requests.push_back(start + "Content-Length: 16, 16\r\n\r\n" + consent);
-  requests.push_back(start + "Content-Length: +16\r\n\r\n" + consent);
-  requests.push_back(start + "Content-Length: 16\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n");
-  requests.push_back(start + "Content-Length: 16\r\nHost: 127.0.0.1\r\n\r\n" + consent);
-  requests.emplace_back("GET / HTTP/1.1\r\n\r\n");
-  for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example", "",
-                           "127.0.0.1:x", "[::1", "[evil]"}) {
-    requests.push_back("GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\n\r\n");
-  }
-  requests.emplace_back("NONSENSE\r\n\r\n");
-  return requests;
-}
-
-TEST(Server, MalformedRequestsChangeNothing) {
-  const fs::path folder = scratch_folder();
-  RunningServer running(desk_options(folder));
-  HttpClient client(running.server.address());
-  const std::string token =
-      json::parse(client.post("/api/start", {{"consent", true}})->body)["token"];
-  const std::string before = state_of(folder);
-  const auto requests = malformed_requests(token);
-  ASSERT_GE(requests.size(), 50U);
-  for (const std::string& request : requests) {
-    const int status = raw_status(running.server.address(), request);
-    EXPECT_GE(status, 400) << request.substr(0, 300);
-    EXPECT_LT(status, 500) << request.substr(0, 300);
-    ASSERT_EQ(state_of(folder), before) << request.substr(0, 300);
-  }
-  EXPECT_EQ(client.get("/api/session", bearer(token))->status, 200)
-      << "and the server still serves";
 }
 
 // The answer to a header alone: the server must not wait for a body that it will not take.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "study/http_client.h"
 #include "study/secrets.h"
 #include "study/server.h"
+#include "study/utc.h"
 #include "tests/base/scratch_folder.h"
 #include "tests/study/server_process.h"
 
@@ -48,6 +50,15 @@ inline DeskOptions desk_options(const std::filesystem::path& folder) {
   options.answers = folder / "answers";
   options.seed = 7;
   return options;
+}
+
+/// A clock that nobody sets: what `utc` tells goes by.
+template <class Utc>
+void set_clock(DeskOptions& options, const Utc& utc) {
+  options.utc_now = utc;
+  options.steady_now = [utc] {
+    return std::chrono::steady_clock::time_point(parse_utc(utc()).time_since_epoch());
+  };
 }
 
 /// A desk and its server, on a free port.

@@ -67,10 +67,12 @@ test('a whole session with a reload, a result that is refused at first, and a co
   await answerRest(page);
   await page.fill('#thoughts', 'Bra\n"så"');
   await page.click('#next');
-  jatos.failures = 1;
+  jatos.failures = 2;
   await page.click('#save');
   await page.waitForSelector('#retry');
   assert.equal(jatos.runs.get('first').result, null);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
+  await download.saveAs(join(folder, 'downloaded.json'));
   await page.waitForSelector('#code');
   await picture(page, '20-jatos-thanks');
   const { state, result } = jatos.runs.get('first');
@@ -132,6 +134,7 @@ test('the results become answer files that the statistics read', () => {
     }
     for (const trial of file.trials) assert.equal(trial.clip, `${trial.demonstration}.left-${trial.left}.mp4`);
   }
+  assert.match(run('import', '--jatos', 'downloaded.json', '--key', 'study.key.json', '--answers', 'downloaded'), /^1 participant imported/);
   execFileSync(program, ['analyse', 'answers', '--out', 'report', '--no-figures'], { cwd: folder, stdio: 'ignore' });
   run('withdraw', '--answers', 'answers', jatos.runs.get('first').result.withdrawal_code);
   assert.equal(readdirSync(join(folder, 'answers')).length, 1);

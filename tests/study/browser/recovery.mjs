@@ -207,8 +207,12 @@ test('a server killed before and after saving: saved once, with one code', () =>
   await assertAccessible(page, 'not saved');
   await picture(page, '13-not-saved');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
-  const kept = JSON.parse(readFileSync(await download.path(), 'utf8'));
+  const downloaded = readFileSync(await download.path(), 'utf8'), kept = JSON.parse(downloaded);
   assert.equal(kept.answers.length, demonstrations.length, 'what can be downloaded is complete');
+  const { token } = await page.evaluate(() => JSON.parse(localStorage.getItem('study')));
+  const [participant, secret] = token.split('.');
+  assert.ok(!downloaded.includes(secret), 'who is given the file cannot go on in the participant\'s place');
+  assert.equal(kept.participant, participant, 'but it says whose the answers are');
   server = await serve(folder, { port: server.port });
   // The confirmation of the first attempt that arrives is lost on its way.
   let lost = 0;
@@ -225,7 +229,7 @@ test('a server killed before and after saving: saved once, with one code', () =>
   await server.kill();
   server = await serve(folder, { port: server.port });
   const again = await fetch(new URL('api/save', server.address), {
-    method: 'POST', headers: { 'Content-Type': 'application/json', Authorization: `Bearer ${kept.token}` }, body: '{"free_text":{}}',
+    method: 'POST', headers: { 'Content-Type': 'application/json', Authorization: `Bearer ${token}` }, body: '{"free_text":{}}',
   });
   assert.deepEqual([again.status, await again.json()], [200, { done: true, code }], 'also after a restart');
   assert.equal(answersIn(server).length, 1);

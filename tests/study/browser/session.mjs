@@ -3,7 +3,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { answer, answersIn, answerTrials, assertAccessible, consent, demonstrations, open, openSessions, picture, save, withStudy } from './support.mjs';
+import { answer, answersIn, answerTrials, assertAccessible, assertAllIsOnTheScreen, consent, demonstrations, open, openSessions, picture, save, withStudy } from './support.mjs';
 
 test('with the mouse, from beginning to end, every page accessible', () => withStudy({}, async (server, context) => {
   const page = await open(context, server.address);
@@ -91,6 +91,7 @@ test('with the keyboard only', () => withStudy({ language: 'sv' }, async (server
   const expected = ['left', 'right', 'left'];
   for (const [i, key] of ['ArrowLeft', 'ArrowRight', 'Tab'].entries()) {
     await page.waitForSelector('#left');
+    await assertAccessible(page, 'Swedish trial');
     const remaining = await page.textContent('#remaining');
     if (key === 'Tab') {
       await tabTo('left');
@@ -188,6 +189,44 @@ test('a small screen is told kindly', () => withStudy({}, async (server, context
   await assertAccessible(page, 'small');
   await picture(page, '10-small');
 }, { viewport: { width: 800, height: 500 } }));
+
+// As Chromium zooms: fewer CSS pixels of the window, not of the screen. From some zoom on the page scrolls.
+for (const [width, height, zoom] of [[1920, 1080, 2], [1366, 768, 2], [1368, 768, 4]]) {
+  test(`a zoom of ${100 * zoom} % keeps nobody out, ${width} x ${height}`, () => withStudy({}, async (server, context) => {
+    const page = await open(context, server.address);
+    await page.waitForSelector('#start');
+    assert.equal(await page.isDisabled('#start'), false);
+    assert.doesNotMatch(await page.textContent('#stage'), /too small/);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is to the side of the window');
+    await assertAccessible(page, 'zoomed information');
+    await picture(page, `zoom-${width}-${zoom}-information`);
+    await consent(page);
+    for (const key of ['ArrowLeft', 'ArrowRight', 'ArrowLeft']) {
+      await page.waitForSelector('#left');
+      if (zoom === 2) await assertAllIsOnTheScreen(page);
+      const { isWide, isOver } = await page.evaluate(() => {
+        const [left, arrows, right] = ['#left', '.arrows', '#right'].map((selector) => document.querySelector(selector).getBoundingClientRect());
+        const isBeside = left.right < arrows.left && arrows.right < right.left, isUnder = arrows.top >= left.bottom && left.right < right.left;
+        return { isWide: document.documentElement.scrollWidth > innerWidth, isOver: !isBeside && !isUnder };
+      });
+      assert.deepEqual([isWide, isOver], [false, false], 'nothing is to the side of the window or lies over another');
+      await assertAccessible(page, 'zoomed trial');
+      await picture(page, `zoom-${width}-${zoom}-choice`);
+      const remaining = await page.textContent('#remaining');
+      await page.keyboard.press(key);
+      await page.waitForFunction((before) => document.querySelector('#remaining')?.textContent !== before, remaining);
+    }
+    await save(page);
+    const [file] = answersIn(server);
+    assert.deepEqual(file.trials.map(({ choice }) => choice), ['left', 'right', 'left']);
+    for (const trial of file.trials) {
+      assert.deepEqual([trial.window_width_px, trial.window_height_px, trial.device_pixel_ratio], [width / zoom, height / zoom, zoom]);
+      if (zoom === 2) assert.deepEqual([trial.clip_width_px, trial.clip_height_px], [640 / zoom, 320 / zoom], 'as large on the screen as without');
+      assert.ok(trial.clip_width_px >= 320 / zoom, 'and never smaller than half of that');
+    }
+    assert.deepEqual(page.problems, []);
+  }, { viewport: { width: width / zoom, height: height / zoom }, screen: { width, height }, deviceScaleFactor: zoom }));
+}
 
 test('a touch screen is told kindly', () => withStudy({}, async (server, context) => {
   const page = await open(context, server.address);
