@@ -59,8 +59,11 @@ class Composer {
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
     for (std::size_t c = 0; c < world_.cables.size(); ++c) {
-      for (const Link& link : links_in_layers(scene_, world_, c)) {
-        add_riser(link, world_.cables[c].half_width);
+      for (const LayeredLink& layered : links_in_layers(scene_, world_, c)) {
+        const auto body = static_cast<std::size_t>(layered.link.body);
+        const auto [fill, edge] = paint_of(body);
+        append_riser(world_, layered, world_.cables[c].half_width, rim_band(body),
+                     {over_paper(fill), edge}, picture_);
       }
     }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
@@ -185,45 +188,6 @@ class Composer {
     seam.half_width = 0.5 * cable.half_width;
     seam.fill = cable.edge;
     if (seam.count > 0) picture_.add(seam);
-  }
-
-  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a
-  /// turn is full, by which the first turn climbs on to itself.
-  void add_riser(const Link& link, double half_width) {
-    const auto body = static_cast<std::size_t>(link.body);
-    const auto [fill, edge] = paint_of(body);
-    const Layers& layers = link.layers;
-    const double rim = rim_band(body), inside = scene_.bodies[body].radius - 0.75 * rim;
-    const double start = from_x_axis(world_.angle[body] + link.orientation * layers.begins);
-    const auto place = [&](double turned, double radius) {
-      return tangent_point(world_.position[body], link.orientation * radius,
-                           unit_vector(start + layers.way * link.orientation * turned));
-    };
-    constexpr int pieces = 52;
-    constexpr double overlap = 0.1;   // of a piece: where two meet, no line is to show
-    const auto top = [&](double k) {  // the middle of the outline
-      const double turned = turn * k / pieces;
-      return place(turned, layers.radius(turned) - half_width - 0.5 * rim);
-    };
-    for (int k = 0; k < pieces; ++k) {
-      const double to = std::min(k + 1.0 + overlap, 1.0 * pieces);
-      for (const Vec2& corner :
-           {place(turn * k / pieces, inside), place(turn * to / pieces, inside), top(to), top(k)}) {
-        picture_.corners.push_back(corner);
-      }
-      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
-    }
-    Strip outline;
-    outline.first = picture_.points.size();
-    outline.half_width = 0.5 * rim;
-    outline.fill = edge;
-    for (int k = 0; k <= pieces; ++k) {
-      const Vec2 e = unit_vector(start + layers.way * link.orientation * turn * k / pieces);
-      picture_.points.push_back({top(k), layers.way * e, 0.0});
-    }
-    outline.count = picture_.points.size() - outline.first;
-    picture_.add(outline);
-    picture_.add(line(place(turn, inside), picture_.points.back().position, 0.5 * rim, edge));
   }
 
   /// A pin through what is joined there.
