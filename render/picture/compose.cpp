@@ -338,36 +338,22 @@ class Composer {
     picture_.add(disc(world_.position[i], scene_.bodies[i].radius - band, fill));
   }
 
-  /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.
-  void add_compound(std::size_t i) {
-    const auto [given, edge] = paint_of(i);
-    const Colour fill = over_paper(given);
-    const std::vector<int> shapes = outlines_of(scene_, static_cast<int>(i));
-    double smallest = infinity, largest = 0.0;
-    for (const int s : shapes) {
-      const double r = inner_radius(at(scene_.bodies, s));
-      smallest = std::min(smallest, r);
-      largest = std::max(largest, r);
-    }
-    const double band = std::min({4.0 * scenery_.line(), 0.09 * largest, 0.3 * smallest});
-    for (const int s : shapes) add_outline(index(s), band, fill, edge);
-    for (const int s : shapes) add_interior(index(s), band, fill);
-    if (scene_.bodies[i].kind == BodyKind::fixed_axle) {
-      add_bracket(world_.position[i], 5.0 * scenery_.unit());
-      add_pin(world_.position[i]);
-    }
+  /// Whether all shapes of a compound are discs about its centre: one cannot see them turn.
+  bool is_round(std::size_t i, const std::vector<int>& shapes) const {
+    return !shapes.empty() && std::ranges::all_of(shapes, [&](int s) {
+      const double off = (at(world_.position, s) - world_.position[i]).norm();
+      return !is_polygon(at(scene_.bodies, s)) && off <= 1e-6 * at(scene_.bodies, s).radius;
+    });
   }
 
-  void add_body(std::size_t i) {
+  /// What is drawn within the outline of body i, which has room for a wheel of radius r: its marks,
+  /// its axle and what holds that.
+  void add_wheel(std::size_t i, double r) {
     const Body& body = scene_.bodies[i];
-    if (!body.outlined) return add_compound(i);
-    if (body.node || body.carrier >= 0) return;
     const Vec2& centre = world_.position[i];
-    const double r = inner_radius(body), angle = world_.angle[i];
+    const double angle = world_.angle[i];
+    const Colour edge = paint_of(i).edge;
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
-    const auto [fill, edge] = paint_of(i);
-    const double band = rim_band(i);
-    add_outline(i, band, fill, edge);
     if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
@@ -384,6 +370,35 @@ class Composer {
       picture_.add(disc(centre, 0.11 * r, paper()));
       picture_.add(disc(centre, 0.055 * r, theme_.ink));
     }
+  }
+
+  /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.
+  void add_compound(std::size_t i) {
+    const auto [given, edge] = paint_of(i);
+    const Colour fill = over_paper(given);
+    const std::vector<int> shapes = outlines_of(scene_, static_cast<int>(i));
+    double smallest = infinity, largest = 0.0;
+    for (const int s : shapes) {
+      const double r = inner_radius(at(scene_.bodies, s));
+      smallest = std::min(smallest, r);
+      largest = std::max(largest, r);
+    }
+    const double band = std::min({4.0 * scenery_.line(), 0.09 * largest, 0.3 * smallest});
+    for (const int s : shapes) add_outline(index(s), band, fill, edge);
+    for (const int s : shapes) add_interior(index(s), band, fill);
+    if (is_round(i, shapes)) return add_wheel(i, largest);
+    if (scene_.bodies[i].kind == BodyKind::fixed_axle) {
+      add_bracket(world_.position[i], 5.0 * scenery_.unit());
+      add_pin(world_.position[i]);
+    }
+  }
+
+  void add_body(std::size_t i) {
+    const Body& body = scene_.bodies[i];
+    if (!body.outlined) return add_compound(i);
+    if (body.node || body.carrier >= 0) return;
+    add_outline(i, rim_band(i), paint_of(i).fill, paint_of(i).edge);
+    add_wheel(i, inner_radius(body));
   }
 
   /// What holds the ends of an open cable: a bolt in the world, a pin on a body.
