@@ -354,7 +354,10 @@ class Composer {
     const double angle = world_.angle[i];
     const Colour edge = paint_of(i).edge;
     const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
-    if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
+    // A thin bar's axle is as large as other small ones: one is to see what it turns about.
+    const bool turns = body.kind == BodyKind::fixed_axle && is_polygon(body);
+    const double axle = turns ? std::max(r, 5.0 * scenery_.unit()) : r;
+    if (held) add_bracket(centre, axle);  // inside of the rim, where no cable runs
 
     // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
     // like none.
@@ -365,10 +368,10 @@ class Composer {
       }
       picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
     }
-    picture_.add(disc(centre, 0.17 * r, edge));
+    picture_.add(disc(centre, 0.17 * axle, edge));
     if (held) {
-      picture_.add(disc(centre, 0.11 * r, paper()));
-      picture_.add(disc(centre, 0.055 * r, theme_.ink));
+      picture_.add(disc(centre, 0.11 * axle, paper()));
+      picture_.add(disc(centre, 0.055 * axle, theme_.ink));
     }
   }
 

@@ -60,5 +60,22 @@ TEST(ComposeCompounds, DiscsAboutOneCentreShowThatTheyTurn) {
   EXPECT_EQ(spokes(0.5), 1);
 }
 
+// A bar's axle was of a size with its thickness, and not to be seen.
+TEST(ComposeCompounds, AThinBarsAxleIsToBeSeen) {
+  Scene scene;
+  scene.name = "bar";
+  scene.bodies = {testing::body("bar", BodyKind::fixed_axle, {0.0, 0.0}, 1.0)};
+  make_polygon(scene.bodies[0], {{-0.9, -0.02}, {0.9, -0.02}, {0.9, 0.02}, {-0.9, 0.02}}, 0.0);
+  scene.frame_count = 2;
+  const Scenery scenery = set_scenery(scene);
+  Picture picture;
+  compose(scene, scenery, make_world(scene, Method::pinch), picture);
+  double largest = 0.0;
+  for (const Stroke& s : picture.strokes) {
+    if (s.a.isZero() && s.b.isZero()) largest = std::max(largest, s.half_width);
+  }
+  EXPECT_GE(largest, 0.75 * scenery.unit());
+}
+
 }  // namespace
 }  // namespace pinchlab
