@@ -7,6 +7,7 @@
 
 #include "demos/scenes/scene_json.h"
 #include "render/picture/cable_path.h"
+#include "sim/cable/cable.h"
 #include "sim/step.h"
 
 namespace pinchlab {
@@ -59,6 +60,55 @@ TEST(CablePath, SlackCableHangsUntilWhatFallsComesDownToIt) {
     }
     EXPECT_EQ(most_links, 4U) << "both balls came on to the cable";
   }
+}
+
+/// The path of the scene's first cable.
+std::vector<StripPoint> path_of(const SceneFile& file, const World& world) {
+  std::vector<StripPoint> points;
+  append_cable_path(file.scene, world, world.cables[0], 1e-4, points);
+  return points;
+}
+
+// Between a drum and the next node rope hung through the turns on the drum: where it came off them
+// to hang on the far side, and where the drum held a node already.
+TEST(CablePath, RopeWithNodesDoesNotHangThroughItsDrum) {
+  const SceneFile file = parse_scene(R"({"title": "hoist", "duration_s": 3, "view": "fit",
+      "baseline": {"method": "cable", "reason": "none"},
+      "bodies": [{"name": "drum", "kind": "fixed_axle", "radius_m": 0.2, "mass_kg": 5,
+                  "position_m": [-1.5, 0],
+                  "motor": [{"time_s": 0.3, "angular_velocity_rad_s": 0},
+                            {"time_s": 1, "angular_velocity_rad_s": 5}]},
+                 {"name": "sheave", "kind": "fixed_axle", "radius_m": 0.25, "mass_kg": 1,
+                  "position_m": [1, 1]},
+                 {"name": "load", "kind": "free", "mass_kg": 6, "position_m": [1.27, -1.5],
+                  "corners_m": [[-0.25, -0.2], [0.25, -0.2], [0.25, 0.2], [-0.25, 0.2]]}],
+      "cables": [{"name": "rope", "half_width_m": 0.015, "mass_per_metre_kg": 1, "nodes": 30,
+                  "slack_m": 0.2, "start": {"body": "drum", "rim_angle_rad": 1, "layers": true},
+                  "wraps": [{"body": "drum", "turn": "clockwise", "extra_turns": 1},
+                            {"body": "sheave", "turn": "clockwise"}],
+                  "end": {"body": "load", "point_m": [0, 0.2]}}]})",
+                                     "hoist.json");
+  World world = make_world(file.scene, Method::pinch);
+  Workspace work;
+  const CableState& cable = world.cables[0];
+  int slack = 0, moored = 0;
+  for (int frame = 0; frame < 180; ++frame) {
+    std::size_t node = 2;  // the next that the drum does not hold
+    if (cable.links[2].moored) ++node;
+    if (cable.links[2].moored) ++moored;
+    if (cable.segments[node].slack) ++slack;
+    const double held = tail_material(cable, node, 0.0), radius = cable.links[1].radius;
+    const std::vector<StripPoint> points = path_of(file, world);
+    for (std::size_t i = points.size() - 1; i > 0; --i) {
+      const double lies = cable.links[1].wrap * radius;
+      if (points[i].material > held + 1e-9 || points[i].material < 0.8 * lies) continue;
+      const double off = (points[i].position - world.position[0]).norm();
+      EXPECT_GT(off, radius - 0.02) << "frame " << frame << ", " << i;
+    }
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
+  }
+  EXPECT_GE(slack, 10);
+  EXPECT_GE(moored, 5);
 }
 
 }  // namespace
