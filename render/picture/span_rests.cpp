@@ -12,15 +12,17 @@ namespace pinchlab {
 
 namespace {
 
-/// The circle of a disc which holds a link, a node, at its rim, where a span leaves (`sense` 1) or
-/// arrives (-1) in direction e through the disc; radius 0: nothing is in its way.
-SpanEnd rim_below(const World& world, const Link& link, const Vec2& e, double sense) {
+/// The circle of a disc to the rim of which the cable is fastened at a link, or which holds that, a
+/// node, at its rim, where a span leaves (`sense` 1) or arrives (-1) in direction e through the
+/// disc; radius 0: nothing is in its way.
+SpanEnd rim_below(const World& world, const CableState& cable, const Link& link, const Vec2& e,
+                  double sense) {
   if (link.body < 0 || link.orientation != 0) return {};
   const BodyProperties& body = at(world.bodies, link.body);
   const Vec2& centre = at(world.position, link.body);
   const Vec2 out = link_centre(world, link) - centre;
-  const double r = out.norm();
-  if (is_polygon(body) || !link.moored) return {};
+  const double r = out.norm(), outermost = body.radius + 1.01 * cable.half_width;
+  if (is_polygon(body) || r < body.radius || (r > outermost && !link.moored)) return {};
   if (sense * e.dot(out) >= 0.0) return {};
   const double way = std::copysign(1.0, cross(out, e));
   const Vec2 along = way * left(out);
@@ -53,8 +55,8 @@ RestingSpan rest_on_ends(const World& world, const CableState& cable,
   const Link &from = cable.links[links[0]], &to = cable.links[links[1]];
   if (from.body == to.body) return span;
   const Catenary& curve = span.hung.curve;
-  span.at_tail.rim = rim_below(world, from, curve.tangent(0.0), 1.0);
-  span.at_head.rim = rim_below(world, to, curve.tangent(curve.length()), -1.0);
+  span.at_tail.rim = rim_below(world, cable, from, curve.tangent(0.0), 1.0);
+  span.at_head.rim = rim_below(world, cable, to, curve.tangent(curve.length()), -1.0);
   const bool tail_rests = span.at_tail.rim.signed_radius != 0.0;
   const bool head_rests = span.at_head.rim.signed_radius != 0.0;
   if (!tail_rests && !head_rests) return span;

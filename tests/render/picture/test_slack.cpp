@@ -69,6 +69,41 @@ std::vector<StripPoint> path_of(const SceneFile& file, const World& world) {
   return points;
 }
 
+// Once the last of its wrap had gone, rope hung straight through the drum, from one frame to the
+// next by up to twenty half widths.
+TEST(CablePath, SlackRopeLiesOnTheRimToWhichItIsFastened) {
+  const SceneFile file = parse_scene(R"({"title": "reels", "duration_s": 2, "view": "fit",
+      "baseline": {"method": "cable", "reason": "none"},
+      "bodies": [{"name": "a", "kind": "fixed_axle", "radius_m": 0.2, "mass_kg": 4,
+                  "position_m": [-1, 0], "driven_angular_velocity_rad_s": -10},
+                 {"name": "b", "kind": "fixed_axle", "radius_m": 0.2, "mass_kg": 4,
+                  "position_m": [1, 0], "angular_drag_per_s": 3}],
+      "cables": [{"name": "tape", "half_width_m": 0.015,
+                  "start": {"body": "a", "rim_angle_rad": 1, "layers": true},
+                  "wraps": [{"body": "a", "turn": "clockwise", "extra_turns": 1},
+                            {"body": "b", "turn": "clockwise", "extra_turns": 2}],
+                  "end": {"body": "b", "rim_angle_rad": 2, "layers": true}}]})",
+                                     "reels.json");
+  World world = make_world(file.scene, Method::pinch);
+  Workspace work;
+  std::vector<StripPoint> last;
+  int unwound = 0;
+  for (int frame = 0; unwound < 12; ++frame) {
+    ASSERT_LT(frame, 120);
+    const std::vector<StripPoint> now = path_of(file, world);
+    for (double m = 0.05; frame > 10 && m < world.cables[0].length; m += 0.05) {
+      EXPECT_LT((place_of(now, m) - place_of(last, m)).norm(), 0.12) << frame << ", " << m;
+    }
+    for (std::size_t i = 1; i < now.size(); ++i) {
+      EXPECT_GT((now[i].position - world.position[0]).norm(), 0.21) << frame << ", " << i;
+      EXPECT_GE(now[i].material, now[i - 1].material - 1e-9);
+    }
+    last = now;
+    if (world.cables[0].links[1].body == 1) ++unwound;
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
+  }
+}
+
 // Between a drum and the next node rope hung through the turns on the drum: where it came off them
 // to hang on the far side, and where the drum held a node already.
 TEST(CablePath, RopeWithNodesDoesNotHangThroughItsDrum) {
