@@ -197,10 +197,12 @@ class PathBuilder {
   }
 
   /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
-  /// hang, and a pinched one not at all; in between the straighter the shorter it is.
+  /// hang, and a pinched one not at all; in between the straighter the shorter it is. Beyond a
+  /// cable's end nothing takes what is left, and it hangs in a loop, however narrow.
   double room(std::size_t i) const {
     const Segment& segment = cable_.segments[i];
     if (segment.pinched || !spans_[i].drawn) return 0.0;
+    if (!cable_.closed && (i == 1 || i + 1 == cable_.links.size())) return 1.0;
     return 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
   }
 
@@ -428,9 +430,7 @@ class PathBuilder {
   }
 
   void add_rest(const Rest& rest, double material) {
-    for (const auto& [position, tangent, m] : points_of(rest, material)) {
-      add_point(position, tangent, m);
-    }
+    for (const auto& [place, e, m] : points_of(rest, material)) add_point(place, e, m);
   }
 
   void add_span(std::size_t i) {

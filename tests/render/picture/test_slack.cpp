@@ -146,5 +146,37 @@ TEST(CablePath, RopeWithNodesDoesNotHangThroughItsDrum) {
   EXPECT_GE(moored, 5);
 }
 
+// As a load came up to the pulley the loop below it went, and was there again in one frame as the
+// rope left the pulley.
+TEST(CablePath, SlackAtAShortEndHangsInALoop) {
+  const SceneFile file = parse_scene(R"({"title": "nip", "duration_s": 2, "view": "fit",
+      "baseline": {"method": "cable", "reason": "none"},
+      "bodies": [{"name": "pulley", "kind": "fixed_axle", "radius_m": 0.4, "mass_kg": 2,
+                  "position_m": [0, 0], "cable_friction": 0.3},
+                 {"name": "left", "kind": "free", "radius_m": 0.15, "mass_kg": 1,
+                  "position_m": [-0.45, -1]},
+                 {"name": "right", "kind": "free", "radius_m": 0.15, "mass_kg": 1,
+                  "position_m": [0.45, -1], "velocity_m_s": [0, 5]}],
+      "cables": [{"name": "c", "half_width_m": 0.05, "start": {"body": "left", "point_m": [0, 0.1]},
+                  "wraps": [{"body": "pulley", "turn": "clockwise"}],
+                  "end": {"body": "right", "point_m": [0, 0.1]}}]})",
+                                     "nip.json");
+  World world = make_world(file.scene, Method::cable);
+  Workspace work;
+  const CableState& cable = world.cables[0];
+  double shortest = 1.0;  // m
+  for (int frame = 0; frame < 20; ++frame) {
+    const std::vector<StripPoint> points = path_of(file, world);
+    double length = 0.0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      length += (points[i].position - points[i - 1].position).norm();
+    }
+    EXPECT_NEAR(length, cable.length, 0.03 * cable.length) << frame;
+    shortest = std::min(shortest, cable.segments.back().length);
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
+  }
+  EXPECT_LT(shortest, 0.3);
+}
+
 }  // namespace
 }  // namespace pinchlab
