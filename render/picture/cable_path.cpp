@@ -7,7 +7,9 @@
 #include <tuple>
 
 #include "render/picture/fade.h"
+#include "render/picture/give_way.h"
 #include "render/picture/hanging.h"
+#include "render/picture/span_rests.h"
 #include "sim/cable/cable.h"
 #include "sim/cable/held_spans.h"
 #include "sim/tangent.h"
@@ -74,7 +76,7 @@ class PathBuilder {
     double slack = 0.0;              // m, by which it hangs
     double length = 0.0;             // m of material, as it hangs
     std::size_t tail = 0, head = 0;  // the links between which it is drawn
-    Catenary curve;
+    RestingSpan shape;
   };
 
   std::size_t tail_link(std::size_t segment) const {
@@ -85,7 +87,7 @@ class PathBuilder {
   SpanEnd span_end(std::size_t i, double alpha) const {
     const Link& link = cable_.links[i];
     const double wrap = link.orientation * (bounds_[i].head_angle - bounds_[i].tail_angle);
-    const double growth = link.layers.way != 0 ? link.layers.growth : 0.0;
+    const double growth = link.layers.way * link.orientation != 0 ? link.layers.growth : 0.0;
     return {link_centre(world_, link), link.signed_radius(), std::max(wrap, 0.0), alpha, growth};
   }
 
@@ -115,14 +117,18 @@ class PathBuilder {
 
   /// The shape of slack span i, between the bodies that it hangs from. One that is pressed on to
   /// another and has hardly any wrap lets go of it, and the span hangs from that other.
-  HangingSpan shape(std::size_t i) {
+  RestingSpan shape(std::size_t i) {
     Span& span = spans_[i];
     const Segment& segment = cable_.segments[i];
     double length = span.length;
-    if (span.merged) return hang(tail_end(i), head_end(i), length, up_);
     const double alpha = from_x_axis(segment.alpha);
-    SpanEnd tail = span_end(span.tail, alpha), head = span_end(span.head, alpha);
+    SpanEnd tail = span.merged ? tail_end(i) : span_end(span.tail, alpha);
+    SpanEnd head = span.merged ? head_end(i) : span_end(span.head, alpha);
+    const auto keep_clear = [&](const HangingSpan& hung) {
+      return rest_on_ends(world_, cable_, {span.tail, span.head}, {tail, head}, length, hung, up_);
+    };
     const HangingSpan straight = hang(tail, head, length, up_);
+    if (span.merged) return keep_clear(straight);
     const std::size_t by_tail = span.tail, by_head = span.head;
     const bool pass_tail = straight.tail_bare && i > 0 && by_tail > 0 && joins_wraps(by_tail);
     const bool pass_head =
@@ -135,7 +141,7 @@ class PathBuilder {
       span.head = by_head + 1;
       head = pass(by_head, span.head, span.head, segment.tail, length);
     }
-    return pass_tail || pass_head ? hang(tail, head, length, up_) : straight;
+    return keep_clear(pass_tail || pass_head ? hang(tail, head, length, up_) : straight);
   }
 
   /// The ends of span i as long as nothing of it has been hung.
@@ -191,10 +197,12 @@ class PathBuilder {
   }
 
   /// Share of its slack that span i can show: a span about as short as the cable is wide cannot
-  /// hang, and a pinched one not at all; in between the straighter the shorter it is.
+  /// hang, and a pinched one not at all; in between the straighter the shorter it is. Beyond a
+  /// cable's end nothing takes what is left, and it hangs in a loop, however narrow.
   double room(std::size_t i) const {
     const Segment& segment = cable_.segments[i];
     if (segment.pinched || !spans_[i].drawn) return 0.0;
+    if (!cable_.closed && (i == 1 || i + 1 == cable_.links.size())) return 1.0;
     return 1.0 - fade(segment.length, 12.0 * cable_.half_width).value;
   }
 
@@ -271,8 +279,8 @@ class PathBuilder {
 
   void hang_span(std::size_t i) {
     Span& span = spans_[i];
-    const HangingSpan hung = shape(i);
-    span.curve = hung.curve;
+    span.shape = shape(i);
+    const HangingSpan& hung = span.shape.hung;
     Bounds &before = bounds_[span.tail], &after = bounds_[span.head];
     const double seam = i == 0 ? cable_.turning : 0.0;
     const Link &tail = cable_.links[span.tail], &head = cable_.links[span.head];
@@ -310,23 +318,6 @@ class PathBuilder {
     const Vec2 overlap = cable_.segments[i].head - cable_.segments[i].tail;
     return overlap.norm() > 0.2 * smallest_sag_ ? overlap : Vec2(Vec2::Zero());
   }
-
-  /// Where two bodies clip, the arcs round them do not meet. Both give way, the shorter one by
-  /// more, smoothly, along a few widths of cable; what is left at the end of a short arc moves the
-  /// end of the span beyond it. So the cable does not jump where the one body's wrap begins or
-  /// ends.
-  struct GiveWay {
-    Vec2 at_tail = Vec2::Zero(), at_head = Vec2::Zero();  // m, at the ends of the arc
-    double length = 0.0, reach = 1.0;                     // m, of the arc; along which it fades
-    bool none() const { return at_tail.isZero(0.0) && at_head.isZero(0.0); }
-
-    Vec2 shift(double s) const {  // m, at s along the arc
-      return fade(s, reach).value * at_tail + fade(length - s, reach).value * at_head;
-    }
-    Vec2 slope(double s) const {  // its derivative
-      return fade(s, reach).slope * at_tail - fade(length - s, reach).slope * at_head;
-    }
-  };
 
   /// m, of the arc on link i as it is drawn.
   double drawn_arc(std::size_t i) const { return cable_.links[i].radius * sweep(i); }
@@ -438,12 +429,16 @@ class PathBuilder {
     }
   }
 
+  void add_rest(const Rest& rest, double material) {
+    for (const auto& [place, e, m] : points_of(rest, material)) add_point(place, e, m);
+  }
+
   void add_span(std::size_t i) {
     const Span& span = spans_[i];
     if (!span.drawn) return;
-    const double from = bounds_[span.tail].head_material;
+    double from = bounds_[span.tail].head_material;
     if (is_held(cable_, i)) return add_held_span(i, from);
-    const double to = bounds_[span.head].tail_material + (i == 0 ? cable_.length : 0.0);
+    double to = bounds_[span.head].tail_material + (i == 0 ? cable_.length : 0.0);
     const GiveWay before = give_way(span.tail), after = give_way(span.head);
     const Vec2 tail_shift = before.shift(before.length), head_shift = after.shift(0.0);
     if (!span.hanging) {
@@ -456,15 +451,20 @@ class PathBuilder {
       add_point(head, e, to);
       return;
     }
-    const double length = span.curve.length();
+    add_rest(span.shape.at_tail, from);
+    from += span.shape.at_tail.length();
+    to -= span.shape.at_head.length();
+    const Catenary& curve = span.shape.hung.curve;
+    const double length = curve.length();
     constexpr double most = 0.15;  // rad: a catenary is no circle
-    const int pieces = std::max(1, static_cast<int>(std::ceil(span.curve.turn() / most)));
+    const int pieces = std::max(1, static_cast<int>(std::ceil(curve.turn() / most)));
     for (int k = 0; k <= pieces; ++k) {
-      const double s = span.curve.arc_at_turn(static_cast<double>(k) / pieces), share = s / length;
+      const double s = curve.arc_at_turn(static_cast<double>(k) / pieces), share = s / length;
       const Vec2 slope = (head_shift - tail_shift) / length;
-      add_point(span.curve.point(s) + (1.0 - share) * tail_shift + share * head_shift,
-                (span.curve.tangent(s) + slope).normalized(), from + share * (to - from));
+      add_point(curve.point(s) + (1.0 - share) * tail_shift + share * head_shift,
+                (curve.tangent(s) + slope).normalized(), from + share * (to - from));
     }
+    add_rest(span.shape.at_head, to);
   }
 
   const World& world_;

@@ -59,8 +59,11 @@ class Composer {
     for (const Anchor& anchor : scenery_.anchors) add_anchor_plate(anchor);
     if (theme_.shadow.alpha > 0) add_shadows();
     for (std::size_t c = 0; c < world_.cables.size(); ++c) {
-      for (const Link& link : links_in_layers(scene_, world_, c)) {
-        add_riser(link, world_.cables[c].half_width);
+      for (const LayeredLink& layered : links_in_layers(scene_, world_, c)) {
+        const auto body = static_cast<std::size_t>(layered.link.body);
+        const auto [fill, edge] = paint_of(body);
+        append_riser(world_, layered, world_.cables[c].half_width, rim_band(body),
+                     {over_paper(fill), edge}, picture_);
       }
     }
     for (std::size_t c = 0; c < world_.cables.size(); ++c) add_cable(c);
@@ -185,45 +188,6 @@ class Composer {
     seam.half_width = 0.5 * cable.half_width;
     seam.fill = cable.edge;
     if (seam.count > 0) picture_.add(seam);
-  }
-
-  /// The riser of a drum that fills: the wedge on its rim, as high as the cable is wide where a
-  /// turn is full, by which the first turn climbs on to itself.
-  void add_riser(const Link& link, double half_width) {
-    const auto body = static_cast<std::size_t>(link.body);
-    const auto [fill, edge] = paint_of(body);
-    const Layers& layers = link.layers;
-    const double rim = rim_band(body), inside = scene_.bodies[body].radius - 0.75 * rim;
-    const double start = from_x_axis(world_.angle[body] + link.orientation * layers.begins);
-    const auto place = [&](double turned, double radius) {
-      return tangent_point(world_.position[body], link.orientation * radius,
-                           unit_vector(start + layers.way * link.orientation * turned));
-    };
-    constexpr int pieces = 52;
-    constexpr double overlap = 0.1;   // of a piece: where two meet, no line is to show
-    const auto top = [&](double k) {  // the middle of the outline
-      const double turned = turn * k / pieces;
-      return place(turned, layers.radius(turned) - half_width - 0.5 * rim);
-    };
-    for (int k = 0; k < pieces; ++k) {
-      const double to = std::min(k + 1.0 + overlap, 1.0 * pieces);
-      for (const Vec2& corner :
-           {place(turn * k / pieces, inside), place(turn * to / pieces, inside), top(to), top(k)}) {
-        picture_.corners.push_back(corner);
-      }
-      picture_.add(Patch{picture_.corners.size() - 4, 4, over_paper(fill)});
-    }
-    Strip outline;
-    outline.first = picture_.points.size();
-    outline.half_width = 0.5 * rim;
-    outline.fill = edge;
-    for (int k = 0; k <= pieces; ++k) {
-      const Vec2 e = unit_vector(start + layers.way * link.orientation * turn * k / pieces);
-      picture_.points.push_back({top(k), layers.way * e, 0.0});
-    }
-    outline.count = picture_.points.size() - outline.first;
-    picture_.add(outline);
-    picture_.add(line(place(turn, inside), picture_.points.back().position, 0.5 * rim, edge));
   }
 
   /// A pin through what is joined there.
@@ -374,6 +338,43 @@ class Composer {
     picture_.add(disc(world_.position[i], scene_.bodies[i].radius - band, fill));
   }
 
+  /// Whether all shapes of a compound are discs about its centre: one cannot see them turn.
+  bool is_round(std::size_t i, const std::vector<int>& shapes) const {
+    return !shapes.empty() && std::ranges::all_of(shapes, [&](int s) {
+      const double off = (at(world_.position, s) - world_.position[i]).norm();
+      return !is_polygon(at(scene_.bodies, s)) && off <= 1e-6 * at(scene_.bodies, s).radius;
+    });
+  }
+
+  /// What is drawn within the outline of body i, which has room for a wheel of radius r: its marks,
+  /// its axle and what holds that.
+  void add_wheel(std::size_t i, double r) {
+    const Body& body = scene_.bodies[i];
+    const Vec2& centre = world_.position[i];
+    const double angle = world_.angle[i];
+    const Colour edge = paint_of(i).edge;
+    const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
+    // A thin bar's axle is as large as other small ones: one is to see what it turns about.
+    const bool turns = body.kind == BodyKind::fixed_axle && is_polygon(body);
+    const double axle = turns ? std::max(r, 5.0 * scenery_.unit()) : r;
+    if (held) add_bracket(centre, axle);  // inside of the rim, where no cable runs
+
+    // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
+    // like none.
+    if (scenery_.look.bodies.empty() || scenery_.look.bodies[i].marks) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec2 e = unit_vector(angle + k * turn / 3.0);
+        picture_.add(line(centre, centre + 0.9 * r * e, 0.045 * r * theme_.line_width, edge));
+      }
+      picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
+    }
+    picture_.add(disc(centre, 0.17 * axle, edge));
+    if (held) {
+      picture_.add(disc(centre, 0.11 * axle, paper()));
+      picture_.add(disc(centre, 0.055 * axle, theme_.ink));
+    }
+  }
+
   /// Shapes that overlap have one outline: the insides of all lie, opaque, over the bands of all.
   void add_compound(std::size_t i) {
     const auto [given, edge] = paint_of(i);
@@ -388,6 +389,7 @@ class Composer {
     const double band = std::min({4.0 * scenery_.line(), 0.09 * largest, 0.3 * smallest});
     for (const int s : shapes) add_outline(index(s), band, fill, edge);
     for (const int s : shapes) add_interior(index(s), band, fill);
+    if (is_round(i, shapes)) return add_wheel(i, largest);
     if (scene_.bodies[i].kind == BodyKind::fixed_axle) {
       add_bracket(world_.position[i], 5.0 * scenery_.unit());
       add_pin(world_.position[i]);
@@ -398,28 +400,8 @@ class Composer {
     const Body& body = scene_.bodies[i];
     if (!body.outlined) return add_compound(i);
     if (body.node || body.carrier >= 0) return;
-    const Vec2& centre = world_.position[i];
-    const double r = inner_radius(body), angle = world_.angle[i];
-    const bool held = body.kind == BodyKind::fixed_axle || body.kind == BodyKind::fixed;
-    const auto [fill, edge] = paint_of(i);
-    const double band = rim_band(i);
-    add_outline(i, band, fill, edge);
-    if (held) add_bracket(centre, r);  // inside of the rim, where no cable runs
-
-    // Three spokes, and a dot between two of them, so that no turn of less than a whole one looks
-    // like none.
-    if (scenery_.look.bodies.empty() || scenery_.look.bodies[i].marks) {
-      for (int k = 0; k < 3; ++k) {
-        const Vec2 e = unit_vector(angle + k * turn / 3.0);
-        picture_.add(line(centre, centre + 0.9 * r * e, 0.045 * r * theme_.line_width, edge));
-      }
-      picture_.add(disc(centre + 0.68 * r * unit_vector(angle + turn / 6.0), 0.1 * r, edge));
-    }
-    picture_.add(disc(centre, 0.17 * r, edge));
-    if (held) {
-      picture_.add(disc(centre, 0.11 * r, paper()));
-      picture_.add(disc(centre, 0.055 * r, theme_.ink));
-    }
+    add_outline(i, rim_band(i), paint_of(i).fill, paint_of(i).edge);
+    add_wheel(i, inner_radius(body));
   }
 
   /// What holds the ends of an open cable: a bolt in the world, a pin on a body.

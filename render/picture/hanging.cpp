@@ -142,4 +142,53 @@ HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double rest_length, c
   }
 }
 
+namespace {
+
+/// rad, by how much the wrap at an end has grown; `sense`: 1 at the tail, -1 at the head.
+double growth_of_wrap(const SpanEnd& end, double angle, double sense) {
+  return sense * std::copysign(1.0, end.signed_radius) * (angle - end.alpha);
+}
+
+/// m, by which a curve that has come off an end runs through the turns left there; 0: nothing has.
+double depth_in(const SpanEnd& end, const Catenary& curve, double angle, double sense) {
+  const double grown = growth_of_wrap(end, angle, sense);
+  if (end.signed_radius == 0.0 || grown > -1e-6) return 0.0;
+  const double turn = 2.0 * std::numbers::pi, radius = std::abs(end.signed_radius);
+  const double way = sense * std::copysign(1.0, end.signed_radius);
+  const Vec2 leaves = -std::copysign(1.0, end.signed_radius) * left(unit(angle));
+  double deepest = 0.0;
+  constexpr int places = 32;
+  for (int k = 1; k < places; ++k) {
+    const Vec2 out = curve.point(curve.length() * k / places) - end.centre;
+    const double ahead = std::atan2(way * cross(leaves, out), leaves.dot(out));
+    // On layers it lies outside of the turn that is left.
+    const double below = radius + end.growth * (grown + (ahead > 0.0 ? ahead : turn + ahead));
+    deepest = std::max(deepest, below - out.norm());
+  }
+  return deepest;
+}
+
+}  // namespace
+
+HangingSpan hang_clear(HangingSpan hung, SpanEnd tail, SpanEnd head, double rest_length,
+                       const Vec2& up, double most_depth) {
+  for (SpanEnd* end : {&tail, &head}) {
+    const double sense = end == &tail ? 1.0 : -1.0;
+    const auto is_clear = [&](const HangingSpan& span) {
+      const double angle = end == &tail ? span.tail_angle : span.head_angle;
+      return depth_in(*end, span.curve, angle, sense) <= most_depth;
+    };
+    if (is_clear(hung)) continue;
+    double least = 0.0;
+    double most = -growth_of_wrap(*end, end == &tail ? hung.tail_angle : hung.head_angle, sense);
+    for (int round = 0; round < 20; ++round) {
+      end->most_unwrap = 0.5 * (least + most);
+      (is_clear(hang(tail, head, rest_length, up)) ? least : most) = end->most_unwrap;
+    }
+    end->most_unwrap = least;
+    hung = hang(tail, head, rest_length, up);
+  }
+  return hung;
+}
+
 }  // namespace pinchlab

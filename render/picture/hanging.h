@@ -58,4 +58,9 @@ struct HangingSpan {
 /// which the cable runs in the directions `alpha`. Material on the circles stays where it is.
 HangingSpan hang(const SpanEnd& tail, const SpanEnd& head, double rest_length, const Vec2& up);
 
+/// The same, `hung` so, where what comes off an end's wrap would run through the turns that stay,
+/// by more than `most_depth` m: only so much comes off that it does not.
+HangingSpan hang_clear(HangingSpan hung, SpanEnd tail, SpanEnd head, double rest_length,
+                       const Vec2& up, double most_depth);
+
 }  // namespace pinchlab

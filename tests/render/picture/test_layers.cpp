@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "demos/scenes/scene_json.h"
 #include "render/picture/cable_path.h"
@@ -94,9 +96,9 @@ TEST(Compose, FasteningsHaveTheColourOfTheirCable) {
       2);
 }
 
-// The riser of a drum went with its rope: the drum got smaller in one frame.
-TEST(Compose, ADrumKeepsItsRiserWhenAllHasRunOff) {
-  const SceneFile file = parse_scene(R"({"title": "payout", "duration_s": 0.8, "view": "fit",
+/// A drum that turns until all of its rope has run off, and on.
+SceneFile payout() {
+  return parse_scene(R"({"title": "payout", "duration_s": 0.8, "view": "fit",
       "baseline": {"method": "cable", "reason": "none"},
       "bodies": [{"name": "d", "kind": "fixed_axle", "radius_m": 0.25, "mass_kg": 4,
                   "position_m": [0, 0], "driven_angular_velocity_rad_s": -7},
@@ -105,7 +107,12 @@ TEST(Compose, ADrumKeepsItsRiserWhenAllHasRunOff) {
       "cables": [{"name": "r", "half_width_m": 0.03, "start": {"body": "l", "point_m": [0, 0.1]},
                   "wraps": [{"body": "d", "turn": "counter_clockwise"}],
                   "end": {"body": "d", "rim_angle_rad": 2, "layers": true}}]})",
-                                     "payout.json");
+                     "payout.json");
+}
+
+// The riser of a drum went with its rope: the drum got smaller in one frame.
+TEST(Compose, ADrumKeepsItsRiserWhenAllHasRunOff) {
+  const SceneFile file = payout();
   const Scenery scenery = set_scenery(file.scene, file.look);
   World world = make_world(file.scene, Method::pinch);
   Workspace work;
@@ -124,6 +131,40 @@ TEST(Compose, ADrumKeepsItsRiserWhenAllHasRunOff) {
     for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
   }
   EXPECT_EQ(fewest, 2U) << "all has run off";
+}
+
+/// m, how high a drum's riser reaches from the axle, every 52nd of a turn.
+std::vector<double> riser_of(const Picture& picture, double angle) {
+  std::vector<double> tops(52);
+  for (const Vec2& corner : picture.corners) {
+    const double place = (std::atan2(corner.y(), corner.x()) - angle) * 26.0 / std::numbers::pi;
+    const double nearest = std::round(place - 0.5);
+    if (std::abs(place - 0.5 - nearest) > 0.45) continue;
+    double& top = tops[static_cast<std::size_t>(static_cast<int>(nearest) + 520) % 52];
+    top = std::max(top, corner.norm());
+  }
+  return tops;
+}
+
+// When rope was wound on to it the other way, it climbed the other way in one frame.
+TEST(Compose, ADrumsRiserStaysWhenRopeIsWoundTheOtherWay) {
+  const SceneFile file = payout();
+  const Scenery scenery = set_scenery(file.scene, file.look);
+  World world = make_world(file.scene, Method::pinch);
+  Workspace work;
+  std::vector<double> last;
+  for (int frame = 0; frame < 70; ++frame) {
+    Picture picture;
+    compose(file.scene, scenery, world, picture);
+    const std::vector<double> now = riser_of(picture, world.angle[0]);
+    for (std::size_t k = 0; k < last.size(); ++k) {
+      EXPECT_NEAR(now[k], last[k], 0.006) << "frame " << frame << ", " << k;
+    }
+    last = now;
+    for (int s = 0; s < 4; ++s) ASSERT_EQ(step(file.scene, world, work), StepStatus::ok);
+  }
+  ASSERT_EQ(world.cables[0].links.size(), 3U);
+  EXPECT_EQ(world.cables[0].links[1].orientation, -1) << "it is wound the other way";
 }
 
 }  // namespace
