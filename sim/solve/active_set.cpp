@@ -116,7 +116,7 @@ void check(const PartSystem& s, SolveScratch& set) {
       const double made_up = row.kind == RowKind::tangent ? 0.0 : row.bias;
       const double sliding = row.speed - made_up + sliding_of_run(s, set.capstan, row);
       check_friction(s, row, number, sliding, tolerance, set);
-    } else if (row.diagonal > 0.0 && !row.clamped && (!slides || set.capstan.group_of_row[r] < 0)) {
+    } else if (gives(row) && !row.clamped && (!slides || set.capstan.group_of_row[r] < 0)) {
       if (row.on && row.impulse < -tolerance.impulse) {
         set.flips.push_back({number, false, false, Slip::stick});
       } else if (!row.on && !row.idle && row.speed < -tolerance.speed) {
@@ -143,7 +143,7 @@ bool clear_rounding(PartSystem& s, SolveScratch& set) {
   for (std::size_t r = 0; r < s.rows.size(); ++r) {
     Row& row = s.rows[r];
     row.speed = row_speed(s, r) + row.compliance * row.impulse;
-    if (row.diagonal == 0.0 || row.idle || (!row.on && !is_unilateral(row))) continue;
+    if (!gives(row) || row.idle || (!row.on && !is_unilateral(row))) continue;
     if (row.speed < -tolerance || (row.on && row.speed > tolerance)) return false;
   }
   set.direct = false;
@@ -197,7 +197,7 @@ void spread_tautness(PartSystem& s, const SolveScratch& set, int reach) {
     for (int r = std::max(flip.row - reach, 0); r <= last; ++r) {
       Row& row = at(s.rows, r);
       if (row.kind != RowKind::segment || row.index != pulled.index || row.on) continue;
-      row.on = row.diagonal > 0.0 && !row.idle;
+      row.on = gives(row) && !row.idle;
       row.flipped = set.solves;
     }
   }

@@ -97,15 +97,15 @@ bool Assembly::is_out_of_reach(const Row& row, bool beside_run) const {
 bool Assembly::takes_part(int number, bool beside_run) const {
   const Row& row = at(s_.rows, number);
   if (is_out_of_reach(row, beside_run)) return false;
-  bool gives = row.diagonal + row.compliance > 0.0;
+  bool counts = gives(row);
   if (is_friction(row)) {
     const Friction& friction = at(s_.frictions, row.friction);
     // A pinch moves cable that slides beneath it by what the cable leads to (system.cpp).
-    gives = gives || (friction.run >= 0 && may_slide(at(set_.capstan.runs, friction.run)));
-    if (is_bounded(friction)) return gives && column_of(friction.normal) >= 0;
-    return gives && row.on && friction.repeats < 0;
+    counts = counts || (friction.run >= 0 && may_slide(at(set_.capstan.runs, friction.run)));
+    if (is_bounded(friction)) return counts && column_of(friction.normal) >= 0;
+    return counts && row.on && friction.repeats < 0;
   }
-  return is_unilateral(row) ? gives || beside_run : gives && row.on;
+  return is_unilateral(row) ? counts || beside_run : counts && row.on;
 }
 
 /// The rows and runs that take part, each in an order that does not depend on which comes first in

@@ -436,6 +436,18 @@ bool slides_to(const Group& group, SolveScratch& set) {
   return any;
 }
 
+/// Whether what slides bears force: tension, or where it has none what one body in a pinch rubs on
+/// it and the other holds.
+bool rubs_on(const PartSystem& system, const CapstanScratch& s, const Run& run, double tolerance) {
+  if (bears(at(system.rows, run.row_out), tolerance)) return true;
+  if (bears(at(system.rows, run.row_in), tolerance)) return true;
+  for (int k = run.passages_begin; k < run.passages_end; ++k) {
+    const int middle = at(s.passages, k).middle;
+    if (middle >= 0 && std::abs(at(system.rows, middle).impulse) > tolerance) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolerance,
@@ -471,8 +483,7 @@ void check_runs(const PartSystem& system, SolveScratch& set, double speed_tolera
     if (run.frictionless || run.frozen || run.passages_begin == run.passages_end) continue;
     const int number = static_cast<int>(i);
     if (run.slip != Slip::stick) {
-      const bool rubs = bears(rows[index(run.row_out)], impulse_tolerance) ||
-                        bears(rows[index(run.row_in)], impulse_tolerance);
+      const bool rubs = rubs_on(system, s, run, impulse_tolerance);
       const bool against = sign(run.slip) * run.speed < -speed_tolerance;
       if (rubs && against) set.flips.push_back({number, true, true, Slip::stick});
       continue;

@@ -339,12 +339,17 @@ inline bool is_friction(const Row& row) {
   return row.friction >= 0;
 }
 
+/// Whether an impulse changes a row's speed: of what it pulls at, or as what stretches.
+inline bool gives(const Row& row) {
+  return row.diagonal + row.compliance > 0.0;
+}
+
 /// Whether a row's state may contradict the solution at all: where that of none may, nobody needs
 /// to know how much of it would be round-off.
 inline bool is_suspicious(const PartSystem& s, const Row& row) {
   if (is_friction(row)) return row.on && at(s.frictions, row.friction).bound < infinity;
   if (row.clamped) return false;
-  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && row.diagonal > 0.0 && !row.idle;
+  return row.on ? row.impulse < 0.0 : row.speed < 0.0 && gives(row) && !row.idle;
 }
 
 /// Leaves nothing that the system was made for; its storage stays.

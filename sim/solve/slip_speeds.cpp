@@ -134,7 +134,13 @@ void slip_speeds(const PartSystem& system, SolveScratch& set) {
     if (share && short_of == 0.0) continue;
     double sum = 0.0;
     for (int m = group.begin; m < group.end; ++m) {
-      if (at(s.member_runs, m) >= 0) at(s.runs, at(s.member_runs, m)).speed = sum;
+      if (const int number = at(s.member_runs, m); number >= 0) {
+        Run& run = at(s.runs, number);
+        // Beside slack cable it is the middle body that rolls with it which has the kick's speed.
+        const int middle = elastic && tension ? sticking_middle(set, run) : -1;
+        if (middle >= 0) sum = -at(system.rows, middle).speed;
+        run.speed = sum;
+      }
       const double w = at(s.speeds, m);
       double left_over = 0.0;
       if (share) {

@@ -29,7 +29,7 @@ void sweep_rows(PartSystem& s, SolveScratch& set) {
   for (int k = 0; k < sweeps; ++k) {
     for (std::size_t r = 0; r < s.rows.size(); ++r) {
       Row& row = s.rows[r];
-      if (row.diagonal == 0.0 || row.idle) continue;
+      if (!gives(row) || row.idle) continue;
       double least = row.clamped ? -infinity : 0.0, most = infinity;
       if (is_friction(row)) {
         const Friction& friction = at(s.frictions, row.friction);

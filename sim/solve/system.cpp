@@ -38,7 +38,7 @@ bool has_unknown(const PartSystem& s, std::size_t r, bool slides, const CapstanS
     return group.slack < 0 && at(capstan.members, group.begin) == static_cast<int>(r);
   }
   if (row.slip != Slip::stick) return false;
-  return row.diagonal > 0.0 || (slides && holds_sliding(s, row, capstan));
+  return gives(row) || (slides && holds_sliding(s, row, capstan));
 }
 
 /// Numbers the unknowns, and tells whether each is one row's impulse: then the matrix is symmetric.

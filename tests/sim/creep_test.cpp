@@ -18,6 +18,7 @@
 #include "sim/make_world.h"
 #include "sim/nodes.h"
 #include "sim/outline.h"
+#include "sim/tangent.h"
 #include "tests/sim/course.h"
 #include "tests/sim/random_scene.h"
 #include "tests/sim/same_state.h"
@@ -445,6 +446,35 @@ TEST(Creep, HeavyRopesOnRimsWithoutItMakeNoEnergy) {
 }
 
 // A disc that falls on an elastic cable, is wound, pinches it and leaves it again.
+// What lies on a drum that winds a heavy rope up is summed up as it is laid, one piece more a step:
+// it is what all pieces come to.
+TEST(Creep, MomentsOfWhatIsLaidAreThoseOfItsPieces) {
+  Scene scene;
+  scene.bodies = {body("load", BodyKind::free, 0.22, -6.0, 0.2, 50.0),
+                  body("drum", BodyKind::fixed_axle, 0.0, 0.0, 0.2, 5.0)};
+  scene.bodies[1].driven_angular_velocity = 5.0;
+  scene.cables = {cable(on(0), {{1, 1, 1}}, {1, Vec2(0.0, 0.22)}, 0.02)};
+  scene.cables[0].axial_stiffness = 1e5;
+  scene.cables[0].mass_per_metre = 0.5;
+  World world = make_world(scene, measured());
+  run_to(scene, world, 4.0);
+  const CableState& rope = world.cables[0];
+  ASSERT_EQ(rope.rims.size(), rope.links.size());
+  const double p = rope.links[1].signed_radius();
+  Vec2 sum = Vec2::Zero();
+  int pieces = 0;
+  each_piece(world, rope, 1, [&](double from, double to, double slope) {
+    sum += slope * p * (left(direction_at(from / p)) - left(direction_at(to / p)));
+    ++pieces;
+  });
+  EXPECT_GT(pieces, 200);
+  const RimSpan on_rim = span_on_rim(world, rope, 1);
+  const Vec2 kept =
+      laid_moment(rope.rims[1], p, on_rim.head) - laid_moment(rope.rims[1], p, on_rim.tail);
+  EXPECT_GT(sum.norm(), 1e-3);
+  EXPECT_LT((kept - sum).norm(), 1e-13);
+}
+
 TEST(Creep, AClearedWorkspaceChangesNoBit) {
   for (unsigned seed = 0; seed < seeds_of(20U); ++seed) {
     EXPECT_TRUE(is_all_state(random_elastic(seed), Method::pinch, 200)) << seed;

@@ -31,6 +31,9 @@ void mirror(CableState& cable) {
   cable.turning = -cable.turning;
   cable.turned = -cable.turned;
   cable.held.y() = -cable.held.y();
+  for (Rim& rim : cable.rims) {
+    for (Laid& laid : rim.laid) laid.moment = mirror(laid.moment);
+  }
   for (Link& link : cable.links) {
     link.orientation = -link.orientation;
     link.offset = mirror(link.offset);

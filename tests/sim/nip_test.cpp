@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "sim/joints.h"
 #include "tests/sim/scenes.h"
 
 namespace pinchlab::testing {
@@ -105,6 +106,33 @@ TEST(ElasticNip, WhatIsFedEndsAlikeAtAnyStep) {
       EXPECT_NEAR(world.position[2].y(), fine.position[2].y(), most)
           << c.mu << ' ' << c.stiffness << ' ' << steps;
     }
+  }
+}
+
+// A weight pulls an elastic rope, slack above, through a nip: over a disc that stands, which holds mu
+// N = 30 N, under a roller that it spins. With u of the rope, u' = (T - 30) / (I / p^2) while u > 0,
+// integrated in steps of 1e-6 s: the weight comes to -1.11862 m. It is the same whether the cable
+// wraps the roller or is only pressed by it, where all that was stretched was let go at once.
+TEST(ElasticNip, AWeightPullsSlackRopeThrough) {
+  Scene scene;
+  scene.bodies.push_back(body("disc", BodyKind::fixed, -0.11, 0.0, 0.1));
+  scene.bodies.push_back(body("roller", BodyKind::rail, 0.11, 0.0, 0.1, 1.0));
+  scene.bodies.push_back(body("weight", BodyKind::rail, 0.0, -1.0, 0.08, 2.0));
+  scene.bodies.push_back(body("top", BodyKind::rail, 0.0, 4.0, 0.08, 0.5));
+  scene.bodies[1].rail_axis = {1.0, 0.0};
+  scene.bodies[3].linear_drag = 8.0;
+  scene.bodies[0].cable_friction = scene.bodies[1].cable_friction = 0.3;
+  add_spring(scene, "spring", {-1, {1.11, 0.0}}, on(1), 1000.0, 1.1, 0.0);
+  scene.cables.push_back(cable(on(3), {{0, -1, 0}}, on(2), 0.01));
+  scene.cables.back().axial_stiffness = 300.0;
+  Scene wrapped = scene;
+  wrapped.cables.back().wraps.push_back({1, 1, 0});
+  for (const auto& [steps, most] : {std::pair(1, 2e-3), {4, 2e-4}, {16, 2e-5}}) {
+    const World world = after(scene, steps, 59.0 / 60.0);
+    EXPECT_NEAR(world.position[2].y(), -1.11862, most) << steps;
+    EXPECT_EQ(world.diagnostics.fallbacks, 0) << steps;
+    EXPECT_NEAR(after(wrapped, steps, 59.0 / 60.0).position[2].y(), world.position[2].y(), 1e-9)
+        << steps;
   }
 }
 
