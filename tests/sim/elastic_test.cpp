@@ -205,7 +205,7 @@ TEST(Elastic, BetweenWhatCannotGiveIsTensionToo) {
   scene.bodies = {body("drum", BodyKind::fixed_axle, 0.0, 1.0, 0.1, 1.0)};
   scene.bodies[0].driven_angular_velocity = 0.5;
   scene.cables = {cable(at(0.0, 0.0), {}, at(1.0, 0.0)),
-                  cable(at(1.0, 1.11), {{0, 1, 0}}, {0, Vec2(-0.1, 0.0)}, 0.01)};
+                  cable(at(1.0, 1.11), {{0, 1, 0}}, {0, Vec2(-0.11, 0.0)}, 0.01)};
   for (Cable& cable : scene.cables) cable.axial_stiffness = 400.0;
   scene.cables[0].slack = -0.1;
   scene.cables[1].slack = 0.01;
@@ -214,7 +214,7 @@ TEST(Elastic, BetweenWhatCannotGiveIsTensionToo) {
   for (const CableState& cable : world.cables) {
     const Segment& span = cable.segments[1];
     ASSERT_GT(span.length, span.rest_length);
-    EXPECT_NEAR(span.tension, 400.0 * (span.length / span.rest_length - 1.0), 0.05)
+    EXPECT_NEAR(span.tension, 400.0 * (span.length / span.rest_length - 1.0), 0.2)
         << &cable - world.cables.data();
   }
 }
