@@ -116,9 +116,6 @@ struct alignas(64) Segment {
   Vec2 tail = Vec2::Zero(), head = Vec2::Zero();  // m, tangent points on the cable's centre line
   Vec2 previous_tail = Vec2::Zero(), previous_head = Vec2::Zero();  // m, when the interval began
   Curvature curvature{};                                            // by note_curvatures
-  double grew = infinity, grew_before = infinity;  // m/s, elastic: by what it has lengthened in the
-                                                   // last two intervals more than its material, by
-                                                   // note_growth
 };
 
 /// The finest piece between two nodes of a cable with mass that runs over bodies, of those whose
@@ -130,6 +127,14 @@ struct FinestPiece {
   double spare = 0.0;        // m, by which that line is shorter than its material
   Vec2 held = Vec2::Zero();  // kg m, likewise, first moment of the bend that it holds
   double let_out = 0.0;      // 1/s, at which tension straightens that bend
+};
+
+/// How fast an elastic segment has lengthened in the last two intervals, more than its material has
+/// (m/s).
+struct Growth {
+  double last = infinity, before = infinity;
+
+  bool operator==(const Growth&) const = default;
 };
 
 struct alignas(64) CableState {
@@ -174,6 +179,7 @@ struct alignas(64) CableState {
   std::vector<FinestPiece> finest;  // of nodes whose number adapts, by adapt_nodes: one more
   double grip = 1.0;                // factor on the friction of its pinches
   double bend = 0.0;                // N m a rad, between it and `bends_with`
+  std::vector<Growth> growth;       // elastic: as many as segments, or none; by note_growth
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).

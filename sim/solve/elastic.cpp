@@ -347,7 +347,9 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   if (t.length == 0.0 && damped > 0.0) return;
   Lengthening lengthens = lengthening(world, segment, t, s, number);
   if (t.length > 0.0) {
-    if (t.steady) lengthens.earlier = segment.grew_before;
+    const std::size_t i = index(row.item);
+    const bool known = t.steady && cable.density == 0.0 && i < cable.growth.size();
+    if (known) lengthens.earlier = cable.growth[i].before;
     const Spring spring{flexibility, row.clearance};
     return make_row(given, segment, t, spring, lengthens, damped, s, number);
   }
@@ -393,9 +395,15 @@ void make_all_elastic(const Scene& scene, const World& world, const Parts& parts
 void note_growth(const PartSystem& s, double length, World& world) {
   for (const Row& row : s.rows) {
     if (row.kind != RowKind::segment || row.compliance == 0.0) continue;
-    Segment& segment = at(at(world.cables, row.index).segments, row.item);
-    segment.grew_before = segment.grew;
-    segment.grew = (row.clearance - (segment.rest_length - segment.length)) / length;
+    CableState& cable = at(world.cables, row.index);
+    if (cable.density > 0.0) continue;
+    if (cable.growth.size() != cable.segments.size()) {
+      cable.growth.assign(cable.segments.size(), {});
+    }
+    const Segment& segment = at(cable.segments, row.item);
+    Growth& growth = at(cable.growth, row.item);
+    growth.before = growth.last;
+    growth.last = (row.clearance - (segment.rest_length - segment.length)) / length;
   }
 }
 

@@ -19,9 +19,11 @@
 // before, the share d = a - b is of a mean over four positions instead,
 //     C = sum w_j C_n+j,  j = 1, 0, -1, -2,  w = (1 - d) (1, 2, 1, 0) / 4 + d (8, 12, 6, 1) / 27,
 // the latter being (z + 1/2)^3 made 1 at z = 1: sum j w_j = 0, so that it is of second order, and
-// what is slow is damped by (omega h)^3 / 27 a step at most; what is infinitely stiff is halved by
-// each, and nothing grows whatever s and d are (the roots of z (z - 1)^2 + s w(z)). Not of cable
-// that slides without mass, whose groups come and go.
+// what is slow is damped by (omega h)^3 / 27 a step at most. What is infinitely stiff is halved by
+// each, and nothing grows whatever s and d are (the roots of z (z - 1)^2 + s w(z)). But a blow is
+// answered by 2.5 times its speed in the next interval. So cables with mass on bodies, which what
+// flows strikes all the time, keep to the share of implicit Euler, and so does cable that slides
+// without mass, whose groups come and go.
 //
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //
@@ -56,7 +58,7 @@ void make_all_elastic(const Scene& scene, const World& world, const Parts& parts
                       const TimeSpan& t, PartSystem& s);
 
 /// Notes how much the elastic segments that have rows have grown in an interval of such a length
-/// (s) that is over: Segment::grew.
+/// (s) that is over: CableState::growth.
 void note_growth(const PartSystem& s, double length, World& world);
 
 }  // namespace pinchlab

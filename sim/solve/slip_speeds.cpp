@@ -136,7 +136,7 @@ void slip_speeds(const PartSystem& system, SolveScratch& set) {
     for (int m = group.begin; m < group.end; ++m) {
       if (const int number = at(s.member_runs, m); number >= 0) {
         Run& run = at(s.runs, number);
-        // Beside slack cable it is the middle body that rolls with it which has the kick's speed.
+        // Beside slack cable what slides goes as fast as a middle body that rolls with it.
         const int middle = elastic && tension ? sticking_middle(set, run) : -1;
         if (middle >= 0) sum = -at(system.rows, middle).speed;
         run.speed = sum;

@@ -229,12 +229,13 @@ TEST(Nodes, AFlexiblePendulumSwingsAsOthersDo) {
   }
 }
 
-// Second order in the step, at one number of pieces.
+// Second order in the step, at one number of pieces. (At 8 steps a frame these vibrate faster than
+// steps can follow; that is damped, and the error is less than its order says.)
 TEST(Nodes, BendingIsOfSecondOrder) {
   double change = 0.0;
   const Vec2 exact = swing_flexibly(12, 512, {1.0}, change)[0];
   double last = 0.0, last_change = 0.0;
-  for (const int steps : {8, 16, 32, 64}) {
+  for (const int steps : {16, 32, 64, 128}) {
     const double error = (swing_flexibly(12, steps, {1.0}, change)[0] - exact).norm();
     if (last > 0.0) {
       EXPECT_GT(last / error, 3.5) << steps;

@@ -85,7 +85,8 @@ inline bool same_state(const World& a, const World& b) {
                  return p.length == q.length && p.turning == q.turning && p.changes == q.changes &&
                         p.pieces == q.pieces && p.turned == q.turned && p.held == q.held &&
                         p.let_out == q.let_out && equal(p.links, q.links, same_link) &&
-                        equal(p.rims, q.rims, same_rim) && equal(p.finest, q.finest, same_finest) &&
+                        equal(p.rims, q.rims, same_rim) && p.growth == q.growth &&
+                        equal(p.finest, q.finest, same_finest) &&
                         equal(p.segments, q.segments, same_segment);
                }) &&
          equal(a.contacts, b.contacts, same_contact) &&
