@@ -179,7 +179,7 @@ struct alignas(64) CableState {
   std::vector<FinestPiece> finest;  // of nodes whose number adapts, by adapt_nodes: one more
   double grip = 1.0;                // factor on the friction of its pinches
   double bend = 0.0;                // N m a rad, between it and `bends_with`
-  std::vector<Growth> growth;       // elastic: as many as segments, or none; by note_growth
+  std::vector<Growth> growth;       // elastic, between nodes: as many as segments; by note_growth
 };
 
 /// Direction angle of the cable where it leaves link i (rad, consistent with that link's tail).

@@ -168,8 +168,8 @@ IntervalTrial try_part(const Scene& scene, World& world, Workspace& work, Part& 
   t.made_up = s.reach;
   t.foreseen =
       attempt.foresees && s.carried.empty() && is_foreseen(pace, world.configuration.error, t);
-  t.steady = pace.intervals >= 2 && is_even(pace.lag, t.length) &&
-             world.configuration.solver == Solver::direct;
+  t.steady =
+      pace.intervals >= 2 && !has_contacts(part) && world.configuration.solver == Solver::direct;
   t.reach = attempt.locates ? s.reach : infinity;
   IntervalTrial trial;
   trial.met = move_part(scene, world, work, part, t, attempt, trial, watch);

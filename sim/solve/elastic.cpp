@@ -162,10 +162,10 @@ void make_row(const Cable& given, const Segment& segment, const TimeSpan& t, Spr
   double known = known_part(t, damped, spring.clearance, before);
   double scale = b * h * h + damped * h * t.kick;  // s^2
   if (damped > 0.0 && lengthens.earlier < infinity) {
-    const double at_end = b + damped * 8.0 / 27.0, at_start = damped / 27.0;  // w_1, w_-2
-    const double since = b + damped * 7.0 / 27.0;                             // w_-1 + w_-2
-    known = h * (spring.clearance + h * (since * before + at_start * lengthens.earlier));
-    scale = at_end * h * h;
+    const double last = 4.0 * t.lag * t.lag;  // s^2, h^2 of the interval before
+    const double past = 7.0 * before + lengthens.earlier;
+    known = known_part(t, damped, spring.clearance, before) + damped * last * past / 27.0;
+    scale = b * h * h + damped * (last * 8.0 / 27.0 + (h * h - last) / 8.0);
   }
   if (given.damping > 0.0) {
     const double damper = spring.flexibility * given.damping * t.kick;  // s^2
@@ -348,7 +348,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
   Lengthening lengthens = lengthening(world, segment, t, s, number);
   if (t.length > 0.0) {
     const std::size_t i = index(row.item);
-    const bool known = t.steady && cable.density == 0.0 && i < cable.growth.size();
+    const bool known = t.steady && cable.piece && i < cable.growth.size();
     if (known) lengthens.earlier = cable.growth[i].before;
     const Spring spring{flexibility, row.clearance};
     return make_row(given, segment, t, spring, lengthens, damped, s, number);
@@ -396,7 +396,7 @@ void note_growth(const PartSystem& s, double length, World& world) {
   for (const Row& row : s.rows) {
     if (row.kind != RowKind::segment || row.compliance == 0.0) continue;
     CableState& cable = at(world.cables, row.index);
-    if (cable.density > 0.0) continue;
+    if (!cable.piece) continue;
     if (cable.growth.size() != cable.segments.size()) {
       cable.growth.assign(cable.segments.size(), {});
     }

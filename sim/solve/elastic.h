@@ -15,15 +15,17 @@
 // an instant (h = 0) such a cable is inextensible.
 //
 // That damps slow vibrations of the same cable as well, by far more than is theirs: a load that
-// bobs on a rope with light nodes comes to rest. Where two more intervals of this length came just
-// before, the share d = a - b is of a mean over four positions instead,
+// bobs on a rope with light nodes comes to rest. So of chains of nodes which nothing touches, after
+// two intervals of one length h, the share d = a - b is of a mean over four positions instead,
 //     C = sum w_j C_n+j,  j = 1, 0, -1, -2,  w = (1 - d) (1, 2, 1, 0) / 4 + d (8, 12, 6, 1) / 27,
 // the latter being (z + 1/2)^3 made 1 at z = 1: sum j w_j = 0, so that it is of second order, and
 // what is slow is damped by (omega h)^3 / 27 a step at most. What is infinitely stiff is halved by
-// each, and nothing grows whatever s and d are (the roots of z (z - 1)^2 + s w(z)). But a blow is
-// answered by 2.5 times its speed in the next interval. So cables with mass on bodies, which what
-// flows strikes all the time, keep to the share of implicit Euler, and so does cable that slides
-// without mass, whose groups come and go.
+// each, and nothing grows whatever s and d are (the roots of z (z - 1)^2 + s w(z)). An interval of
+// another length h' after these has the weights -7, -1 of the past and that of dC/dt(v+) that makes
+// the integral of an even growth over its kick right, 8 h^2 / 27 + (h'^2 - h^2) / 8. Other elastic
+// cables keep to the share of implicit Euler: a blow is answered by 2.5 times its speed, so that
+// what flows over rims would make energy, and spans over light pulleys, which go slack and taut
+// again and again, would go their ways by the round-off of when.
 //
 // C changes by J v and by what rims carry less than they turn (creep.h).
 //
@@ -57,7 +59,7 @@ void make_elastic(const World& world, const Cable& given, const Segment& segment
 void make_all_elastic(const Scene& scene, const World& world, const Parts& parts, const Part& part,
                       const TimeSpan& t, PartSystem& s);
 
-/// Notes how much the elastic segments that have rows have grown in an interval of such a length
+/// Notes how much elastic segments between nodes have grown in an interval of such a length
 /// (s) that is over: CableState::growth.
 void note_growth(const PartSystem& s, double length, World& world);
 

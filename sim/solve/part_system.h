@@ -62,7 +62,7 @@ struct TimeSpan {
   bool clamps = false;        // pressed bodies hold the cable in a transitional pinch both ways
   bool held_only = false;     // nothing bears force that does not do so already
   bool foreseen = false;      // the rows' curvatures are: foresight.h
-  bool steady = false;        // two more of its length came just before, by the direct solver
+  bool steady = false;        // after two of one length, of a part that nothing touches
   bool straight = false;      // no way is curved to the rows. Where they contradict each other by
                               // that, as a span that is about to be pinched does the friction of
                               // the discs beside it, the linear solution is sound still

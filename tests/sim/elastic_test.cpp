@@ -171,31 +171,23 @@ double swing(const Scene& scene, World& world, int body, double from) {
 }
 
 // Nothing takes the energy of a load that bobs, slowly enough to be followed, on a rope whose nodes
-// are too light for that, or over a light pulley. What damped these vibrations damped the load's as
-// well: at 4 steps a frame half of its swing was left after three seconds, and nothing.
+// are too light for that. What damped their vibrations damped the load's as well: at 4 steps a
+// frame half of its swing was left after three seconds.
 TEST(Elastic, ALoadBobsOnBesideWhatIsTooFastToBeFollowed) {
-  Scene crane;
-  crane.bodies = {body("load", BodyKind::free, 0.0, -10.0, 0.3, 500.0)};
-  crane.cables = {cable(at(0.0, 0.0), {}, on(0))};
-  crane.cables[0].axial_stiffness = 1e6;
-  crane.cables[0].mass_per_metre = 1.0;
-  crane.cables[0].nodes = automatic_nodes;
-  crane.steps_per_frame = 4;
-  spread_nodes(crane);
-  Scene pulley;
-  pulley.bodies = {body("load", BodyKind::free, 0.06, -1.0, 0.04, 10.0),
-                   body("pulley", BodyKind::fixed_axle, 0.0, 0.0, 0.05, 0.2)};
-  pulley.cables = {cable(at(-0.06, -1.0), {{1, -1, 0}}, on(0), 0.01)};
-  pulley.cables[0].axial_stiffness = 5e4;
-  for (Scene scene : {crane, pulley}) {
-    scene.steps_per_frame = 4;
-    World world = make_world(scene, measured());
-    const double first = swing(scene, world, 0, 0.0), last = swing(scene, world, 0, 3.0);
-    EXPECT_GT(first, 3e-3);
-    EXPECT_GT(last, 0.97 * first);
-    EXPECT_LT(last, 1.01 * first);
-    EXPECT_TRUE(is_all_state(scene, Method::pinch, 100));
-  }
+  Scene scene;
+  scene.steps_per_frame = 4;
+  scene.bodies = {body("load", BodyKind::free, 0.0, -10.0, 0.3, 500.0)};
+  scene.cables = {cable(at(0.0, 0.0), {}, on(0))};
+  scene.cables[0].axial_stiffness = 1e6;
+  scene.cables[0].mass_per_metre = 1.0;
+  scene.cables[0].nodes = automatic_nodes;
+  spread_nodes(scene);
+  World world = make_world(scene, measured());
+  const double first = swing(scene, world, 0, 0.0), last = swing(scene, world, 0, 3.0);
+  EXPECT_GT(first, 0.04);
+  EXPECT_GT(last, 0.98 * first);
+  EXPECT_LT(last, 1.01 * first);
+  EXPECT_TRUE(is_all_state(scene, Method::pinch, 100));
 }
 
 // Where neither end of a stretched cable can give its tension is what it is stretched by: a string

@@ -90,7 +90,8 @@ World feed(double mu, double pressing, double stiffness, double load, int steps_
   return after(scene, steps_per_frame, 0.6);
 }
 
-// Loads that swing on ropes which slip, roll and stick by turns: where the rope was glued for a step, or the curvature foreseen of a roller on cable that slides was all that it slides by, they
+// Loads that swing on ropes which slip, roll and stick by turns: where the rope was glued for a
+// step, or the curvature foreseen of a roller on cable that slides was all that it slides by, they
 // ended up to 0.1 m apart.
 TEST(ElasticNip, WhatIsFedEndsAlikeAtAnyStep) {
   struct Case {
@@ -109,10 +110,10 @@ TEST(ElasticNip, WhatIsFedEndsAlikeAtAnyStep) {
   }
 }
 
-// A weight pulls an elastic rope, slack above, through a nip: over a disc that stands, which holds mu
-// N = 30 N, under a roller that it spins. With u of the rope, u' = (T - 30) / (I / p^2) while u > 0,
-// integrated in steps of 1e-6 s: the weight comes to -1.11862 m. It is the same whether the cable
-// wraps the roller or is only pressed by it, where all that was stretched was let go at once.
+// A weight pulls an elastic rope, slack above, through a nip: over a disc that stands, which holds
+// mu N = 30 N, under a roller that it spins. With u of the rope, u' = (T - 30) / (I / p^2) while u
+// > 0, integrated in steps of 1e-6 s: the weight comes to -1.11862 m. It is the same whether the
+// cable wraps the roller or is only pressed by it, where all that was stretched was let go at once.
 TEST(ElasticNip, AWeightPullsSlackRopeThrough) {
   Scene scene;
   scene.bodies.push_back(body("disc", BodyKind::fixed, -0.11, 0.0, 0.1));
